@@ -1,0 +1,283 @@
+#include "mpi/mpi_communicator.hpp"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "error.hpp"
+#include "mpi/launcher.hpp"
+
+namespace catena {
+namespace {
+
+void check(int code, char const* call) {
+    if (code == MPI_SUCCESS) return;
+    char text[MPI_MAX_ERROR_STRING] = "unknown error";
+    int length = 0;
+    MPI_Error_string(code, text, &length);
+    throw ComputationError(std::string("MPI failed: ") + text + " (" + call + "): see whether every rank and its host are still up");
+}
+
+/// Whether an error is on its way out that other ranks may not know of: to wait for them then would be for ever.
+class Unwinding {
+  public:
+    explicit operator bool() const { return std::uncaught_exceptions() > at_start_; }
+
+  private:
+    int at_start_ = std::uncaught_exceptions();
+};
+
+/// MPI itself, from MPI_Init_thread to MPI_Finalize; owns nothing where the caller had initialised it.
+class MpiLibrary {
+  public:
+    MpiLibrary(int* argc, char*** argv) {
+        int initialised = 0;
+        check(MPI_Initialized(&initialised), "MPI_Initialized");
+        if (initialised != 0) return;
+        int provided = MPI_THREAD_SINGLE;
+        check(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+        owned_ = true;
+        if (provided < MPI_THREAD_FUNNELED)
+            throw ComputationError("MPI allows no threads beside it (" + message_passing_library() + "): use one with MPI_THREAD_FUNNELED");
+    }
+    MpiLibrary(MpiLibrary&& other) noexcept : owned_(std::exchange(other.owned_, false)) {}
+    MpiLibrary& operator=(MpiLibrary&&) = delete;
+    ~MpiLibrary() {
+        if (owned_ && !unwinding_) MPI_Finalize();
+    }
+
+  private:
+    bool owned_ = false;
+    Unwinding unwinding_;
+};
+
+/// A communicator of MPI's, freed at its end.
+class MpiHandle {
+  public:
+    explicit MpiHandle(MPI_Comm handle) : handle_(handle) {
+        check(MPI_Comm_set_errhandler(handle_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    }
+    MpiHandle(MpiHandle&& other) noexcept : handle_(std::exchange(other.handle_, MPI_COMM_NULL)) {}
+    MpiHandle& operator=(MpiHandle&&) = delete;
+    ~MpiHandle() {
+        if (handle_ != MPI_COMM_NULL && !unwinding_) MPI_Comm_free(&handle_);
+    }
+    operator MPI_Comm() const { return handle_; }
+
+  private:
+    MPI_Comm handle_;
+    Unwinding unwinding_;
+};
+
+MpiHandle duplicate_of_world() {
+    check(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    MPI_Comm handle = MPI_COMM_NULL;
+    check(MPI_Comm_dup(MPI_COMM_WORLD, &handle), "MPI_Comm_dup");
+    return MpiHandle(handle);
+}
+
+int size_of_host(MPI_Comm world) {
+    MPI_Comm host = MPI_COMM_NULL;
+    check(MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
+    MpiHandle const owner(host);
+    int size = 0;
+    check(MPI_Comm_size(owner, &size), "MPI_Comm_size");
+    return size;
+}
+
+// A double as an integer of the same order, NaN above all.
+std::int64_t ordered(double value) {
+    if (std::isnan(value)) return std::numeric_limits<std::int64_t>::max();
+    auto const bits = std::bit_cast<std::int64_t>(value);
+    return bits >= 0 ? bits : bits ^ std::numeric_limits<std::int64_t>::max();
+}
+double from_ordered(std::int64_t key) { return std::bit_cast<double>(key >= 0 ? key : key ^ std::numeric_limits<std::int64_t>::max()); }
+
+class MpiCommunicator final : public Communicator {
+  public:
+    MpiCommunicator(int* argc, char*** argv, std::int64_t largest_message)
+        : library_(argc, argv), world_(duplicate_of_world()), largest_message_(static_cast<std::size_t>(largest_message)) {
+        check(MPI_Comm_rank(world_, &rank_), "MPI_Comm_rank");
+        check(MPI_Comm_size(world_, &size_), "MPI_Comm_size");
+        ranks_on_host_ = size_of_host(world_);
+    }
+
+    int rank() const override { return rank_; }
+    int size() const override { return size_; }
+    int ranks_on_host() const override { return ranks_on_host_; }
+    std::int64_t rounds() const override { return rounds_; }
+
+    void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
+                    std::vector<std::int64_t> const& bytes_of_rank) const override {
+        Blocks const blocks = blocks_of(own, all, bytes_of_rank);
+        ++rounds_;
+        if (!blocks.short_enough) return all_gather_in_pieces(own, all, blocks);
+        void const* const send = in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
+        check(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE,
+                             world_),
+              "MPI_Allgatherv");
+    }
+
+    void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) const override {
+        Blocks const blocks = rank_ == 0 ? blocks_of(own, all, bytes_of_rank) : blocks_of(own, {}, bytes_of_rank);
+        ++rounds_;
+        if (!blocks.short_enough) return gather_in_pieces(own, all, blocks);
+        void const* const send = rank_ == 0 && in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
+        check(MPI_Gatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE, 0,
+                          world_),
+              "MPI_Gatherv");
+    }
+
+    void broadcast(std::span<std::byte> data) const override {
+        ++rounds_;
+        broadcast_in_pieces(data, 0);
+    }
+
+    void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive, int from) const override {
+        ++rounds_;
+        if (to < 0) send = {};
+        if (from < 0) receive = {};
+        while (!send.empty() || !receive.empty()) {
+            std::span const out = send.first(std::min(send.size(), largest_message_));
+            std::span const in = receive.first(std::min(receive.size(), largest_message_));
+            MPI_Status status;
+            check(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE, out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
+                               static_cast<int>(in.size()), MPI_BYTE, in.empty() ? MPI_PROC_NULL : from, 0, world_, &status),
+                  "MPI_Sendrecv");
+            if (!in.empty()) require_length(status, in.size());
+            send = send.subspan(out.size());
+            receive = receive.subspan(in.size());
+        }
+    }
+
+    double max(double value) const override { return from_ordered(all_reduced(ordered(value), MPI_MAX)); }
+    std::int64_t sum(std::int64_t value) const override { return all_reduced(value, MPI_SUM); }
+
+    void barrier() const override {
+        ++rounds_;
+        check(MPI_Barrier(world_), "MPI_Barrier");
+    }
+
+    [[noreturn]] void abort(int status) const override {
+        MPI_Abort(world_, status);
+        std::_Exit(status);
+    }
+
+  private:
+    struct Blocks {
+        std::vector<std::int64_t> const& bytes;
+        std::vector<int> count, first;
+        bool short_enough = false;
+
+        std::span<std::byte> of(std::span<std::byte> all, int rank) const {
+            auto const begin = std::accumulate(bytes.begin(), bytes.begin() + rank, std::int64_t{0});
+            return all.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank)]));
+        }
+    };
+
+    /// `all` may be empty where nothing is received.
+    Blocks blocks_of(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const {
+        auto const total = static_cast<std::size_t>(std::accumulate(bytes.begin(), bytes.end(), std::int64_t{0}));
+        if (bytes.size() != static_cast<std::size_t>(size_) ||
+            own.size() != static_cast<std::size_t>(bytes[static_cast<std::size_t>(rank_)]) || (!all.empty() && all.size() != total))
+            throw std::logic_error("gather: the blocks do not have the lengths that bytes_of_rank gives them");
+        Blocks blocks{bytes, {}, {}, total <= largest_message_};
+        if (!blocks.short_enough) return blocks;
+        int first = 0;
+        for (std::int64_t const b : bytes) {
+            blocks.count.push_back(static_cast<int>(b));
+            blocks.first.push_back(std::exchange(first, first + static_cast<int>(b)));
+        }
+        return blocks;
+    }
+
+    bool in_place(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
+        return !own.empty() && own.data() == blocks.of(all, rank_).data();
+    }
+
+    void broadcast_in_pieces(std::span<std::byte> data, int root) const {
+        while (!data.empty()) {
+            std::span const piece = data.first(std::min(data.size(), largest_message_));
+            check(MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, world_), "MPI_Bcast");
+            data = data.subspan(piece.size());
+        }
+    }
+
+    void all_gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
+        if (!in_place(own, all, blocks)) std::copy(own.begin(), own.end(), blocks.of(all, rank_).begin());
+        for (int r = 0; r < size_; ++r) broadcast_in_pieces(blocks.of(all, r), r);
+    }
+
+    void gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
+        if (rank_ != 0) {
+            for (; !own.empty(); own = own.subspan(std::min(own.size(), largest_message_)))
+                check(MPI_Send(own.data(), static_cast<int>(std::min(own.size(), largest_message_)), MPI_BYTE, 0, 0, world_), "MPI_Send");
+            return;
+        }
+        if (!in_place(own, all, blocks)) std::copy(own.begin(), own.end(), all.begin());
+        for (int r = 1; r < size_; ++r) {
+            for (std::span<std::byte> rest = blocks.of(all, r); !rest.empty();) {
+                std::span const piece = rest.first(std::min(rest.size(), largest_message_));
+                MPI_Status status;
+                check(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, r, 0, world_, &status), "MPI_Recv");
+                require_length(status, piece.size());
+                rest = rest.subspan(piece.size());
+            }
+        }
+    }
+
+    static void require_length(MPI_Status const& status, std::size_t expected) {
+        int count = 0;
+        check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+        if (static_cast<std::size_t>(count) != expected)
+            throw std::logic_error("message of " + std::to_string(count) + " bytes where " + std::to_string(expected) + " were expected");
+    }
+
+    std::int64_t all_reduced(std::int64_t value, MPI_Op operation) const {
+        ++rounds_;
+        std::int64_t result = 0;
+        check(MPI_Allreduce(&value, &result, 1, MPI_INT64_T, operation, world_), "MPI_Allreduce");
+        return result;
+    }
+
+    MpiLibrary library_;  // before world_: MPI ends after its communicators
+    MpiHandle world_;
+    std::size_t largest_message_;
+    int rank_ = 0, size_ = 1, ranks_on_host_ = 1;
+    mutable std::int64_t rounds_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, std::int64_t largest_message) {
+    auto communicator = std::make_unique<MpiCommunicator>(argc, argv, largest_message);
+    Launch const launch = launch_environment();
+    if (launch.size > 1 && communicator->size() == 1)
+        throw InputError("every process sees itself alone", "started with " + launch.evidence + ", but MPI counts 1 rank",
+                         "use the mpirun that belongs to " + message_passing_library());
+    return communicator;
+}
+
+// Outside mpirun MPI is not initialised: a single rank needs none of it, and starts faster without.
+std::unique_ptr<Communicator> world_communicator(int* argc, char*** argv) {
+    if (!launch_environment().found) return serial_communicator();
+    return mpi_communicator(argc, argv);
+}
+
+std::string message_passing_library() {
+    char text[MPI_MAX_LIBRARY_VERSION_STRING] = "";
+    int length = 0;
+    check(MPI_Get_library_version(text, &length), "MPI_Get_library_version");
+    std::string const name(text);
+    return name.substr(0, name.find_first_of(",\n"));
+}
+
+}  // namespace catena

@@ -1,0 +1,67 @@
+// One quantity of D components for every body a rank holds, component after component (a structure of arrays), with one
+// halo body on either side. All addressing is here, so that another layout changes this file alone.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "dca/linear.hpp"
+
+namespace catena {
+
+/// Free view: body k in [-1, size] (the ends are the halo).
+template <class Real, int D>
+struct FieldView {
+    Real* origin = nullptr;        // component 0 of body 0
+    std::int64_t pitch = 0;        // from one component to the next
+    std::int64_t size = 0;
+
+    CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * pitch + k]; }
+    CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const {
+        Vector<std::remove_const_t<Real>, D> v;
+        CATENA_UNROLL
+        for (int i = 0; i < D; ++i) v[i] = origin[i * pitch + k];
+        return v;
+    }
+    template <class Value>
+    CATENA_HD void store(std::int64_t k, Vector<Value, D> const& v) const {
+        CATENA_UNROLL
+        for (int i = 0; i < D; ++i) origin[i * pitch + k] = v[i];
+    }
+    CATENA_HD operator FieldView<Real const, D>() const { return {origin, pitch, size}; }
+};
+
+/// Owner of a field on the host. Zero-initialised.
+template <class Real, int D>
+class BasicField {
+  public:
+    BasicField() = default;
+    explicit BasicField(std::int64_t size) : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_), Real(0)) {}
+
+    std::int64_t size() const { return size_; }
+    FieldView<Real, D> view() { return {data_.data() + halo, pitch_, size_}; }
+    FieldView<Real const, D> view() const { return {data_.data() + halo, pitch_, size_}; }
+    Vector<Real, D> operator[](std::int64_t k) const { return view().load(k); }
+    void set(std::int64_t k, Vector<Real, D> const& v) { view().store(k, v); }
+
+  private:
+    static constexpr std::int64_t halo = 8;
+    /// An odd number of cache lines: components of one body at a power-of-two stride would fight for one cache set.
+    static std::int64_t padded(std::int64_t size) {
+        std::int64_t const lines = (size + 2 * halo + 7) / 8;
+        return 8 * (lines | 1);
+    }
+    std::int64_t pitch_ = 0, size_ = 0;
+    std::vector<Real> data_;
+};
+
+template <int D>
+using Field = BasicField<double, D>;
+template <int D>
+using View = FieldView<double, D>;
+template <int D>
+using ConstView = FieldView<double const, D>;
+
+}  // namespace catena

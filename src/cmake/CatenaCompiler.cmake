@@ -1,0 +1,74 @@
+# How everything is compiled: language, floating point, warnings, sanitizers, ccache.
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_INSTALL_RPATH_USE_LINK_PATH ON)
+set_property(GLOBAL PROPERTY USE_FOLDERS ON)
+
+if(NOT CMAKE_BUILD_TYPE AND NOT CMAKE_CONFIGURATION_TYPES)
+    set(CMAKE_BUILD_TYPE Release CACHE STRING "Debug, Release or RelWithDebInfo" FORCE)
+endif()
+
+option(CATENA_WERROR "Warnings are errors (tests/run.sh sets it)" OFF)
+set(CATENA_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=: address,undefined or thread; empty: none")
+
+# One instruction set for the whole build, the same on every machine that builds it: results are promised bit for bit for
+# an instruction set, and whether a*b+c is one rounding or two (FMA, from x86-64-v3 on) is the part of it that shows.
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+    if(NOT DEFINED CACHE{CATENA_ARCH})
+        include(CheckCXXSourceRuns)
+        set(CMAKE_REQUIRED_FLAGS "-march=x86-64-v3 -O1")
+        check_cxx_source_runs([[
+            #include <immintrin.h>
+            int main(int argc, char**) {
+                __m256d const a = _mm256_set1_pd(argc);
+                __m256i const b = _mm256_add_epi64(_mm256_castpd_si256(_mm256_fmadd_pd(a, a, a)), _mm256_castpd_si256(a));
+                return _mm256_extract_epi64(b, 0) == 0 ? 1 : 0;
+            }]] CATENA_HOST_RUNS_V3)
+        unset(CMAKE_REQUIRED_FLAGS)
+        if(NOT CATENA_HOST_RUNS_V3)
+            message(WARNING "This machine cannot run x86-64-v3 code (AVX2, FMA): compiling for the compiler's default processor. "
+                            "Results then differ in their last bits from builds for x86-64-v3. Name another with -DCATENA_ARCH=...")
+            set(catena_default_arch "")
+        else()
+            set(catena_default_arch "x86-64-v3")
+        endif()
+    endif()
+    set(CATENA_ARCH "${catena_default_arch}" CACHE STRING "Instruction set, as for -march=; empty: the compiler's default")
+endif()
+
+# Public, because the mathematics is in headers: a program that uses the library instantiates the same templates, the
+# linker keeps one copy of each, and that copy must round alike.
+set(CATENA_ARITHMETIC_FLAGS -ffp-contract=off)
+if(CATENA_ARCH)
+    list(APPEND CATENA_ARITHMETIC_FLAGS -march=${CATENA_ARCH})
+endif()
+
+add_library(catena_warnings INTERFACE)
+target_compile_options(catena_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wall;-Wextra;-Wpedantic;-Wshadow>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+    # False alarms on "text" + std::string (GCC bug 105651).
+    target_compile_options(catena_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-restrict>)
+endif()
+set(CMAKE_COMPILE_WARNING_AS_ERROR ${CATENA_WERROR})
+
+if(CATENA_SANITIZE)
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${CATENA_SANITIZE}> $<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer>)
+    add_link_options(-fsanitize=${CATENA_SANITIZE})
+    if(CATENA_SANITIZE MATCHES "undefined")
+        add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fno-sanitize-recover=undefined>)
+    endif()
+endif()
+
+find_program(CATENA_CCACHE ccache)
+mark_as_advanced(CATENA_CCACHE)
+if(CATENA_CCACHE)
+    foreach(language IN ITEMS C CXX CUDA)
+        if(NOT DEFINED CMAKE_${language}_COMPILER_LAUNCHER)
+            set(CMAKE_${language}_COMPILER_LAUNCHER "${CATENA_CCACHE}")
+        endif()
+    endforeach()
+endif()

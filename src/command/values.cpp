@@ -1,0 +1,56 @@
+#include "command/values.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.hpp"
+#include "scene/fields.hpp"
+
+namespace catena::command {
+
+std::string remedy_for(std::string_view text, std::span<std::string_view const> known) {
+    auto const near = scene::nearest(text, known);
+    return near ? "did you mean `" + *near + "`?" : "use one of " + scene::joined(known);
+}
+
+std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least, std::int64_t most) {
+    double value = 0;
+    scene::NumberFault const fault = scene::parse_number(text, value);
+    bool const whole = fault == scene::NumberFault::none && std::floor(value) == value && std::abs(value) < 9.0e15;
+    if (!whole) throw InputError(fmt::format("`{}` is not a whole number", text), option, fmt::format("give one from {} on", least));
+    auto const number = static_cast<std::int64_t>(value);
+    if (number < least) throw InputError(fmt::format("{} is below {}", number, least), option, fmt::format("give a whole number from {} on", least));
+    if (number > most) throw InputError(fmt::format("{} is above {}", number, most), option, fmt::format("give a whole number up to {}", most));
+    return number;
+}
+
+std::string const& known_value(std::string const& option, std::string const& text, std::span<std::string_view const> known) {
+    if (std::find(known.begin(), known.end(), text) == known.end())
+        throw InputError(fmt::format("`{}` is not a value of {}", text, option), "command line", remedy_for(text, known));
+    return text;
+}
+
+std::vector<std::string> comma_list(std::string const& option, std::string const& text) {
+    std::vector<std::string> parts;
+    for (std::size_t begin = 0; begin <= text.size();) {
+        std::size_t const end = std::min(text.find(',', begin), text.size());
+        parts.push_back(text.substr(begin, end - begin));
+        if (parts.back().empty()) throw InputError(fmt::format("`{}` has an empty part", text), option, "separate values by single commas");
+        begin = end + 1;
+    }
+    return parts;
+}
+
+Backend backend_named(std::string const& option, std::string const& text) {
+    constexpr Backend all[] = {Backend::automatic, Backend::serial, Backend::segments, Backend::openmp, Backend::cuda, Backend::cuda_levels};
+    std::vector<std::string_view> names;
+    for (Backend const backend : all) names.emplace_back(name_of(backend));
+    known_value(option, text, names);
+    for (Backend const backend : {Backend::cuda, Backend::cuda_levels})
+        if (text == name_of(backend)) throw not_in_this_version(option + " " + text + " (use serial, segments or openmp)");
+    return all[std::find(names.begin(), names.end(), text) - names.begin()];
+}
+
+}  // namespace catena::command

@@ -1,0 +1,35 @@
+#include "command/version.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "force/openmm_force.hpp"
+#include "io/output.hpp"
+#include "mpi/communicator.hpp"
+#include "report/hardware.hpp"
+
+namespace catena::command {
+
+std::string version() { return CATENA_VERSION; }
+
+nlohmann::ordered_json version_json() {
+    return {{"catena", version()},
+            {"compiler", compiler_name()},
+            {"instruction_set", instruction_set()},
+            {"mpi", message_passing_library()},
+            {"openmp", CATENA_OPENMP},
+            {"openmm", openmm_version()},
+            {"hdf5", hdf5_version()},
+            {"cuda", "none"}};
+}
+
+std::string version_text() {
+    std::string text = fmt::format("catena {} ({}, {})\n", version(), compiler_name(), instruction_set());
+    nlohmann::ordered_json const all = version_json();
+    for (auto const& [label, key] : {std::pair{"MPI", "mpi"}, {"OpenMP", "openmp"}, {"OpenMM", "openmm"}, {"HDF5", "hdf5"}, {"CUDA", "cuda"}})
+        text += fmt::format("  {:<8}{}\n", label, all.at(key).get<std::string>());
+    return text;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,120 @@
+// One body seen from its two handles, host and device.
+//
+// Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force` per unit of the joint force along
+// it. Then  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d . force_d' / m,
+// which is D_i^T zeta_ij D_j of the leaf (design, "Leaf"; chapter, eqs 2.1-2.2) for every kind of joint.
+#pragma once
+
+#include "dca/rotation.hpp"
+#include "dca/segment.hpp"
+
+namespace catena::dca {
+
+/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which the caller keeps forces.
+template <class Real, int K>
+struct Handle {
+    Matrix<Real, 3, K> torque, force;
+};
+
+/// Directions at a point `r` from the centre of mass (body axes): first the three forces along the columns of `linear`, then
+/// torques about the columns of `angular` (both 3x3; the same axes, `angular` in body axes, `linear` where forces are kept).
+/// The last column of `angular` is the joint's axis, the free direction of a revolute joint.
+template <int K, class Real>
+CATENA_HD Handle<Real, K> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular, Matrix<Real, 3, 3> const& linear) {
+    static_assert(K >= 3 && K <= 6);
+    Handle<Real, K> h;
+    CATENA_UNROLL
+    for (int j = 0; j < 3; ++j) {
+        h.torque.set_column(j, cross(r, angular.column(j)));
+        h.force.set_column(j, linear.column(j));
+    }
+    CATENA_UNROLL
+    for (int j = 3; j < K; ++j) {
+        h.torque.set_column(j, angular.column(j - 3));
+        h.force.set_column(j, Vector<Real, 3>::zero());
+    }
+    return h;
+}
+
+/// Precondition: inverse_mass > 0, inverse_inertia (body axes) positive definite. `linear` columns of both handles orthonormal.
+template <class Real, int K>
+CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, Handle<Real, K> const& h1,
+                                             Handle<Real, K> const& h2) {
+    Matrix<Real, 3, K> const j1 = full(inverse_inertia) * h1.torque;
+    Matrix<Real, 3, K> const j2 = full(inverse_inertia) * h2.torque;
+    SegmentMatrix<Real, K> s;
+    CATENA_UNROLL
+    for (int a = 0; a < K; ++a)
+        CATENA_UNROLL
+        for (int b = 0; b < K; ++b) {
+            if (b <= a) {
+                s.z11(a, b) = dot(h1.torque.column(a), j1.column(b));
+                s.z22(a, b) = dot(h2.torque.column(a), j2.column(b));
+            }
+            s.z12(a, b) = dot(h1.torque.column(a), j2.column(b));
+        }
+    CATENA_UNROLL
+    for (int a = 0; a < 3; ++a) {
+        s.z11(a, a) = s.z11(a, a) + inverse_mass;
+        s.z22(a, a) = s.z22(a, a) + inverse_mass;
+        CATENA_UNROLL
+        for (int b = 0; b < 3; ++b) s.z12(a, b) = fused(inverse_mass, dot(h1.force.column(a), h2.force.column(b)), s.z12(a, b));
+    }
+    return s;
+}
+
+/// Acceleration along the handle's directions of a body with angular acceleration `alpha` (body axes) and acceleration `a` of
+/// its centre of mass, velocity terms left out.
+template <class Real, int K>
+CATENA_HD Vector<Real, K> along(Handle<Real, K> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
+    return transposed_times(h.torque, alpha) + transposed_times(h.force, a);
+}
+
+/// Any unit vectors that make an orthonormal right-handed triple (axis, p, q) with the unit vector `axis`
+/// (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
+template <class Real>
+CATENA_HD Matrix<Real, 3, 3> triple(Vector<Real, 3> const& axis) {
+    Real const sign = axis[2] < Real(0) ? Real(-1) : Real(1);
+    Real const a = Real(-1) / (sign + axis[2]);
+    Real const b = axis[0] * axis[1] * a;
+    Matrix<Real, 3, 3> m;
+    m.set_column(0, axis);
+    m.set_column(1, {{Real(1) + sign * axis[0] * axis[0] * a, sign * b, -sign * axis[0]}});
+    m.set_column(2, {{b, sign + axis[1] * axis[1] * a, -axis[1]}});
+    return m;
+}
+
+/// A point bead between the links with unit directions u1 (towards it from its inboard neighbour) and u2 (from it to its
+/// outboard neighbour). Projected: T of the link chain (formulas, "Link chains"). A missing link has direction 0.
+template <class Real>
+CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 1>) {
+    SegmentMatrix<Real, 1> s;
+    s.z11(0, 0) = inverse_mass;
+    s.z22(0, 0) = inverse_mass;
+    s.z12(0, 0) = inverse_mass * dot(u1, u2);
+    return s;
+}
+/// Full handles: all three directions, the link's first.
+template <class Real>
+CATENA_HD SegmentMatrix<Real, 3> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 3>) {
+    SegmentMatrix<Real, 3> s;
+    s.z11 = Symmetric<Real, 3>::zero();
+    CATENA_UNROLL
+    for (int a = 0; a < 3; ++a) s.z11(a, a) = inverse_mass;
+    s.z22 = s.z11;
+    s.z12 = transposed_times(triple(u1), triple(u2));
+    CATENA_UNROLL
+    for (int a = 0; a < 9; ++a) s.z12.data[a] = inverse_mass * s.z12.data[a];
+    return s;
+}
+/// Components of a vector along the directions of a bead's handle.
+template <class Real>
+CATENA_HD Vector<Real, 1> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 1>) {
+    return {{dot(u, a)}};
+}
+template <class Real>
+CATENA_HD Vector<Real, 3> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 3>) {
+    return transposed_times(triple(u), a);
+}
+
+}  // namespace catena::dca

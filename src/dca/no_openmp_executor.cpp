@@ -1,0 +1,10 @@
+#include "dca/executor.hpp"
+#include "error.hpp"
+
+namespace catena {
+
+std::unique_ptr<Executor> openmp_executor(int) {
+    throw built_without("OpenMP", "solver.backend: openmp", "build with OpenMP or use the backend segments");
+}
+
+}  // namespace catena

@@ -1,0 +1,37 @@
+#include <algorithm>
+#include <exception>
+
+#include "dca/executor.hpp"
+
+namespace catena {
+namespace {
+
+class OpenMpExecutor final : public Executor {
+  public:
+    explicit OpenMpExecutor(int threads) : threads_(threads) {}
+
+    void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
+        if (count <= 0) return;
+        std::int64_t const ranges = std::min<std::int64_t>(count, threads_);
+        if (ranges == 1) return body(0, count);
+        std::exception_ptr error;
+#pragma omp parallel for num_threads(threads_) schedule(static, 1)
+        for (std::int64_t i = 0; i < ranges; ++i) try {
+                body(count * i / ranges, count * (i + 1) / ranges);
+            } catch (...) {
+#pragma omp critical
+                error = std::current_exception();
+            }
+        if (error) std::rethrow_exception(error);
+    }
+    int threads() const override { return threads_; }
+
+  private:
+    int threads_;
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> openmp_executor(int threads) { return std::make_unique<OpenMpExecutor>(std::max(threads, 1)); }
+
+}  // namespace catena

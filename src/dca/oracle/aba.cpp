@@ -1,0 +1,217 @@
+#include <string>
+
+#include "dca/oracle/joint.hpp"
+#include "error.hpp"
+
+// Articulated-body algorithm. For every body F = I A + p with F = [torque; force] through the inboard joint, about the
+// joint's centre, A = [alpha; acceleration of the origin], I and p of the body and everything outboard of it, all in B.
+// The 6 x 6 inertia is kept as its blocks: [rot, cross; cross^T, lin].
+namespace catena::oracle {
+namespace {
+
+template <class S>
+struct Motion {
+    V3<S> alpha = V3<S>::zero(), linear = V3<S>::zero();
+};
+template <class S>
+struct Inertia {
+    M3<S> rot = M3<S>::zero(), cross = M3<S>::zero(), lin = M3<S>::zero();
+};
+template <class S>
+SpatialForce<S> operator*(Inertia<S> const& i, Motion<S> const& a) {
+    return {i.rot * a.alpha + i.cross * a.linear, transposed_times(i.cross, a.alpha) + i.lin * a.linear};
+}
+template <class S>
+SpatialForce<S> operator+(SpatialForce<S> const& a, SpatialForce<S> const& b) {
+    return {a.torque + b.torque, a.force + b.force};
+}
+
+template <class S>
+struct Articulated {
+    Inertia<S> inertia;  // with the inboard joint locked
+    SpatialForce<S> bias;
+    Motion<S> closure;  // velocity-dependent part of A across the joint, B
+    // Behind the joint, as the inboard body feels it: F = behind (A carried over from the inboard body) + bias_behind.
+    Inertia<S> behind;
+    SpatialForce<S> bias_behind;
+};
+
+[[noreturn]] void not_definite(std::size_t k) {
+    throw ComputationError("articulated inertia is not positive definite (body " + std::to_string(k + 1) +
+                           "): check the mass and inertia of this body and those outboard of it");
+}
+
+template <class S>
+void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gravity, Articulated<S>& a) {
+    V3<S> const& w = at.omega;
+    V3<S> const applied = transposed_times(at.orientation, link.applied_force + link.mass * gravity);
+    V3<S> const net = link.mass * cross(w, cross(w, link.com)) - applied;
+    V3<S> const gyroscopic = cross(w, link.inertia * w) - transposed_times(at.orientation, link.applied_torque);
+    M3<S> const c = skew(link.com);
+    a.inertia.rot = plus(a.inertia.rot, plus(link.inertia, scaled(-link.mass, c * c)));
+    a.inertia.cross = plus(a.inertia.cross, scaled(link.mass, c));
+    a.inertia.lin = plus(a.inertia.lin, scaled(link.mass, M3<S>::identity()));
+    a.bias = a.bias + SpatialForce<S>{gyroscopic + cross(link.com, net), net};
+}
+
+/// I - U D^-1 U^T with U = I P, D = P^T U; the bias behind the joint carries the joint torque.
+template <class S>
+void pass_revolute(Link<S> const& link, std::size_t k, Articulated<S>& a) {
+    V3<S> const u_rot = a.inertia.rot * link.axis, u_lin = transposed_times(a.inertia.cross, link.axis);
+    S const d = dot(link.axis, u_rot);
+    if (!(d > S(0))) not_definite(k);
+    S const scale = S(-1) / d, acceleration = dot(link.axis, link.torque - a.bias.torque) / d;
+    a.behind.rot = plus_outer(a.inertia.rot, scale, u_rot, u_rot);
+    a.behind.cross = plus_outer(a.inertia.cross, scale, u_rot, u_lin);
+    a.behind.lin = plus_outer(a.inertia.lin, scale, u_lin, u_lin);
+    a.bias_behind = a.bias + SpatialForce<S>{acceleration * u_rot, acceleration * u_lin};
+}
+
+template <class S>
+void pass_spherical(Link<S> const& link, std::size_t k, Articulated<S>& a) {
+    Cholesky<S, 3> const d(a.inertia.rot);
+    if (!d.definite()) not_definite(k);
+    M3<S> alpha_per_linear;
+    for (int j = 0; j < 3; ++j) alpha_per_linear.set_column(j, d.solve(a.inertia.cross.column(j)));
+    a.behind.lin = plus(a.inertia.lin, scaled(S(-1), transposed_times(a.inertia.cross, alpha_per_linear)));
+    a.bias_behind = {link.torque, a.bias.force + transposed_times(alpha_per_linear, link.torque - a.bias.torque)};
+}
+
+/// Adds what `outboard` passes through its joint to the inboard body, in the inboard body's axes about its origin.
+template <class S>
+void hand_inboard(Link<S> const& link, Articulated<S> const& outboard, Articulated<S>& inboard) {
+    M3<S> const& r = link.rotation;
+    M3<S> const t = skew(link.translation);
+    M3<S> const lin = symmetrized(turned(r, outboard.behind.lin)), cross_block = turned(r, outboard.behind.cross);
+    M3<S> const cross_t = cross_block * t;
+    M3<S> const moved = plus(turned(r, outboard.behind.rot), scaled(S(-1), plus(plus(cross_t, transpose(cross_t)), t * (lin * t))));
+    inboard.inertia.rot = plus(inboard.inertia.rot, symmetrized(moved));
+    inboard.inertia.cross = plus(inboard.inertia.cross, plus(cross_block, t * lin));
+    inboard.inertia.lin = plus(inboard.inertia.lin, lin);
+    V3<S> const force = r * outboard.bias_behind.force;
+    inboard.bias = inboard.bias + SpatialForce<S>{r * outboard.bias_behind.torque + cross(link.translation, force), force};
+}
+
+/// Acceleration of a free body 1.
+template <class S>
+Motion<S> solve_free(Articulated<S> const& a) {
+    Matrix<S, 6, 6> m;
+    Vector<S, 6> x;
+    for (int i = 0; i < 3; ++i) {
+        for (int j = 0; j < 3; ++j) {
+            m(i, j) = a.inertia.rot(i, j);
+            m(i, j + 3) = m(j + 3, i) = a.inertia.cross(i, j);
+            m(i + 3, j + 3) = a.inertia.lin(i, j);
+        }
+        x[i] = -a.bias.torque[i];
+        x[i + 3] = -a.bias.force[i];
+    }
+    Cholesky<S, 6> const factor(m);
+    if (!factor.definite()) not_definite(0);
+    x = factor.solve(x);
+    return {{{x[0], x[1], x[2]}}, {{x[3], x[4], x[5]}}};
+}
+
+/// q'' of a joint as a vector in B, given the acceleration the body would have without it.
+template <class S>
+V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S> const& locked) {
+    V3<S> const rest = link.torque - a.bias.torque - (a.inertia * locked).torque;
+    if (link.type == JointType::revolute) return S(dot(link.axis, rest) / dot(link.axis, a.inertia.rot * link.axis)) * link.axis;
+    return Cholesky<S, 3>(a.inertia.rot).solve(rest);
+}
+
+template <class S>
+class Solver {
+  public:
+    Solver(ChainSpec const& chain, Loads const& loads)
+        : links_(read_links<S>(chain)), attitude_(attitudes(links_)), bodies_(links_.size()), gravity_(lift<S>(loads.gravity)) {
+        if (!links_.empty() && links_[0].type == JointType::free) refer_to_com();
+    }
+
+    OracleResult<S> solve() {
+        for (std::size_t k = links_.size(); k-- > 0;) gather(k);
+        OracleResult<S> result;
+        Motion<S> a;
+        for (std::size_t k = 0; k < links_.size(); ++k) a = release(k, a, result);
+        return result;
+    }
+
+  private:
+    /// A free body 1 is taken about its centre of mass: about its origin m c^2 would cover a small inertia in the 6 x 6 solve.
+    void refer_to_com() {
+        from_origin_ = links_[0].com;
+        links_[0].com = V3<S>::zero();
+        if (links_.size() > 1) links_[1].translation = links_[1].translation - from_origin_;
+    }
+
+    /// From the tip: completes the articulated inertia of body k and hands it inboard.
+    void gather(std::size_t k) {
+        Articulated<S>& a = bodies_[k];
+        Link<S> const& link = links_[k];
+        add_rigid_body(link, attitude_[k], gravity_, a);
+        if (link.type == JointType::free) return;
+        V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega;
+        a.closure = {cross(attitude_[k].omega, link.rate), transposed_times(link.rotation, cross(w, cross(w, link.translation)))};
+        if (link.type == JointType::revolute)
+            pass_revolute(link, k, a);
+        else
+            pass_spherical(link, k, a);
+        a.bias_behind = a.bias_behind + a.behind * a.closure;
+        if (k > 0) hand_inboard(link, a, bodies_[k - 1]);
+    }
+
+    /// From the base: acceleration of body k from that of its inboard body, and everything that is reported about it.
+    Motion<S> release(std::size_t k, Motion<S> const& inboard, OracleResult<S>& result) const {
+        Link<S> const& link = links_[k];
+        Articulated<S> const& a = bodies_[k];
+        M3<S> const& to_world = attitude_[k].orientation;
+        if (link.type == JointType::free) {
+            Motion<S> const motion = solve_free(a);
+            V3<S> const &w = attitude_[k].omega, r = -from_origin_;
+            result.base_acceleration = to_world * (motion.linear + cross(motion.alpha, r) + cross(w, cross(w, r)));
+            report(k, motion, motion.alpha, result);
+            return motion;
+        }
+        Motion<S> const carried{transposed_times(link.rotation, inboard.alpha),
+                                transposed_times(link.rotation, inboard.linear + cross(inboard.alpha, link.translation))};
+        Motion<S> motion{carried.alpha + a.closure.alpha, carried.linear + a.closure.linear};
+        V3<S> const qdd = joint_acceleration(link, a, motion);
+        motion.alpha = motion.alpha + qdd;
+        bool const revolute = link.type == JointType::revolute;
+        report(k, motion, revolute ? V3<S>{{dot(link.axis, qdd), S(0), S(0)}} : qdd, result);
+        SpatialForce<S> const f = a.behind * carried + a.bias_behind;
+        V3<S> const constraint = revolute ? f.torque - dot(link.axis, f.torque) * link.axis : V3<S>::zero();
+        result.joint_force[k] = {to_world * (constraint + link.torque), to_world * f.force};
+        result.constraint_force[k] = {to_world * constraint, to_world * f.force};
+        return motion;
+    }
+
+    void report(std::size_t k, Motion<S> const& motion, V3<S> const& qdd, OracleResult<S>& result) const {
+        V3<S> const &w = attitude_[k].omega, &c = links_[k].com;
+        M3<S> const& to_world = attitude_[k].orientation;
+        result.qdd.push_back(qdd);
+        result.alpha.push_back(to_world * motion.alpha);
+        result.com_acceleration.push_back(to_world * (motion.linear + cross(motion.alpha, c) + cross(w, cross(w, c))));
+        result.joint_force.emplace_back();
+        result.constraint_force.emplace_back();
+    }
+
+    std::vector<Link<S>> links_;
+    std::vector<Attitude<S>> attitude_;
+    std::vector<Articulated<S>> bodies_;
+    V3<S> gravity_;
+    V3<S> from_origin_ = V3<S>::zero();  // free base: from the origin of body 1 to its centre of mass, B
+};
+
+}  // namespace
+
+template <class S>
+OracleResult<S> aba(ChainSpec const& chain, Loads const& loads) {
+    return chain.is_beads() ? aba_beads<S>(chain, loads) : Solver<S>(chain, loads).solve();
+}
+
+template OracleResult<double> aba<double>(ChainSpec const&, Loads const&);
+template OracleResult<long double> aba<long double>(ChainSpec const&, Loads const&);
+template OracleResult<Quad> aba<Quad>(ChainSpec const&, Loads const&);
+
+}  // namespace catena::oracle

@@ -1,0 +1,60 @@
+#include "dca/oracle/joint.hpp"
+
+namespace catena::oracle {
+namespace {
+
+template <class S>
+Kinematics<S> of_beads(ChainSpec const& chain, Loads const& loads) {
+    Kinematics<S> result;
+    BeadArrays const& b = chain.beads;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        V3<S> const x = lift<S>(b.position[k]), v = lift<S>(b.velocity[k]);
+        result.origin.push_back(x);
+        result.com_position.push_back(x);
+        result.com_velocity.push_back(v);
+        result.kinetic_energy += S(b.mass[k]) * dot(v, v) / S(2);
+        result.potential_energy -= S(b.mass[k]) * dot(lift<S>(loads.gravity), x);
+    }
+    return result;
+}
+
+template <class S>
+Kinematics<S> of_bodies(ChainSpec const& chain, Loads const& loads) {
+    Kinematics<S> result;
+    std::vector<Link<S>> const links = read_links<S>(chain);
+    std::vector<Attitude<S>> const attitude = attitudes(links);
+    M3<S> r = M3<S>::identity();                // of the inboard body
+    V3<S> x = V3<S>::zero(), v = x, omega = x;  // of the inboard body's origin, W
+    for (std::size_t k = 0; k < links.size(); ++k) {
+        Link<S> const& link = links[k];
+        V3<S> const to_origin = r * link.translation;
+        x = x + to_origin;
+        v = link.type == JointType::free ? lift<S>(chain.bodies.free_velocity) : v + cross(omega, to_origin);
+        r = attitude[k].orientation;
+        omega = r * attitude[k].omega;
+        V3<S> const to_com = r * link.com;
+        V3<S> const velocity = v + cross(omega, to_com), position = x + to_com;
+        result.orientation.push_back(r);
+        result.origin.push_back(x);
+        result.com_position.push_back(position);
+        result.com_velocity.push_back(velocity);
+        result.omega.push_back(omega);
+        result.kinetic_energy += (link.mass * dot(velocity, velocity) + dot(attitude[k].omega, link.inertia * attitude[k].omega)) / S(2);
+        result.potential_energy -= link.mass * dot(lift<S>(loads.gravity), position);
+        result.spring_energy += link.spring_energy;
+    }
+    return result;
+}
+
+}  // namespace
+
+template <class S>
+Kinematics<S> kinematics(ChainSpec const& chain, Loads const& loads) {
+    return chain.is_beads() ? of_beads<S>(chain, loads) : of_bodies<S>(chain, loads);
+}
+
+template Kinematics<double> kinematics<double>(ChainSpec const&, Loads const&);
+template Kinematics<long double> kinematics<long double>(ChainSpec const&, Loads const&);
+template Kinematics<Quad> kinematics<Quad>(ChainSpec const&, Loads const&);
+
+}  // namespace catena::oracle

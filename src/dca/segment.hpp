@@ -1,0 +1,149 @@
+// The two operations of the divide-and-conquer algorithm, host and device; Real = double, float, an extended or SIMD type,
+// K = number of directions a handle carries.
+//
+// At joint j the directions are ordered so that the first m(j) are the restricted ones (D of the chapter), the others are
+// free. Projected handles carry K = max m directions, full handles all of them (6; 3 for point beads): the operations are
+// the same, since forces along free directions are known and stand in the biases (formulas: "Projection is exact").
+#pragma once
+
+#include "dca/linear.hpp"
+
+namespace catena::dca {
+
+/// A run of bodies seen from its two handles (chapter, eqs 2.8-2.9), projected on the directions of the joints there:
+///   a1 = z11 f1 + z12 f2 + b1,   a2 = z12^T f1 + z22 f2 + b2.
+template <class Real, int K>
+struct SegmentMatrix {
+    Symmetric<Real, K> z11, z22;
+    Matrix<Real, K, K> z12;
+};
+template <class Real, int K>
+struct SegmentBias {
+    Vector<Real, K> b1, b2;
+};
+
+/// The matrices of an eliminated joint. With Z = z22^A + z11^B on the restricted directions and Z = L S L^T:
+/// inboard = L^-1 z21^A, outboard = L^-1 z12^B, factor = L below the diagonal and S^-1 on it (0 in unrestricted rows).
+template <class Real, int K>
+struct JointMatrix {
+    Symmetric<Real, K> factor;
+    Matrix<Real, K, K> inboard, outboard;
+};
+
+/// Z = L S L^T on the leading `restricted` rows; the others get S^-1 = 0, so that they take no part in anything.
+/// Precondition: Z is positive definite there.
+template <class Real, int K>
+CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted) {
+    Symmetric<Real, K> f;
+    Real pivot[K];
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) {
+        bool const active = i < restricted;
+        CATENA_UNROLL
+        for (int j = 0; j < i; ++j) {
+            Real s = z(i, j);
+            CATENA_UNROLL
+            for (int k = 0; k < j; ++k) s = fused(-(f(i, k) * pivot[k]), f(j, k), s);
+            f(i, j) = active ? s * f(j, j) : Real(0);
+        }
+        Real s = z(i, i);
+        CATENA_UNROLL
+        for (int k = 0; k < i; ++k) s = fused(-(f(i, k) * pivot[k]), f(i, k), s);
+        pivot[i] = active ? s : Real(0);
+        f(i, i) = active ? Real(1) / s : Real(0);
+    }
+    return f;
+}
+
+/// L^-1 b
+template <class Real, int K>
+CATENA_HD Vector<Real, K> solve_lower(Symmetric<Real, K> const& f, Vector<Real, K> b) {
+    CATENA_UNROLL
+    for (int i = 1; i < K; ++i)
+        CATENA_UNROLL
+        for (int j = 0; j < i; ++j) b[i] = fused(-f(i, j), b[j], b[i]);
+    return b;
+}
+
+/// L^-1 B, column by column
+template <class Real, int K>
+CATENA_HD Matrix<Real, K, K> solve_lower(Symmetric<Real, K> const& f, Matrix<Real, K, K> b) {
+    CATENA_UNROLL
+    for (int i = 1; i < K; ++i)
+        CATENA_UNROLL
+        for (int j = 0; j < i; ++j)
+            CATENA_UNROLL
+            for (int c = 0; c < K; ++c) b(i, c) = fused(-f(i, j), b(j, c), b(i, c));
+    return b;
+}
+
+/// L^-T S^-1 y
+template <class Real, int K>
+CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, K> y) {
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) y[i] = f(i, i) * y[i];
+    CATENA_UNROLL
+    for (int i = K - 1; i > 0; --i)
+        CATENA_UNROLL
+        for (int j = 0; j < i; ++j) y[j] = fused(-f(i, j), y[i], y[j]);
+    return y;
+}
+
+/// Joins `inboard` and `outboard` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
+/// W = D (D^T Z D)^-1 D^T). Precondition: z22 of `inboard` + z11 of `outboard` is positive definite on these.
+template <class Real, int K>
+CATENA_HD SegmentMatrix<Real, K> assemble(SegmentMatrix<Real, K> const& inboard, SegmentMatrix<Real, K> const& outboard, int restricted,
+                                          JointMatrix<Real, K>& joint) {
+    Symmetric<Real, K> z;
+    CATENA_UNROLL
+    for (int i = 0; i < Symmetric<Real, K>::size; ++i) z.data[i] = inboard.z22.data[i] + outboard.z11.data[i];
+    joint.factor = factorize(z, restricted);
+    joint.inboard = solve_lower(joint.factor, transpose(inboard.z12));
+    joint.outboard = solve_lower(joint.factor, outboard.z12);
+
+    SegmentMatrix<Real, K> s;
+    Matrix<Real, K, K> scaled_in, scaled_out;   // S^-1 times inboard, outboard
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i)
+        CATENA_UNROLL
+        for (int j = 0; j < K; ++j) {
+            scaled_in(i, j) = joint.factor(i, i) * joint.inboard(i, j);
+            scaled_out(i, j) = joint.factor(i, i) * joint.outboard(i, j);
+        }
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i)
+        CATENA_UNROLL
+        for (int j = 0; j <= i; ++j) {
+            Real a = inboard.z11(i, j), b = outboard.z22(i, j);
+            CATENA_UNROLL
+            for (int k = 0; k < K; ++k) {
+                a = fused(-joint.inboard(k, i), scaled_in(k, j), a);
+                b = fused(-joint.outboard(k, i), scaled_out(k, j), b);
+            }
+            s.z11(i, j) = a;
+            s.z22(i, j) = b;
+        }
+    s.z12 = transposed_times(joint.inboard, scaled_out);
+    return s;
+}
+
+/// The biases of the joined segment; `offset` keeps L^-1 (b2^A - b1^B) for the disassembly (Y of the chapter).
+template <class Real, int K>
+CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> const& inboard, SegmentBias<Real, K> const& outboard,
+                                        JointMatrix<Real, K> const& joint, Vector<Real, K>& offset) {
+    offset = solve_lower(joint.factor, inboard.b2 - outboard.b1);
+    Vector<Real, K> y;
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) y[i] = joint.factor(i, i) * offset[i];
+    return {inboard.b1 - transposed_times(joint.inboard, y), outboard.b2 + transposed_times(joint.outboard, y)};
+}
+
+/// The joint force on the outboard body (chapter, eq 2.12) from those at the joined segment's own two joints: `first` acts on
+/// its first body, `next` on the body that follows its last one (so that f1 = first, f2 = -next).
+template <class Real, int K>
+CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint, Vector<Real, K> const& offset, Vector<Real, K> const& first,
+                                      Vector<Real, K> const& next) {
+    return solve_upper(joint.factor, joint.inboard * first + (joint.outboard * next + offset));
+}
+
+}  // namespace catena::dca

@@ -1,0 +1,18 @@
+#include "dca/executor.hpp"
+
+namespace catena {
+namespace {
+
+class SerialExecutor final : public Executor {
+  public:
+    void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
+        if (count > 0) body(0, count);
+    }
+    int threads() const override { return 1; }
+};
+
+}  // namespace
+
+std::unique_ptr<Executor> serial_executor() { return std::make_unique<SerialExecutor>(); }
+
+}  // namespace catena

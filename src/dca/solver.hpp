@@ -1,0 +1,94 @@
+// What every backend is: matrices and biases are separate steps, so that the one can run while forces are computed and the
+// other be repeated.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "chain/chain_group.hpp"
+#include "dca/executor.hpp"
+
+namespace catena {
+
+/// K numbers a body (K known at run time only), component after component.
+template <class Real>
+struct BasicDirectionsView {
+    Real* origin = nullptr;
+    std::int64_t pitch = 0;
+    template <int K>
+    Vector<double, K> load(std::int64_t k) const {
+        Vector<double, K> v;
+        for (int i = 0; i < K; ++i) v[i] = origin[i * pitch + k];
+        return v;
+    }
+    template <int K>
+    void store(std::int64_t k, Vector<double, K> const& v) const {
+        for (int i = 0; i < K; ++i) origin[i * pitch + k] = v[i];
+    }
+    explicit operator bool() const { return origin != nullptr; }
+    operator BasicDirectionsView<Real const>() const { return {origin, pitch}; }
+};
+using DirectionsView = BasicDirectionsView<double>;
+using ConstDirectionsView = BasicDirectionsView<double const>;
+
+class DirectionsField {
+  public:
+    DirectionsField() = default;
+    DirectionsField(std::int64_t size, int directions) : pitch_(size | 1), data_(static_cast<std::size_t>(pitch_ * directions), 0.0) {}
+    DirectionsView view() { return {data_.data(), pitch_}; }
+    ConstDirectionsView view() const { return {data_.data(), pitch_}; }
+
+  private:
+    std::int64_t pitch_ = 0;
+    std::vector<double> data_;
+};
+
+/// What the matrices depend on.
+struct ConfigurationView {
+    ConstView<3> direction;   // beads: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
+    ConstView<4> rotation;    // bodies: quaternion w x y z: Axes::joint: of B in J of its inboard joint; Axes::world: of B in W
+};
+
+/// What the biases depend on. A view without origin means zero.
+struct LoadsView {
+    ConstView<3> torque;      // on each body about its centre of mass, B, joint torques and -omega x J omega included
+    ConstView<3> force;       // on each body: Axes::joint: B; Axes::world and beads: W
+    ConstView<3> omega;       // angular velocity, B: for the centripetal terms at the handles
+    ConstDirectionsView bias; // subtracted velocity terms of joint k along its directions: the solver makes D^T (A_1^B - A_2^A) = -bias
+};
+
+struct AccelerationsView {
+    View<3> alpha;            // angular, B; may be absent
+    View<3> acceleration;     // of the centre of mass (bead), axes of LoadsView::force; may be absent
+    DirectionsView joint_force;   // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
+};
+
+struct SolverReport {
+    std::string backend, handles;
+    int directions = 0, threads = 1, ranks = 1;
+    std::int64_t run_length = 0, depth = 0, merges = 0;
+    std::int64_t memory_bytes = 0;
+    std::int64_t matrix_sweeps = 0, bias_sweeps = 0;
+    double matrix_seconds = 0, bias_seconds = 0, exchange_seconds = 0;
+};
+
+class ChainSolver {
+  public:
+    virtual ~ChainSolver() = default;
+    /// Needs no forces. Collective. Throws ComputationError when a joint's matrix is not positive definite.
+    virtual void assemble_matrices(ConfigurationView const&) = 0;
+    /// The bias sweep and the disassembly with the matrices and the configuration given last; may be repeated. Collective.
+    virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
+    /// Both, where nothing is to be hidden. Collective.
+    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+        assemble_matrices(configuration);
+        solve(loads, out);
+    }
+    virtual SolverReport report() const = 0;
+};
+
+/// The divide-and-conquer solver over a group's canonical tree. The group, executor and communicator must outlive it.
+std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Executor const&, Communicator const&);
+
+}  // namespace catena

@@ -1,0 +1,108 @@
+// The canonical tree: a function of a chain's length and the run length alone, never of ranks or threads, so that the same
+// scene gives the same bits on any number of them.
+//
+// A chain's bodies form runs of `run_length`; node i of level l covers runs [i 2^l, (i + 1) 2^l). The nodes of the cut level
+// (at most `max_units` a chain) are the units: ranks own whole units, and above them every rank finishes the tree itself.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace catena::dca {
+
+/// Stands in reports and checkpoints: another version may give other bits.
+inline constexpr int tree_table_version = 1;
+inline constexpr std::int64_t max_units = 64;
+
+/// Run length for chains of n bodies whose handles carry `directions` directions. `pairwise`: the chapter's tree of pairs.
+std::int64_t run_length_for(std::int64_t n, int directions, bool pairwise);
+
+struct ChainTree {
+    std::int64_t bodies = 0, run_length = 1;
+    std::int64_t runs = 0;
+    int cut_level = 0;
+    std::int64_t units = 0;
+
+    ChainTree(std::int64_t bodies, std::int64_t run_length);
+    std::int64_t nodes(int level) const { return ((runs - 1) >> level) + 1; }
+    std::int64_t first_run(int level, std::int64_t node) const { return node << level; }
+    /// First body of a node; for node = nodes(level) the number of bodies.
+    std::int64_t first_body(int level, std::int64_t node) const;
+    std::int64_t first_body_of_unit(std::int64_t unit) const { return first_body(cut_level, unit); }
+    /// Levels of merges above the runs, and merges from the first body to the root along the longest way.
+    int levels() const;
+    std::int64_t depth() const { return run_length - 1 + levels(); }
+};
+
+/// Chains laid one after the other, cut into whole units for the ranks.
+class Partition {
+  public:
+    Partition() = default;
+    /// `lengths` of the chains; every rank gets a run of units of about equal numbers of bodies. Ranks may be left without any.
+    Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks);
+
+    std::vector<ChainTree> trees;                // one a chain
+    std::vector<std::int64_t> first_of_chain;    // chains + 1
+    std::vector<std::int64_t> first_of_rank;     // ranks + 1
+
+    std::int64_t bodies() const { return first_of_chain.back(); }
+    int chains() const { return static_cast<int>(trees.size()); }
+    int owner(std::int64_t body) const;
+    int chain_of(std::int64_t body) const;
+    bool is_split(int chain) const { return owner(first_of_chain[chain]) != owner(first_of_chain[chain + 1] - 1); }
+};
+
+/// The part of one chain that a rank owns. Indices: `local` counts the rank's bodies over all its pieces, `body` the chain's.
+struct Piece {
+    int chain = 0;
+    std::int64_t local = 0, body = 0, count = 0;
+    std::int64_t first_unit = 0, units = 0;
+    bool starts = false, ends = false;      // holds the chain's first, last body
+    bool whole() const { return starts && ends; }
+};
+std::vector<Piece> pieces_of(Partition const&, int rank);
+
+/// What a driver iterates over: plain lists, level by level. Joint forces live in one storage, indexed by `joint`, `first`, `next`
+/// (see JointStorage); segments in another, indexed by slots.
+struct Run {
+    std::int64_t body = 0, count = 0, slot = 0;   // local bodies [body, body + count)
+    std::int64_t next = 0;                        // storage index of the joint that follows the run
+};
+struct Merge {
+    std::int64_t inboard = 0, outboard = 0, slot = 0;
+    std::int64_t first = 0, joint = 0, next = 0;
+};
+struct Root {
+    std::int64_t slot = 0;
+    std::int64_t first = 0, next = 0;
+    int chain = 0;
+};
+/// A unit of a chain that several ranks share.
+struct SharedUnit {
+    std::int64_t slot = 0;       // where its segment lies after the gather
+    int owner = 0;
+    std::int64_t source = 0;     // on the owner: the slot it comes from
+};
+/// The storage index of a joint force at the top of a shared chain goes to a local one (own joints and the halo at the end).
+struct TopCopy {
+    std::int64_t from = 0, to = 0;
+};
+
+struct Schedule {
+    std::int64_t bodies = 0;            // own; storage [0, bodies): own joints; `halo`: the joint after the last body; `none`: always 0
+    std::int64_t halo = 0, none = 0, joints = 0;
+    std::int64_t slots = 0;
+    std::vector<Run> runs;
+    std::vector<std::vector<Merge>> levels;       // below the roots of whole chains and below shared units
+    std::vector<Root> roots;                      // of whole chains
+    std::vector<SharedUnit> shared;               // of all shared chains, in order; the same list on every rank (but for source)
+    std::vector<std::vector<Merge>> top_levels;   // of the shared chains this rank takes part in
+    std::vector<Root> top_roots;
+    std::vector<TopCopy> top_copies;
+    std::vector<int> top_chain_of_joint;          // for storage indices > none: the chain and body of that joint
+    std::vector<std::int64_t> top_body_of_joint;
+    std::int64_t first_top_joint() const { return none + 1; }
+};
+Schedule make_schedule(Partition const&, int rank);
+
+}  // namespace catena::dca

@@ -1,0 +1,61 @@
+// The CALVADOS 2 model of proteins, one bead a residue: Tesei & Lindorff-Larsen, Open Research Europe 2:94 (2023).
+// Parameters are those of inputs/calvados2_parameters.csv, embedded when the build is configured. Needs no OpenMM.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace catena {
+
+struct Calvados2Residue {
+    char letter;         // one-letter code
+    std::string name;    // three-letter code, upper case
+    double mass;         // amu
+    double lambda;       // stickiness
+    double sigma;        // bead diameter, nm
+    double charge;       // e, inside a chain; histidine: neutral, see histidine_charge
+};
+
+/// The twenty residues, in the order of the parameter file.
+std::vector<Calvados2Residue> const& calvados2_residues();
+
+/// nullptr for a code that the model does not have. Letters and names in upper case.
+Calvados2Residue const* find_calvados2(char letter);
+Calvados2Residue const* find_calvados2(std::string_view three_letter_name);
+
+namespace calvados2 {
+
+inline constexpr double bond_length = 0.38;          // nm
+inline constexpr double first_bead_mass = 2.0;       // amu, added to a chain's first bead
+inline constexpr double last_bead_mass = 16.0;       // amu, added to a chain's last bead
+inline constexpr double first_bead_charge = 1.0;     // e, added to a chain's first bead
+inline constexpr double last_bead_charge = -1.0;     // e, added to a chain's last bead
+inline constexpr double epsilon = 0.8368;            // kJ/mol, Ashbaugh-Hatch
+inline constexpr double ashbaugh_hatch_cutoff = 2.0; // nm
+inline constexpr double yukawa_cutoff = 4.0;         // nm
+
+/// Mass of bead k (from 0) of a chain of n residues: the residue's, plus what its terminus carries.
+double bead_mass(Calvados2Residue const&, std::int64_t k, std::int64_t n);
+
+/// Charge of histidine in e: its protonated fraction 1 / (1 + 10^(pH - 6)), as the authors' own simulations take it;
+/// without a pH it is neutral.
+double histidine_charge(std::optional<double> ph);
+
+/// Charge of bead k (from 0) of a chain of n residues in e, termini included.
+double bead_charge(Calvados2Residue const&, std::int64_t k, std::int64_t n, std::optional<double> ph);
+
+/// Screened Coulomb energy between charges q_i, q_j: q_i q_j prefactor exp(-kappa r) / r.
+struct Yukawa {
+    double permittivity;    // of water relative to vacuum
+    double bjerrum_length;  // nm
+    double prefactor;       // kJ nm/mol
+    double kappa;           // 1/nm, inverse Debye length
+};
+/// Temperature in K, ionic strength in mol/l. Permittivity of water: Akerlof & Oshry, J. Am. Chem. Soc. 72:2844 (1950).
+Yukawa yukawa(double temperature, double ionic_strength);
+
+}  // namespace calvados2
+}  // namespace catena

@@ -1,0 +1,24 @@
+// A build without OpenMM: every way to it says so.
+#include "error.hpp"
+#include "force/openmm_force.hpp"
+#include "force/openmm_import.hpp"
+
+namespace catena {
+
+namespace {
+
+char const* const remedy = "install OpenMM (pip install openmm, or Debian's libopenmm-dev) and build again, or leave forces.openmm out";
+
+}  // namespace
+
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads, Communicator const&) {
+    throw built_without("OpenMM", beads.scene_file + ", forces.openmm", remedy);
+}
+
+ImportedSystem import_openmm_system(std::string const&, std::string const&, std::string const& scene_file) {
+    throw built_without("OpenMM", scene_file + ", forces.openmm", remedy);
+}
+
+std::string openmm_version() { return "none"; }
+
+}  // namespace catena

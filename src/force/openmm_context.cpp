@@ -1,0 +1,52 @@
+#include "force/openmm_context.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "force/openmm_subset.hpp"
+
+namespace catena {
+
+Placement placement_for(OpenMM::System const& system) {
+    bool images = system.usesPeriodicBoundaryConditions();
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        OpenMM::Force const& force = system.getForce(i);
+        if (!can_be_split(force) && dynamic_cast<OpenMM::NonbondedForce const*>(&force) == nullptr) return Placement::as_given;
+        if (dynamic_cast<OpenMM::CustomExternalForce const*>(&force) != nullptr) return Placement::as_given;
+        images = images && force.usesPeriodicBoundaryConditions();
+        if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
+            images = images && (pairs->getNumExceptions() == 0 || pairs->getExceptionsUsePeriodicBoundaryConditions());
+    }
+    return images ? Placement::wrapped : Placement::shifted;
+}
+
+ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, std::vector<std::int64_t> beads, OpenMmPlatform const& platform,
+                           std::optional<Vec3> const& box)
+    : beads_(std::move(beads)),
+      box_(box),
+      placement_(placement_for(*system)),
+      system_(std::move(system)),
+      context_(std::make_unique<OpenMM::Context>(*system_, integrator_, *platform.platform, platform.properties)),
+      positions_(beads_.size()) {}
+
+void ForceContext::set_positions(std::span<Vec3 const> all) {
+    Vec3 origin = Vec3::zero();
+    if (placement_ == Placement::shifted) {
+        for (std::int64_t bead : beads_) origin = origin + all[bead];
+        origin = (1.0 / static_cast<double>(std::max<std::int64_t>(1, size()))) * origin;
+    }
+    for (std::size_t i = 0; i < beads_.size(); ++i) {
+        Vec3 x = all[beads_[i]] - origin;
+        if (placement_ == Placement::wrapped)
+            for (int c = 0; c < 3; ++c) x[c] -= (*box_)[c] * std::floor(x[c] / (*box_)[c]);
+        positions_[i] = {x[0], x[1], x[2]};
+    }
+    context_->setPositions(positions_);
+}
+
+std::vector<OpenMM::Vec3> ForceContext::forces() { return context_->getState(OpenMM::State::Forces).getForces(); }
+
+double ForceContext::energy(int group) { return context_->getState(OpenMM::State::Energy, false, 1 << group).getPotentialEnergy(); }
+
+}  // namespace catena

@@ -1,0 +1,259 @@
+#include "force/openmm_force.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <new>
+#include <utility>
+
+#include "error.hpp"
+#include "force/openmm_path.hpp"
+#include "force/openmm_rank.hpp"
+#include "force/openmm_subset.hpp"
+#include "force/worker.hpp"
+
+namespace catena {
+
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string join(std::vector<std::string> const& words) { return fmt::format("{}", fmt::join(words, ", ")); }
+
+class OpenMmForces final : public OpenMmForce {
+  public:
+    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model);
+
+    void begin(ConstView<3> positions) override;
+    void finish(View<3> forces) override;
+    std::vector<EnergyTerm> energies() override;
+    Interval last_evaluation() const override { return interval_; }
+    std::vector<std::string> description() const override;
+    std::string platform() const override { return platform_.name(); }
+    std::string path() const override { return path_.runs_on_worker() ? "host" : "inline"; }
+    std::int64_t largest_context() const override { return rank_.largest_context(); }
+    std::int64_t rebuilds() const override { return rank_.rebuilds(); }
+
+  private:
+    std::int64_t first() const { return first_of_rank_[communicator_.rank()]; }
+    std::int64_t own_count() const { return first_of_rank_[communicator_.rank() + 1] - first(); }
+    void gather(ConstView<3> positions);
+    void evaluate() noexcept;
+    void wait();
+    void compute_energies(std::vector<double>& values);
+
+    Communicator const& communicator_;
+    std::vector<std::int64_t> first_of_rank_, bytes_of_rank_;
+    bool replicate_;
+    OpenMmModel model_;
+    OpenMmPlatform platform_;
+    std::optional<Vec3> box_;                        // where the forces are periodic
+    RankForces rank_;
+    PathChoice path_;
+    std::unique_ptr<ForceContext> energy_context_;   // every bead, on rank 0 of several
+    std::vector<Vec3> own_, all_, forces_;
+    bool under_way_ = false, evaluated_ = false;
+    double begun_ = 0;
+    Interval interval_;
+    std::exception_ptr error_;
+    std::unique_ptr<Worker> worker_;                 // last: its thread ends before what it uses
+};
+
+std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
+    return model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
+}
+
+OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model)
+    : communicator_(communicator),
+      first_of_rank_(beads.first_of_rank),
+      replicate_(spec.replicate),
+      model_(std::move(model)),
+      platform_(choose_platform(spec, communicator, beads.scene_file)),
+      box_(box_of(model_, beads)),
+      rank_(model_, platform_, first_of_rank_[communicator.rank()], first_of_rank_[communicator.rank() + 1],
+            communicator.size() == 1 || spec.replicate, box_),
+      path_(spec.path, platform_.on_cpu(), beads.scene_file),
+      own_(static_cast<std::size_t>(own_count())),
+      all_(static_cast<std::size_t>(beads.size())),
+      forces_(own_.size()) {
+    for (int r = 0; r < communicator.size(); ++r)
+        bytes_of_rank_.push_back((first_of_rank_[r + 1] - first_of_rank_[r]) * static_cast<std::int64_t>(sizeof(Vec3)));
+}
+
+void OpenMmForces::gather(ConstView<3> positions) {
+    for (std::int64_t k = 0; k < own_count(); ++k) own_[k] = positions.load(k);
+    if (communicator_.size() == 1)
+        all_ = own_;
+    else
+        communicator_.all_gather(std::as_bytes(std::span(own_)), std::as_writable_bytes(std::span(all_)), bytes_of_rank_);
+}
+
+void OpenMmForces::evaluate() noexcept {
+    interval_.begin = now();
+    try {
+        rank_.evaluate(all_, forces_);
+    } catch (...) {
+        error_ = std::current_exception();
+    }
+    interval_.end = now();
+}
+
+void OpenMmForces::begin(ConstView<3> positions) {
+    wait();
+    begun_ = now();
+    gather(positions);
+    path_.settle(communicator_);
+    error_ = nullptr;
+    under_way_ = evaluated_ = true;
+    if (!path_.runs_on_worker()) {
+        evaluate();
+        return;
+    }
+    if (!worker_) worker_ = std::make_unique<Worker>();
+    worker_->post([this] { evaluate(); });
+}
+
+void OpenMmForces::wait() {
+    if (worker_) worker_->wait();
+}
+
+void OpenMmForces::finish(View<3> forces) {
+    wait();
+    if (!std::exchange(under_way_, false)) throw ComputationError("OpenMM's forces were asked for before their computation was begun");
+    try {
+        if (error_) std::rethrow_exception(error_);
+    } catch (ComputationError const&) {
+        throw;
+    } catch (std::exception const& e) {
+        throw ComputationError(fmt::format("OpenMM failed: {}", e.what()));
+    }
+    for (std::int64_t k = 0; k < own_count(); ++k)
+        for (int c = 0; c < 3; ++c) forces.at(k, c) += forces_[k][c];
+    path_.note(now() - begun_);
+}
+
+void OpenMmForces::compute_energies(std::vector<double>& values) {
+    ForceContext* context = rank_.whole_context();
+    if (context == nullptr) {
+        if (!energy_context_)
+            energy_context_ = std::make_unique<ForceContext>(model_.system, model_.bead_of_particle, platform_, box_);
+        context = energy_context_.get();
+    }
+    context->set_positions(all_);
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = context->energy(static_cast<int>(i));
+}
+
+std::vector<EnergyTerm> OpenMmForces::energies() {
+    wait();
+    if (!evaluated_) throw ComputationError("OpenMM's energies were asked for before it was given positions");
+    std::vector<double> values(model_.terms.size());
+    std::string failure;
+    if (communicator_.rank() == 0) {
+        try {
+            compute_energies(values);
+        } catch (std::exception const& e) {
+            failure = e.what();
+        }
+    }
+    char failed = failure.empty() ? 0 : 1;
+    communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
+    if (failed != 0) throw ComputationError(fmt::format("OpenMM failed to compute the energies on rank 0{}{}", failure.empty() ? "" : ": ", failure));
+    communicator_.broadcast(std::as_writable_bytes(std::span(values)));
+    std::vector<EnergyTerm> terms;
+    for (std::size_t i = 0; i < values.size(); ++i) terms.push_back({model_.terms[i], values[i]});
+    return terms;
+}
+
+std::vector<std::string> OpenMmForces::description() const {
+    std::vector<std::string> lines{platform_.name() == "CPU"
+                                       ? fmt::format("{}, platform CPU, {} threads a rank", openmm_version(), platform_.threads)
+                                       : fmt::format("{}, platform {}", openmm_version(), platform_.name())};
+    lines.push_back("terms: " + (model_.terms.empty() ? std::string("none") : join(model_.terms)));
+    lines.insert(lines.end(), model_.notes.begin(), model_.notes.end());
+    lines.push_back("path " + path_.text());
+    int const cores = cores_of_rank(communicator_);
+    if (path_.runs_on_worker() && cores < 2) lines.push_back("warning: OpenMM's worker thread has no core of its own (bind ranks to two cores or more, or path: inline)");
+    if (platform_.threads > cores)
+        lines.push_back(fmt::format("warning: {} threads share {} cores of this rank", platform_.threads, cores));
+    if (communicator_.size() > 1 && replicate_) lines.push_back("replicated: every rank computes the whole System");
+    if (communicator_.size() > 1 && !replicate_ && own_count() > 0)
+        lines.push_back(std::isfinite(rank_.reach())
+                            ? fmt::format("split: own beads and those within {} + {} nm on each rank", rank_.reach(), rank_.skin())
+                            : "split: every bead on each rank (a force has no cutoff)");
+    for (auto const& failure : load_openmm_plugins()) lines.push_back("plugin not loaded: " + failure);
+    return lines;
+}
+
+/// "NonbondedForce (PME)"
+std::string name_for_refusal(OpenMM::Force const& force) {
+    std::string const kind = kind_of(force);
+    auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force);
+    if (charges == nullptr) return kind;
+    auto const method = charges->getNonbondedMethod();
+    return fmt::format("{} ({})", kind, method == OpenMM::NonbondedForce::Ewald ? "Ewald" : method == OpenMM::NonbondedForce::PME ? "PME" : "LJPME");
+}
+
+void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& where, int ranks) {
+    for (int i = 0; i < model.system->getNumForces(); ++i) {
+        auto const& force = model.system->getForce(i);
+        if (!can_be_split(force))
+            throw InputError(fmt::format("{} cannot be split over {} ranks", name_for_refusal(force), ranks), where,
+                             "set forces.openmm.replicate: true, so that every rank computes the whole System, or run on one rank");
+    }
+}
+
+std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
+    std::string const where = beads.scene_file + ", forces.openmm";
+    if (beads.size() == 0)
+        throw InputError("OpenMM has nothing to act on", where, "give the scene a chain of beads, or leave forces.openmm out");
+    if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))
+        throw InputError(fmt::format("OpenMM's forces have no builder \"{}\"", spec.builder), where, "take builder: calvados2, or system: and topology:");
+    OpenMmModel model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
+    if (communicator.size() > 1 && !spec.replicate) refuse_what_cannot_be_split(model, where, communicator.size());
+    try {
+        return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model));
+    } catch (InputError const&) {
+        throw;
+    } catch (std::bad_alloc const&) {
+        throw;
+    } catch (std::exception const& e) {   // OpenMM's exceptions have no common base below this
+        throw InputError(fmt::format("OpenMM refuses these forces: {}", e.what()), where, "mend the System, or take another platform");
+    }
+}
+
+/// Throws the first rank's InputError on every rank: Contexts are made on those with beads alone.
+void agree(Communicator const& communicator, std::string const& own) {
+    std::int64_t const own_length = std::ssize(own);
+    std::vector<std::int64_t> lengths(static_cast<std::size_t>(communicator.size()));
+    communicator.all_gather(std::as_bytes(std::span(&own_length, 1)), std::as_writable_bytes(std::span(lengths)),
+                            std::vector<std::int64_t>(lengths.size(), sizeof(std::int64_t)));
+    std::int64_t const failed = std::find_if(lengths.begin(), lengths.end(), [](std::int64_t n) { return n > 0; }) - lengths.begin();
+    if (failed == std::ssize(lengths)) return;
+    std::int64_t total = 0, begin = 0;
+    for (std::int64_t r = 0; r < std::ssize(lengths); ++r) {
+        total += lengths[r];
+        if (r < failed) begin += lengths[r];
+    }
+    std::string all(static_cast<std::size_t>(total), ' ');
+    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), lengths);
+    throw InputError(all.substr(begin, lengths[failed]));
+}
+
+}  // namespace
+
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
+    std::unique_ptr<OpenMmForce> force;
+    std::string error;
+    try {
+        force = make(spec, beads, communicator);
+    } catch (InputError const& e) {
+        error = e.what();
+    }
+    agree(communicator, error);
+    return force;
+}
+
+}  // namespace catena

@@ -1,0 +1,31 @@
+// Chains from a serialised OpenMM System and its PDB topology: what a scene is made of that gives `system` and no chains.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dca/linear.hpp"
+
+namespace catena {
+
+/// Arrays of one entry a bead.
+struct ImportedChain {
+    std::string name;
+    std::vector<std::string> residue;   // three letters
+    std::vector<double> mass;           // amu, the System's
+    std::vector<Vec3> position;         // nm, as the PDB file rounds them
+    std::vector<double> length;         // nm, of the link to the bead before; entry 0 is 0
+};
+
+struct ImportedSystem {
+    std::vector<ImportedChain> chains;   // the topology's, in its order
+    bool periodic = false;               // some force uses the box
+    Vec3 box = Vec3::zero();             // edges of the System's box
+};
+
+/// Particle order is topology order. Neighbours in a chain are joined by a link as long as the harmonic bond or constraint between them.
+/// Throws InputError: unreadable files, different counts, neighbours that nothing joins, and what Catena cannot drive (virtual sites,
+/// CMMotionRemover, barostats, ...). "built without OpenMM" where the build lacks it.
+ImportedSystem import_openmm_system(std::string const& system, std::string const& topology, std::string const& scene_file);
+
+}  // namespace catena

@@ -1,0 +1,111 @@
+#include "force/openmm_platform.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
+
+#include "error.hpp"
+
+namespace catena {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> plugin_folders() {
+    std::vector<fs::path> folders;
+    if (char const* named = std::getenv("OPENMM_PLUGIN_DIR")) folders.emplace_back(named);
+    Dl_info library{};
+    if (dladdr(reinterpret_cast<void const*>(&OpenMM::Platform::getOpenMMVersion), &library) != 0 && library.dli_fname != nullptr) {
+        std::error_code ignored;
+        fs::path const folder = fs::weakly_canonical(library.dli_fname, ignored).parent_path();
+        folders.push_back(folder / "plugins");
+        folders.push_back(folder / "openmm" / "plugins");  // Debian
+    }
+    folders.emplace_back(OpenMM::Platform::getDefaultPluginsDirectory());
+    return folders;
+}
+
+std::vector<std::string> load_plugins() {
+    std::vector<std::string> failures;
+    auto const folders = plugin_folders();
+    for (char const* name : {"libOpenMMCPU.so", "libOpenMMPME.so", "libOpenMMCUDA.so"}) {
+        auto const folder = std::find_if(folders.begin(), folders.end(), [&](fs::path const& f) {
+            std::error_code ignored;
+            return fs::exists(f / name, ignored);
+        });
+        if (folder == folders.end()) continue;
+        try {
+            OpenMM::Platform::loadPluginLibrary((*folder / name).string());
+        } catch (std::exception const& e) {
+            failures.emplace_back(e.what());
+        }
+    }
+    return failures;
+}
+
+std::vector<std::string> platforms_present() {
+    std::vector<std::string> names;
+    for (int i = 0; i < OpenMM::Platform::getNumPlatforms(); ++i) names.push_back(OpenMM::Platform::getPlatform(i).getName());
+    return names;
+}
+
+bool contains(std::vector<std::string> const& names, std::string const& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string refused_plugins(std::vector<std::string> const& failures) {
+    return failures.empty() ? "" : fmt::format(" (not loaded: {})", fmt::join(failures, "; "));
+}
+
+}  // namespace
+
+std::vector<std::string> const& load_openmm_plugins() {
+    static std::vector<std::string> const failures = load_plugins();
+    return failures;
+}
+
+int cores_of_rank(Communicator const& communicator) {
+    int const usable = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));  // respects the rank's binding
+    long const online = sysconf(_SC_NPROCESSORS_ONLN);
+    int const share = std::max(1, static_cast<int>(online) / std::max(1, communicator.ranks_on_host()));
+    return online > usable ? usable : share;
+}
+
+OpenMmPlatform choose_platform(OpenMmSpec const& spec, Communicator const& communicator, std::string const& scene_file) {
+    auto const& failures = load_openmm_plugins();
+    auto const present = platforms_present();
+    std::string const name = !spec.platform.empty() ? spec.platform : contains(present, "CPU") ? "CPU" : "Reference";
+    if (!contains(present, name))
+        throw InputError(fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
+                         scene_file + ", forces.openmm.platform",
+                         fmt::format("take one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
+    if (!spec.precision.empty() && spec.precision != "single" && spec.precision != "mixed" && spec.precision != "double")
+        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision), scene_file + ", forces.openmm.precision",
+                         "take single, mixed or double");
+
+    OpenMmPlatform chosen;
+    chosen.platform = &OpenMM::Platform::getPlatformByName(name);
+    auto const known = chosen.platform->getPropertyNames();
+    auto const set = [&](char const* property, std::string const& value) {
+        if (contains(known, property)) chosen.properties[property] = value;
+    };
+    if (name == "CPU") {
+        chosen.threads = spec.threads > 0 ? spec.threads : cores_of_rank(communicator);
+        set("Threads", std::to_string(chosen.threads));
+    } else if (!chosen.on_cpu()) {
+        set("Precision", spec.precision.empty() ? "mixed" : spec.precision);
+        if (spec.device >= 0) set("DeviceIndex", std::to_string(spec.device));
+    }
+    set("DeterministicForces", "true");
+    return chosen;
+}
+
+std::string openmm_version() { return "OpenMM " + OpenMM::Platform::getOpenMMVersion(); }
+
+}  // namespace catena

@@ -1,0 +1,34 @@
+// Which platform OpenMM computes on, and with what. For files that see OpenMM's headers.
+#pragma once
+
+#include <OpenMM.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "force/openmm_force.hpp"
+
+namespace catena {
+
+struct OpenMmPlatform {
+    OpenMM::Platform* platform = nullptr;
+    std::map<std::string, std::string> properties;
+    int threads = 1;
+
+    std::string const& name() const { return platform->getName(); }
+    bool on_cpu() const { return name() == "CPU" || name() == "Reference"; }
+};
+
+/// Loads the CPU and CUDA plugins at the first call: those in OPENMM_PLUGIN_DIR, else those that lie beside libOpenMM.so. A wheel's default
+/// folder is not where the wheel is, and its other plugins do not load everywhere, so files are named one by one.
+/// Returns what did not load, one line a file.
+std::vector<std::string> const& load_openmm_plugins();
+
+/// The platform that the scene names, else CPU where there is one, else Reference. Throws InputError listing those present.
+OpenMmPlatform choose_platform(OpenMmSpec const&, Communicator const&, std::string const& scene_file);
+
+/// Cores that this rank may use: those it is bound to, else an equal share of the host's.
+int cores_of_rank(Communicator const&);
+
+}  // namespace catena

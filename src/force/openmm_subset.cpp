@@ -1,0 +1,234 @@
+#include "force/openmm_subset.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "force/openmm_bonded.hpp"
+
+namespace catena {
+
+namespace {
+
+using namespace OpenMM;   // this file handles nothing else
+
+/// Notes the partners of own particles; keeps no term.
+class PartnerCollector : public TermFilter {
+  public:
+    PartnerCollector(int particle_count, std::vector<int> const& own) : own_(particle_count, false) {
+        for (int p : own) own_[p] = true;
+    }
+    bool keep(std::initializer_list<int*> particles) override {
+        bool const touches = std::any_of(particles.begin(), particles.end(), [&](int const* p) { return own_[*p]; });
+        if (touches)
+            for (int const* p : particles)
+                if (!own_[*p]) partners_.insert(*p);
+        return false;
+    }
+    std::vector<int> partners() const { return {partners_.begin(), partners_.end()}; }
+
+  private:
+    std::vector<bool> own_;
+    std::set<int> partners_;
+};
+
+class NoTerm : public TermFilter {
+  public:
+    bool keep(std::initializer_list<int*>) override { return false; }
+};
+
+/// Keeps the terms that touch an own particle, with the subset's numbers.
+class Renumbering : public TermFilter {
+  public:
+    Renumbering(int particle_count, std::vector<int> const& particles, int own_count)
+        : particles_(particles), own_count_(own_count), index_(particle_count, -1) {
+        for (int i = 0; i < static_cast<int>(particles.size()); ++i) index_[particles[i]] = i;
+    }
+    bool keep(std::initializer_list<int*> particles) override {
+        bool const touches =
+            std::any_of(particles.begin(), particles.end(), [&](int const* p) { return index_[*p] >= 0 && index_[*p] < own_count_; });
+        return touches && keep_pair(particles);
+    }
+    /// Whether all are in the subset.
+    bool keep_pair(std::initializer_list<int*> particles) const {
+        if (std::any_of(particles.begin(), particles.end(), [&](int const* p) { return index_[*p] < 0; })) return false;
+        for (int* p : particles) *p = index_[*p];
+        return true;
+    }
+    std::vector<int> const& particles() const { return particles_; }
+
+  private:
+    std::vector<int> const& particles_;
+    int own_count_;
+    std::vector<int> index_;   // in the subset; -1: not in it
+};
+
+template <class Source>
+void copy_globals(Source const& from, Source& to) {
+    for (int i = 0; i < from.getNumGlobalParameters(); ++i)
+        to.addGlobalParameter(from.getGlobalParameterName(i), from.getGlobalParameterDefaultValue(i));
+}
+
+/// The exceptions of a NonbondedForce act at any distance: they are bonded terms.
+void collect_exceptions(NonbondedForce const& from, TermFilter& filter) {
+    for (int i = 0; i < from.getNumExceptions(); ++i) {
+        int a, b;
+        double charge, sigma, epsilon;
+        from.getExceptionParameters(i, a, b, charge, sigma, epsilon);
+        filter.keep({&a, &b});
+    }
+}
+
+/// Computed values came with OpenMM 8; a class that lacks them has none to copy.
+template <class Source>
+void copy_computed_values(Source const& from, Source& to) {
+    if constexpr (requires { from.getNumComputedValues(); }) {
+        std::string name, expression;
+        for (int i = 0; i < from.getNumComputedValues(); ++i) {
+            from.getComputedValueParameters(i, name, expression);
+            to.addComputedValue(name, expression);
+        }
+    }
+}
+
+void copy_interaction_groups(CustomNonbondedForce const& from, Renumbering const& subset, CustomNonbondedForce& to) {
+    auto const renumbered = [&](std::set<int> const& all) {
+        std::set<int> kept;
+        for (int p : all)
+            if (subset.keep_pair({&p})) kept.insert(p);
+        return kept;
+    };
+    std::set<int> one, other;
+    for (int i = 0; i < from.getNumInteractionGroups(); ++i) {
+        from.getInteractionGroupParameters(i, one, other);
+        to.addInteractionGroup(renumbered(one), renumbered(other));
+    }
+}
+
+std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering const& subset) {
+    auto to = std::make_unique<CustomNonbondedForce>(from.getEnergyFunction());
+    to->setNonbondedMethod(from.getNonbondedMethod());
+    to->setCutoffDistance(from.getCutoffDistance());
+    to->setUseSwitchingFunction(from.getUseSwitchingFunction());
+    to->setSwitchingDistance(from.getSwitchingDistance());
+    copy_globals(from, *to);
+    for (int i = 0; i < from.getNumPerParticleParameters(); ++i) to->addPerParticleParameter(from.getPerParticleParameterName(i));
+    for (int i = 0; i < from.getNumTabulatedFunctions(); ++i)
+        to->addTabulatedFunction(from.getTabulatedFunctionName(i), from.getTabulatedFunction(i).Copy());
+    copy_computed_values(from, *to);
+    std::vector<double> parameters;
+    for (int p : subset.particles()) {
+        from.getParticleParameters(p, parameters);
+        to->addParticle(parameters);
+    }
+    for (int i = 0; i < from.getNumExclusions(); ++i) {
+        int a, b;
+        from.getExclusionParticles(i, a, b);
+        if (subset.keep_pair({&a, &b})) to->addExclusion(a, b);
+    }
+    copy_interaction_groups(from, subset, *to);
+    return to;
+}
+
+/// Exceptions with their offsets. One between two ghosts must stay an exclusion but need not act.
+void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, NonbondedForce& to) {
+    std::vector<int> index(from.getNumExceptions(), -1);
+    for (int i = 0; i < from.getNumExceptions(); ++i) {
+        int a, b;
+        double charge, sigma, epsilon;
+        from.getExceptionParameters(i, a, b, charge, sigma, epsilon);
+        if (subset.keep_pair({&a, &b})) index[i] = to.addException(a, b, charge, sigma, epsilon);
+    }
+    std::string parameter;
+    for (int i = 0; i < from.getNumExceptionParameterOffsets(); ++i) {
+        int exception;
+        double charge, sigma, epsilon;
+        from.getExceptionParameterOffset(i, parameter, exception, charge, sigma, epsilon);
+        if (index[exception] >= 0) to.addExceptionParameterOffset(parameter, index[exception], charge, sigma, epsilon);
+    }
+}
+
+std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const& subset) {
+    auto to = std::make_unique<NonbondedForce>();
+    to->setNonbondedMethod(from.getNonbondedMethod());
+    to->setCutoffDistance(from.getCutoffDistance());
+    to->setUseSwitchingFunction(from.getUseSwitchingFunction());
+    to->setSwitchingDistance(from.getSwitchingDistance());
+    to->setReactionFieldDielectric(from.getReactionFieldDielectric());
+    to->setExceptionsUsePeriodicBoundaryConditions(from.getExceptionsUsePeriodicBoundaryConditions());
+    to->setUseDispersionCorrection(false);   // it adds no force
+    copy_globals(from, *to);
+    double charge, sigma, epsilon;
+    for (int p : subset.particles()) {
+        from.getParticleParameters(p, charge, sigma, epsilon);
+        to->addParticle(charge, sigma, epsilon);
+    }
+    std::string parameter;
+    for (int i = 0; i < from.getNumParticleParameterOffsets(); ++i) {
+        int p;
+        from.getParticleParameterOffset(i, parameter, p, charge, sigma, epsilon);
+        if (subset.keep_pair({&p})) to->addParticleParameterOffset(parameter, p, charge, sigma, epsilon);
+    }
+    copy_exceptions(from, subset, *to);
+    return to;
+}
+
+std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
+    if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&from)) return copy_pairs(*pairs, subset);
+    if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&from)) return copy_pairs(*pairs, subset);
+    return copy_bonded(from, subset);
+}
+
+/// How far one force reaches; negative: it cannot be split.
+double reach_of(Force const& force) {
+    double constexpr everywhere = std::numeric_limits<double>::infinity();
+    if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&force))
+        return pairs->getNonbondedMethod() == CustomNonbondedForce::NoCutoff ? everywhere : pairs->getCutoffDistance();
+    if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&force)) {
+        auto const method = pairs->getNonbondedMethod();
+        if (method == NonbondedForce::NoCutoff) return everywhere;
+        bool const cut = method == NonbondedForce::CutoffNonPeriodic || method == NonbondedForce::CutoffPeriodic;
+        return cut ? pairs->getCutoffDistance() : -1;
+    }
+    NoTerm filter;
+    return copy_bonded(force, filter) ? 0 : -1;
+}
+
+}  // namespace
+
+bool can_be_split(Force const& force) { return reach_of(force) >= 0; }
+
+double reach_of(System const& system) {
+    double reach = 0;
+    for (int i = 0; i < system.getNumForces(); ++i) reach = std::max(reach, reach_of(system.getForce(i)));
+    return reach;
+}
+
+std::vector<int> bonded_partners(System const& system, std::vector<int> const& own) {
+    PartnerCollector collector(system.getNumParticles(), own);
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i))) collect_exceptions(*pairs, collector);
+        copy_bonded(system.getForce(i), collector);
+    }
+    return collector.partners();
+}
+
+std::unique_ptr<System> subset_of(System const& whole, std::vector<int> const& particles, int own_count) {
+    auto subset = std::make_unique<System>();
+    Vec3 a, b, c;
+    whole.getDefaultPeriodicBoxVectors(a, b, c);
+    subset->setDefaultPeriodicBoxVectors(a, b, c);
+    for (int p : particles) subset->addParticle(whole.getParticleMass(p));
+    Renumbering renumbering(whole.getNumParticles(), particles, own_count);
+    for (int i = 0; i < whole.getNumForces(); ++i) {
+        Force const& from = whole.getForce(i);
+        auto to = copy_force(from, renumbering);
+        to->setForceGroup(from.getForceGroup());
+        to->setName(from.getName());
+        subset->addForce(to.release());
+    }
+    return subset;
+}
+
+}  // namespace catena

@@ -1,0 +1,23 @@
+// What a PDB file says about chains. No OpenMM here.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dca/linear.hpp"
+
+namespace catena {
+
+struct PdbChain {
+    std::string name;                   // chain identifier; its number where the file gives none
+    std::vector<std::string> residue;   // one an atom
+    std::vector<Vec3> position;         // nm
+
+    std::size_t size() const { return residue.size(); }
+};
+
+/// The chains of the first model, in the file's order: a new one begins after TER and where the chain identifier changes.
+/// Throws InputError; `where`: scene file and key, for messages.
+std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where);
+
+}  // namespace catena

@@ -1,0 +1,106 @@
+// Chains in absolute coordinates (positions of beads; poses of bodies on spherical joints) as the constrained integrators see
+// them: every projection is a bias sweep of the divide-and-conquer solver, with impulses in the place of forces.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "chain/chain_group.hpp"
+#include "dca/philox.hpp"
+#include "dca/solver.hpp"
+
+namespace catena {
+
+/// Accelerations and forces body by body, ground axes, for output and checks.
+struct BodyResults {
+    std::vector<Vec3> alpha;                      // angular; empty for beads
+    std::vector<Vec3> acceleration;               // of the centre of mass
+    std::vector<Vector<double, 6>> joint_force;   // constraint [torque, force] on body k at its inboard joint
+};
+
+/// Body by body, this rank's.
+struct PotentialEnergy {
+    std::vector<double> gravity, springs;
+};
+
+/// The larger of two; a NaN counts as the largest.
+inline double larger(double a, double b) { return b > a || b != b ? b : a; }
+
+/// A named array of the state, `width` numbers a body.
+struct StateArray {
+    std::string name;
+    int width = 0;
+    std::vector<double> values;   // this rank's bodies, one after the other
+};
+
+class AbsoluteDynamics {
+  public:
+    virtual ~AbsoluteDynamics() = default;
+
+    /// Directions and neighbours' positions for the current positions. Collective.
+    virtual void update_configuration() = 0;
+    /// Matrices at the configuration updated last. Needs no forces. Collective.
+    virtual void assemble_matrices() = 0;
+    /// Sets the forces of gravity, wrenches and joint springs at the configuration updated last. Collective.
+    virtual void set_simple_forces() = 0;
+    /// Forces on beads, for others to add to; absent for bodies.
+    virtual View<3> bead_forces() = 0;
+    virtual ConstView<3> bead_positions() const = 0;
+
+    /// v <- P (v + h M^-1 f), P the projection on the joints' velocities at the current configuration. Collective.
+    virtual void kick(double h) = 0;
+    /// What kick(h) would make of the velocities, into a copy (see observed_state). Collective.
+    virtual void observe(double h) = 0;
+    /// Positions by h along the velocities, impulses along the joints of the configuration updated last added in `sweeps` quasi-Newton
+    /// sweeps so that the joints close at the end; velocities become the drift's. Collective.
+    virtual void drift(double h, int sweeps) = 0;
+    /// v <- P (c v + sqrt((1 - c^2) kT / M) noise). Collective.
+    virtual void thermostat(double c, double kt, std::uint64_t seed, std::uint64_t step) = 0;
+    /// Velocities of temperature kt, projected; matrices must be assembled. Collective.
+    virtual void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) = 0;
+
+    /// Largest violation of a joint over all ranks at the current positions: links relative to their length, other joints
+    /// relative to the longest distance of a joint from its bodies' centres. Collective.
+    virtual double constraint_error() = 0;
+
+    /// Everything that a checkpoint needs.
+    virtual std::vector<StateArray> state() const = 0;
+    virtual void set_state(std::vector<StateArray> const&) = 0;
+    /// Velocities of the last observe(): `velocity` (W) and for bodies `omega` (B).
+    virtual std::vector<StateArray> observed_state() const = 0;
+    /// Accelerations and joint forces at the configuration, matrices and forces of now and the velocities observed last: one bias sweep. Collective.
+    virtual void evaluate() = 0;
+    /// Of the last evaluate(), ground axes.
+    virtual BodyResults results() const = 0;
+    /// Largest local backward residual of the last evaluate() (formulas, "Residuals"), over all ranks. Collective.
+    virtual double residual() = 0;
+    /// At the current positions. Collective.
+    virtual PotentialEnergy potential() = 0;
+
+    virtual ChainGroup const& group() const = 0;
+    virtual ChainSolver const& solver() const = 0;
+};
+
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
+std::unique_ptr<AbsoluteDynamics> make_body_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
+
+/// One array of the given name; throws ComputationError if it is not there.
+StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);
+
+template <int D>
+StateArray to_array(std::string const& name, ConstView<D> field) {
+    StateArray a{name, D, {}};
+    a.values.reserve(static_cast<std::size_t>(field.size * D));
+    for (std::int64_t k = 0; k < field.size; ++k)
+        for (int i = 0; i < D; ++i) a.values.push_back(field.at(k, i));
+    return a;
+}
+template <int D>
+void from_array(StateArray const& a, View<D> field) {
+    for (std::int64_t k = 0; k < field.size; ++k)
+        for (int i = 0; i < D; ++i) field.at(k, i) = a.values[static_cast<std::size_t>(k * D + i)];
+}
+
+}  // namespace catena

@@ -1,0 +1,90 @@
+// A scene made ready to compute: executor, groups, solvers and forces, on this rank.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "force/openmm_force.hpp"
+#include "integrate/absolute_dynamics.hpp"
+#include "integrate/joint_dynamics.hpp"
+#include "integrate/timeline.hpp"
+
+namespace catena {
+
+/// What `auto` becomes. Throws "not in this version" for backends of later versions.
+Backend choose_backend(Scene const&, Communicator const&);
+/// Threads of the openmp backend on this rank: solver.threads, else the host's cores over its ranks.
+int choose_threads(Scene const&, Communicator const&);
+
+class ChainSystem {
+  public:
+    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4) or world (rattle, g-baoab). Collective.
+    ChainSystem(Scene const&, Axes axes, Communicator const&);
+
+    /// Kinematics, forces, matrices and biases at the present state: accelerations of every body. With OpenMM the matrix sweep runs
+    /// while it computes. Collective.
+    void evaluate();
+    /// Forces and matrices at the present configuration, for the constrained integrators: `update_configuration` must have run. Collective.
+    void forces_and_matrices(StepTimeline* timeline);
+
+    /// Largest local backward residual of the last evaluate(), and its bound c depth eps.
+    double residual();
+    double residual_bound() const;
+
+    /// Bodies of the scene in scene order, on rank 0. Collective.
+    struct Snapshot {
+        std::vector<Vec3> position, velocity, omega;   // centre of mass or bead, W; omega: B
+        std::vector<Quat> orientation;                 // identity for beads
+    };
+    Snapshot snapshot();
+    /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, then OpenMM's. Collective.
+    std::vector<EnergyTerm> potential_energy();
+    /// Accelerations and joint forces of the last evaluate() in scene order on rank 0; for bodies in joint coordinates `joint_acceleration`
+    /// holds qdd (revolute: first entry) and `base_acceleration` a free base's. Collective.
+    struct Accelerations {
+        std::vector<Vec3> joint_acceleration, acceleration, bead_force;
+        std::vector<Vec3> base_acceleration;           // one a body; counts for the first body of a free base
+        std::vector<Vector<double, 6>> joint_force;
+    };
+    Accelerations accelerations();
+
+    std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
+    std::vector<AbsoluteDynamics*> absolute() const;
+    std::vector<JointDynamics*> joint() const;
+    JointState& joint_state(std::size_t i) { return joint_states_[i]; }
+    OpenMmForce* openmm() const { return openmm_.get(); }
+    Executor const& executor() const { return *executor_; }
+    Scene const& scene() const { return scene_; }
+    Communicator const& communicator() const { return communicator_; }
+    Backend backend() const { return backend_; }
+    std::vector<SolverReport> solver_reports() const;
+    /// Seconds of the phases so far: "kinematics and loads", "matrix sweep", "bias sweep", "forces", "waiting for forces", "exchange".
+    std::map<std::string, double> const& seconds() const { return seconds_; }
+    /// Seconds of matrix sweep and of these the ones during which OpenMM computed.
+    double matrix_seconds() const { return matrix_seconds_; }
+    double hidden_seconds() const { return hidden_seconds_; }
+
+    /// Everything a checkpoint needs, in scene order on rank 0; and back, on every rank.
+    std::map<std::string, std::vector<double>> state();
+    void set_state(std::map<std::string, std::vector<double>> const&);
+
+  private:
+    void make_openmm();
+    Scene const& scene_;
+    Communicator const& communicator_;
+    Backend backend_;
+    std::unique_ptr<Executor> executor_;
+    std::vector<std::unique_ptr<ChainGroup>> groups_;
+    std::vector<std::unique_ptr<JointDynamics>> joint_;
+    std::vector<JointState> joint_states_;
+    std::vector<JointRates> joint_rates_;
+    std::vector<std::unique_ptr<AbsoluteDynamics>> absolute_;
+    AbsoluteDynamics* beads_ = nullptr;
+    std::unique_ptr<OpenMmForce> openmm_;
+    std::map<std::string, double> seconds_;
+    double matrix_seconds_ = 0, hidden_seconds_ = 0;
+};
+
+}  // namespace catena

@@ -1,0 +1,73 @@
+#include "integrate/constrained_integrator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "error.hpp"
+
+namespace catena {
+
+ConstrainedIntegrator::ConstrainedIntegrator(ConstrainedScheme const& scheme, std::vector<AbsoluteDynamics*> const& groups) : scheme_(scheme), groups_(groups) {}
+
+int ConstrainedIntegrator::bias_sweeps_a_step() const {
+    return scheme_.kind == Integrator::rattle ? 1 + sweeps_ : 2 + 2 * sweeps_;
+}
+
+void ConstrainedIntegrator::step(std::int64_t n) {
+    double const h = scheme_.step;
+    for (AbsoluteDynamics* group : groups_) {
+        group->kick(pending_ * h);
+        if (scheme_.kind == Integrator::rattle) {
+            group->drift(h, sweeps_);
+        } else {
+            group->drift(0.5 * h, sweeps_);
+            group->update_configuration();
+            group->assemble_matrices();
+            group->thermostat(std::exp(-scheme_.friction * h), scheme_.kt, scheme_.seed, static_cast<std::uint64_t>(n));
+            group->drift(0.5 * h, sweeps_);
+        }
+        group->update_configuration();
+    }
+    pending_ = 1.0;
+}
+
+void ConstrainedIntegrator::observe() {
+    for (AbsoluteDynamics* group : groups_) group->observe((pending_ - 0.5) * scheme_.step);
+}
+
+double ConstrainedIntegrator::error_after(int sweeps) {
+    double const h = scheme_.kind == Integrator::rattle ? scheme_.step : 0.5 * scheme_.step;
+    double worst = 0;
+    for (AbsoluteDynamics* group : groups_) {
+        std::vector<StateArray> const before = group->state();
+        group->kick(pending_ * scheme_.step);
+        group->drift(h, sweeps);
+        double const error = group->constraint_error();
+        group->set_state(before);
+        group->update_configuration();
+        worst = larger(worst, error);
+    }
+    return worst;
+}
+
+void ConstrainedIntegrator::choose_sweeps() {
+    int constexpr most = 30;
+    double before = std::numeric_limits<double>::infinity();
+    for (int sweeps = 1; sweeps <= most; ++sweeps) {
+        double const error = error_after(sweeps);
+        bool const at_rounding = error <= scheme_.tolerance && error > 0.5 * before;
+        if (error <= 0.01 * scheme_.tolerance || at_rounding) {
+            sweeps_ = std::min(sweeps + 1, most);
+            return;
+        }
+        before = error;
+    }
+    std::ostringstream line;
+    line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance << " within " << most << " sweeps of a step of " << scheme_.step
+         << " (error " << before << "): choose a smaller dynamics.step";
+    throw ComputationError(line.str());
+}
+
+}  // namespace catena

@@ -1,0 +1,50 @@
+// RATTLE (constant energy; Andersen 1983) and g-BAOAB (Langevin; Leimkuhler & Matthews, Proc. R. Soc. A 472, 20160138, 2016)
+// over chains in absolute coordinates: one force evaluation a step, every projection a bias sweep.
+//
+// Neighbouring projections are combined: P (P v + h f) = P (v + h f). So the half kicks that end one step and begin the next
+// are one kick, and between steps velocities stand before it: `pending` says how much of a kick is due (1/2 at the very start).
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "integrate/absolute_dynamics.hpp"
+
+namespace catena {
+
+struct ConstrainedScheme {
+    Integrator kind = Integrator::rattle;
+    double step = 0, friction = 0, kt = 0;
+    std::uint64_t seed = 0;
+    double tolerance = 1e-10;
+};
+
+class ConstrainedIntegrator {
+  public:
+    ConstrainedIntegrator(ConstrainedScheme const&, std::vector<AbsoluteDynamics*> const&);
+
+    /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is. `n` counts steps from 0.
+    void step(std::int64_t n);
+    /// Velocities at x_n as an observer sees them (both half kicks in their places), into the dynamics' observed state. Before step().
+    void observe();
+    /// Quasi-Newton sweeps a drift makes, fixed for the run: the fewest that reach `tolerance` / 100 from the present state, and one more.
+    /// Configuration, matrices and forces must be ready; the state is put back. Throws ComputationError when 30 do not suffice.
+    void choose_sweeps();
+
+    int sweeps() const { return sweeps_; }
+    void set_sweeps(int sweeps) { sweeps_ = sweeps; }
+    double pending() const { return pending_; }
+    void set_pending(double pending) { pending_ = pending; }
+    /// Bias sweeps and matrix sweeps of one step.
+    int bias_sweeps_a_step() const;
+    int matrix_sweeps_a_step() const { return scheme_.kind == Integrator::rattle ? 1 : 2; }
+
+  private:
+    double error_after(int sweeps);
+    ConstrainedScheme scheme_;
+    std::vector<AbsoluteDynamics*> groups_;
+    int sweeps_ = 0;
+    double pending_ = 0.5;
+};
+
+}  // namespace catena

@@ -1,0 +1,81 @@
+// The local backward residual of forward dynamics in joint coordinates (formulas, "Residuals").
+#include <algorithm>
+#include <cmath>
+
+#include "integrate/joint_dynamics.hpp"
+
+namespace catena {
+namespace {
+
+Quat as_quaternion(Vector<double, 4> const& v) { return {v[0], v[1], v[2], v[3]}; }
+Mat3 as_matrix(Vector<double, 9> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}; }
+Sym3 as_symmetric(Vector<double, 6> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5]}}; }
+double relative(double difference, double terms) { return terms == 0 ? 0.0 : difference / terms; }
+
+/// Acceleration of a handle along its joint's axes, and the sizes of its terms.
+struct HandleAcceleration {
+    Vec3 linear, angular;
+    double linear_terms, angular_terms;
+};
+
+}  // namespace
+
+double JointDynamics::residual() {
+    auto const at_handle = [&](std::int64_t k, Vec3 const& r, Mat3 const& axes) {
+        Vec3 const w = motion_.omega[k], a = acceleration_[k], tangential = cross(alpha_[k], r), centripetal = cross(w, cross(w, r));
+        return HandleAcceleration{transposed_times(axes, a + tangential + centripetal), transposed_times(axes, alpha_[k]),
+                                  norm(a) + norm(tangential) + norm(centripetal), norm(alpha_[k])};
+    };
+    auto const inboard_axes = [&](std::int64_t k) {
+        return transposed_times(to_matrix(as_quaternion(motion_.joint_turn[k])), as_matrix(group_.axes1[k]));
+    };
+    auto const wrench_at = [&](std::int64_t k) {   // along joint axes: force, torque
+        std::pair<Vec3, Vec3> w{Vec3::zero(), Vec3::zero()};
+        auto const [origin, pitch] = joint_force_.view();
+        for (int i = 0; i < group_.directions; ++i) (i < 3 ? w.first[i] : w.second[i - 3]) = origin[i * pitch + k];
+        return w;
+    };
+    auto const radius_of_gyration = [&](std::int64_t k) {
+        Vector<double, 6> const j = group_.inertia[k];
+        return std::sqrt(0.5 * (j[0] + j[2] + j[5]) * group_.inverse_mass.view().at(k, 0));
+    };
+    Field<8> outboard(group_.size);
+    for (std::int64_t k = 0; k < group_.size; ++k) {
+        HandleAcceleration const h = at_handle(k, group_.r2[k], as_matrix(group_.axes2[k]));
+        outboard.set(k, {{h.linear[0], h.linear[1], h.linear[2], h.angular[0], h.angular[1], h.angular[2], h.linear_terms, h.angular_terms}});
+    }
+    exchange_from_inboard(communicator_, group_, outboard.view());
+
+    auto const [bias, pitch] = bias_.view();   // -c, with g at a chain's first joint
+    auto const closing = [&, origin = bias, pitch = pitch](std::int64_t k) {
+        HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
+        Vector<double, 8> const before = group_.is_first[k] ? Vector<double, 8>::zero() : outboard.view().load(k - 1);
+        Vec3 const linear_bias{{origin[k], origin[pitch + k], origin[2 * pitch + k]}};
+        double linear = norm(mine.linear - Vec3{{before[0], before[1], before[2]}} + linear_bias), angular = 0, angular_bias = 0;
+        if (group_.joint[k] == JointType::revolute) {
+            angular_bias = std::hypot(origin[3 * pitch + k], origin[4 * pitch + k]);
+            angular = std::hypot(mine.angular[0] - before[3] + origin[3 * pitch + k], mine.angular[1] - before[4] + origin[4 * pitch + k]);
+        }
+        // One spatial equation: angles count by the body's size, so that the measure does not depend on the unit of length.
+        double const size = norm(group_.r1[k]) + radius_of_gyration(k);
+        return relative(linear + size * angular, mine.linear_terms + before[6] + norm(linear_bias) + size * (mine.angular_terms + before[7] + angular_bias));
+    };
+
+    double worst = 0;
+    for (std::int64_t k = 0; k < group_.size; ++k) {
+        Mat3 const e1 = inboard_axes(k), e2 = as_matrix(group_.axes2[k]);
+        auto const [f1, t1] = wrench_at(k);
+        auto const [f2, t2] = group_.is_last[k] ? std::pair{Vec3::zero(), Vec3::zero()} : wrench_at(k + 1);
+        Vec3 const ma = group_.mass.view().at(k, 0) * acceleration_[k];
+        Vec3 const force = given_.wrenches ? force_[k] : Vec3::zero();
+        double const newton = relative(norm(ma - force - e1 * f1 + e2 * f2), norm(ma) + norm(force) + norm(f1) + norm(f2));
+        Vec3 const j_alpha = as_symmetric(group_.inertia[k]) * alpha_[k];
+        Vec3 const m1 = cross(group_.r1[k], e1 * f1), m2 = cross(group_.r2[k], e2 * f2);
+        double const euler = relative(norm(j_alpha - torque_[k] - m1 - e1 * t1 + m2 + e2 * t2),
+                                      norm(j_alpha) + norm(torque_[k]) + norm(m1) + norm(t1) + norm(m2) + norm(t2));
+        worst = larger(worst, larger(newton, larger(euler, group_.joint[k] == JointType::free ? 0.0 : closing(k))));
+    }
+    return communicator_.max(worst);
+}
+
+}  // namespace catena

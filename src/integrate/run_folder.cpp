@@ -1,0 +1,68 @@
+#include "integrate/run_folder.hpp"
+
+#include <filesystem>
+
+#include "error.hpp"
+
+namespace catena {
+namespace fs = std::filesystem;
+namespace {
+
+bool same_folder(fs::path const& a, fs::path const& b) {
+    std::error_code ignored;
+    return fs::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, ignored);
+}
+
+char const* const files_of_a_run[] = {"trajectory.h5md", "topology.pdb", "topology.cif", "observables.csv", "checkpoint.h5", "checkpoint.previous.h5", "summary.json",
+                                      "timeline.json",   "report.html"};
+
+}  // namespace
+
+RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
+    : scene_(scene), communicator_(communicator), root_(communicator.rank() == 0), first_step_(first_step), folder_(options.output) {
+    on_root(communicator, [&] {
+        bool const exists = fs::exists(folder_);
+        appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
+        if (exists && !fs::is_directory(folder_)) throw InputError("the output is not a folder", folder_, "name another with --output");
+        if (exists && !appends_ && !options.overwrite && !fs::is_empty(folder_))
+            throw InputError("the output folder exists", folder_, "name another with --output, go on with --restart " + folder_ + "/checkpoint.h5, or replace it with --overwrite");
+        if (exists && !appends_)
+            for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name);
+        std::error_code error;
+        fs::create_directories(folder_, error);
+        if (error) throw InputError("the output folder cannot be made: " + error.message(), folder_, "name another with --output");
+    });
+}
+
+void RunFolder::open(Topology const& topology, Frame const& first, std::vector<std::string> const& columns) {
+    on_root(communicator_, [&] {
+        std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_) : std::nullopt;
+        if (!appends_) topology_files_ = write_topology(folder_, topology, first);
+        trajectory_ = make_trajectory(path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
+        observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after);
+    });
+}
+
+void RunFolder::write(Frame const& frame, std::vector<double> const& observables) {
+    if (!root_) return;
+    trajectory_->write(frame);
+    observables_->write(frame.step, frame.time, observables);
+}
+
+void RunFolder::write_checkpoint(Checkpoint const& checkpoint) {
+    if (!root_) return;
+    trajectory_->flush();   // a restart finds every frame up to the checkpoint's step
+    observables_->flush();
+    catena::write_checkpoint(path("checkpoint.h5"), checkpoint);
+}
+
+void RunFolder::finish(std::string const& summary, std::string const& timeline) {
+    if (!root_) return;
+    trajectory_->close();
+    observables_->close();
+    write_text_file(path("summary.json"), summary);
+    write_text_file(path("timeline.json"), timeline);
+    write_run_report(folder_);
+}
+
+}  // namespace catena

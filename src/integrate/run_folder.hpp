@@ -1,0 +1,60 @@
+// The folder a run writes, on rank 0; on the other ranks every call is empty.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "error.hpp"
+#include "integrate/observables.hpp"
+#include "integrate/simulation.hpp"
+#include "io/output.hpp"
+
+namespace catena {
+
+/// Runs `action` on rank 0 alone; an InputError there is thrown on every rank. Collective.
+template <class Action>
+void on_root(Communicator const& communicator, Action const& action) {
+    std::string error;
+    if (communicator.rank() == 0) try {
+            action();
+        } catch (InputError const& e) {
+            error = e.what();
+        }
+    auto length = static_cast<std::int64_t>(error.size());
+    communicator.broadcast(std::as_writable_bytes(std::span(&length, 1)));
+    if (length == 0) return;
+    error.resize(static_cast<std::size_t>(length));
+    communicator.broadcast(std::as_writable_bytes(std::span(error)));
+    throw InputError(error);
+}
+
+class RunFolder {
+  public:
+    /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Collective; throws InputError on every rank.
+    RunFolder(Scene const&, Communicator const&, RunOptions const&, std::int64_t first_step);
+
+    /// The files that need the first state. Collective.
+    void open(Topology const&, Frame const& first, std::vector<std::string> const& columns);
+    void write(Frame const&, std::vector<double> const& observables);
+    void write_checkpoint(Checkpoint const&);
+    /// Closes the tables, writes summary, timeline and report.
+    void finish(std::string const& summary, std::string const& timeline);
+
+    /// The folder goes on where a run stopped: its frame of the first step is there already.
+    bool appends() const { return appends_; }
+    std::string path(std::string const& name) const { return folder_ + "/" + name; }
+    std::vector<std::string> const& topology_files() const { return topology_files_; }
+
+  private:
+    Scene const& scene_;
+    Communicator const& communicator_;
+    bool root_, appends_ = false;
+    std::int64_t first_step_;
+    std::string folder_;
+    std::unique_ptr<TrajectoryWriter> trajectory_;
+    std::unique_ptr<ObservablesWriter> observables_;
+    std::vector<std::string> topology_files_;
+};
+
+}  // namespace catena

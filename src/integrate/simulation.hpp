@@ -1,0 +1,29 @@
+// A run from a scene's start (or a checkpoint) to its last step, with all its files.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+#include "mpi/communicator.hpp"
+#include "scene/scene.hpp"
+
+namespace catena {
+
+struct RunOptions {
+    std::string output = "catena-run";     // folder
+    std::optional<std::int64_t> steps;     // instead of dynamics.steps: total, counted from the scene's start
+    std::string restart;                   // checkpoint to go on from
+    bool overwrite = false;
+    bool quiet = false;
+    std::string command_line;              // for the summary
+};
+
+/// Runs the scene and writes its folder: trajectory.h5md, topology.pdb, observables.csv, checkpoint.h5, summary.json, timeline.json,
+/// report.html. Returns the summary (on rank 0; {"valid": ...} on the others). Collective. `valid` is false when the constraint
+/// error or a value that is not finite makes the run worthless.
+/// Throws InputError for a folder that exists (without restart or overwrite) or a checkpoint of another scene.
+nlohmann::json run_simulation(Scene const&, Communicator const&, RunOptions const&);
+
+}  // namespace catena

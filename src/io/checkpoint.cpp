@@ -1,0 +1,233 @@
+// Checkpoints: attributes format, version, step, time, scene_hash and checksum at the root; groups notes (texts), integers and
+// arrays (doubles), one dataset an entry. The checksum runs over all of it in the order of the keys.
+#include <unistd.h>
+
+#include <bit>
+#include <cstdio>
+#include <filesystem>
+
+#include "error.hpp"
+#include "io/checksum.hpp"
+#include "io/hdf5_data.hpp"
+#include "io/output.hpp"
+#include "io/output_file.hpp"
+
+namespace catena {
+namespace {
+
+using namespace hdf5;
+
+std::string const writing = "write the checkpoint";
+std::string const reading = "read the checkpoint";
+std::string const format = "catena checkpoint";
+constexpr std::int64_t format_version = 1;
+
+/// All but the arrays, which the caller adds in the order of their keys.
+Checksum checksum_of_head(Checkpoint const& checkpoint) {
+    Checksum sum;
+    sum.add(checkpoint.step);
+    sum.add(checkpoint.time);
+    sum.add(std::string_view(checkpoint.scene_hash));
+    for (auto const& [key, text] : checkpoint.notes) {
+        sum.add(std::string_view(key));
+        sum.add(std::string_view(text));
+    }
+    for (auto const& [key, value] : checkpoint.integers) {
+        sum.add(std::string_view(key));
+        sum.add(value);
+    }
+    return sum;
+}
+
+void add_array(Checksum& sum, std::string const& key, std::vector<double> const& values) {
+    sum.add(std::string_view(key));
+    sum.add(std::span<double const>(values));
+}
+
+std::uint64_t checksum_of(Checkpoint const& checkpoint) {
+    Checksum sum = checksum_of_head(checkpoint);
+    for (auto const& [key, values] : checkpoint.arrays) add_array(sum, key, values);
+    return sum.value();
+}
+
+std::string previous_of(std::string const& file) {
+    std::filesystem::path const path(file);
+    return (path.parent_path() / (path.stem().string() + ".previous" + path.extension().string())).string();
+}
+
+void require_key(std::string const& key, std::string const& file) {
+    if (key.empty() || key == "." || key.find('/') != std::string::npos)
+        throw ComputationError("cannot write the checkpoint (" + file + "): '" + key + "' is no name for a dataset");
+}
+
+template <class Map, class Put>
+void put_all(Place const& root, std::string const& group, Map const& entries, Put put) {
+    Group const owner = make_group(root, group);
+    Place const place{owner.get(), root.file, root.doing};
+    for (auto const& [key, value] : entries) {
+        require_key(key, root.file);
+        Dataset data = put(place, key, value);
+        check(data.close(), root.file, root.doing);
+    }
+}
+
+/// `draft` is written; messages name `file`.
+void write_unverified(std::string const& draft, std::string const& file, Checkpoint const& checkpoint) {
+    File handle(check(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), file, writing));
+    Place const root{handle.get(), file, writing};
+    put_text(root, "format", format);
+    put_attribute(root, "version", format_version);
+    put_attribute(root, "step", checkpoint.step);
+    put_attribute(root, "time_bits", std::bit_cast<std::int64_t>(checkpoint.time));
+    put_text(root, "scene_hash", checkpoint.scene_hash);
+    put_attribute(root, "checksum", std::bit_cast<std::int64_t>(checksum_of(checkpoint)));
+    put_all(root, "notes", checkpoint.notes, [](Place const& place, std::string const& key, std::string const& text) {
+        return put_array(place, key, std::span<std::string const>(&text, 1));
+    });
+    put_all(root, "integers", checkpoint.integers, [](Place const& place, std::string const& key, std::int64_t value) {
+        return put_array(place, key, std::span<std::int64_t const>(&value, 1));
+    });
+    put_all(root, "arrays", checkpoint.arrays, [](Place const& place, std::string const& key, std::vector<double> const& values) {
+        return put_array(place, key, std::span<double const>(values));
+    });
+    flush_to_disk(handle, file, writing);
+    check(handle.close(), file, writing);
+}
+
+std::vector<std::string> keys_of(Place const& group) {
+    H5G_info_t info;
+    check(H5Gget_info(group.id, &info), group.file, group.doing);
+    std::vector<std::string> keys;
+    for (hsize_t k = 0; k < info.nlinks; ++k) {
+        ssize_t const length =
+            check(H5Lget_name_by_idx(group.id, ".", H5_INDEX_NAME, H5_ITER_INC, k, nullptr, 0, H5P_DEFAULT), group.file, group.doing);
+        std::string key(static_cast<std::size_t>(length) + 1, '\0');
+        check(H5Lget_name_by_idx(group.id, ".", H5_INDEX_NAME, H5_ITER_INC, k, key.data(), key.size(), H5P_DEFAULT), group.file, group.doing);
+        key.pop_back();
+        keys.push_back(std::move(key));
+    }
+    return keys;
+}
+
+/// Opens a dataset and its space; the number of elements comes with it.
+struct Entry {
+    Entry(Place const& group, std::string const& key) : data(check(H5Dopen2(group.id, key.c_str(), H5P_DEFAULT), group.file, group.doing)) {
+        Space const space(check(H5Dget_space(data.get()), group.file, group.doing));
+        size = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.get()), group.file, group.doing));
+        // What claims to be larger than its file is damaged, and not worth the memory.
+        if (size * sizeof(double) > std::filesystem::file_size(group.file)) throw ComputationError(key + " is larger than the file");
+    }
+    Dataset data;
+    std::size_t size = 0;
+};
+
+std::string get_note(Place const& group, std::string const& key) {
+    Entry const entry(group, key);
+    Type const type(check(H5Dget_type(entry.data.get()), group.file, group.doing));
+    std::size_t const length = H5Tget_size(type.get());
+    if (entry.size != 1 || H5Tget_class(type.get()) != H5T_STRING || length > std::filesystem::file_size(group.file))
+        throw ComputationError(key + " is no text");
+    std::string text(length, '\0');
+    check(H5Dread(entry.data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), group.file, group.doing);
+    text.erase(text.find_last_not_of('\0') + 1);
+    return text;
+}
+
+template <class Value>
+std::vector<Value> get_values(Place const& group, std::string const& key, hid_t type) {
+    Entry const entry(group, key);
+    std::vector<Value> values(entry.size);
+    if (!values.empty()) check(H5Dread(entry.data.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), group.file, group.doing);
+    return values;
+}
+
+std::int64_t get_integer(Place const& root, std::string const& name) {
+    Attribute const attribute(check(H5Aopen(root.id, name.c_str(), H5P_DEFAULT), root.file, root.doing));
+    std::int64_t value = 0;
+    check(H5Aread(attribute.get(), H5T_NATIVE_INT64, &value), root.file, root.doing);
+    return value;
+}
+
+Group open_group(Place const& root, char const* name) {
+    return Group(check(H5Gopen2(root.id, name, H5P_DEFAULT), root.file, root.doing));
+}
+
+enum class Arrays { keep, only_check };
+
+/// Throws ComputationError where the file is damaged. Checked only, it takes the memory of one array.
+Checkpoint read_verified(Place const& root, Arrays wish) {
+    Checkpoint checkpoint;
+    checkpoint.step = get_integer(root, "step");
+    checkpoint.time = std::bit_cast<double>(get_integer(root, "time_bits"));
+    checkpoint.scene_hash = get_text(root, "scene_hash");
+    Group const notes = open_group(root, "notes"), integers = open_group(root, "integers"), arrays = open_group(root, "arrays");
+    Place const in_notes{notes.get(), root.file, root.doing}, in_integers{integers.get(), root.file, root.doing},
+        in_arrays{arrays.get(), root.file, root.doing};
+    for (std::string const& key : keys_of(in_notes)) checkpoint.notes[key] = get_note(in_notes, key);
+    for (std::string const& key : keys_of(in_integers)) {
+        auto const values = get_values<std::int64_t>(in_integers, key, H5T_NATIVE_INT64);
+        if (values.size() != 1) throw ComputationError(key + " is not one number");
+        checkpoint.integers[key] = values[0];
+    }
+    Checksum sum = checksum_of_head(checkpoint);
+    for (std::string const& key : keys_of(in_arrays)) {
+        auto values = get_values<double>(in_arrays, key, H5T_NATIVE_DOUBLE);
+        add_array(sum, key, values);
+        if (wish == Arrays::keep) checkpoint.arrays[key] = std::move(values);
+    }
+    if (std::bit_cast<std::uint64_t>(get_integer(root, "checksum")) != sum.value())
+        throw ComputationError("its checksum does not fit its contents");
+    return checkpoint;
+}
+
+Checkpoint read(std::string const& file, Arrays wish) {
+    Quiet const quiet;
+    if (!std::filesystem::exists(file)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
+    std::string const previous = previous_of(file);
+    std::string const remedy = std::filesystem::exists(previous) ? "use the one before, " + previous : "start anew";
+    File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+    if (!handle) throw InputError("not a checkpoint or cut short, " + cause(), file, remedy);
+    Place const root{handle.get(), file, reading};
+    if (get_text(root, "format") != format) throw InputError("not a checkpoint of Catena", file, "name the checkpoint.h5 of a run");
+    try {
+        if (get_integer(root, "version") != format_version)
+            throw InputError("a checkpoint of another version of Catena", file, "restart with the version that wrote it");
+        return read_verified(root, wish);
+    } catch (InputError const&) {
+        throw;
+    } catch (std::exception const& error) {
+        throw InputError("the checkpoint is damaged, " + std::string(error.what()), file, remedy);
+    }
+}
+
+/// The file of this name stays; `previous` becomes another name of it, so that no moment is without a checkpoint.
+void keep_previous(std::string const& file) {
+    if (!std::filesystem::exists(file)) return;
+    std::string const spare = previous_of(file) + ".writing";
+    ::unlink(spare.c_str());
+    if (::link(file.c_str(), spare.c_str()) == 0) return rename_file(spare, previous_of(file));
+    rename_file(file, previous_of(file));   // a file system without hard links
+}
+
+}  // namespace
+
+void write_checkpoint(std::string const& file, Checkpoint const& checkpoint) {
+    Quiet const quiet;
+    std::string const draft = file + ".writing";
+    try {
+        write_unverified(draft, file, checkpoint);
+        read(draft, Arrays::only_check);
+        keep_previous(file);
+        rename_file(draft, file);
+    } catch (InputError const& error) {
+        ::unlink(draft.c_str());
+        throw ComputationError("cannot write the checkpoint (" + file + "): it does not read back, " + error.what());
+    } catch (...) {
+        ::unlink(draft.c_str());
+        throw;
+    }
+}
+
+Checkpoint read_checkpoint(std::string const& file) { return read(file, Arrays::keep); }
+
+}  // namespace catena

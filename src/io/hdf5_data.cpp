@@ -1,0 +1,186 @@
+#include "io/hdf5_data.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+namespace catena::hdf5 {
+namespace {
+
+constexpr hsize_t chunk_bytes = 1 << 18;
+constexpr hsize_t most_frames_in_chunk = 1024;
+
+Type text_type(std::size_t length, Place const& place) {
+    Type type(check(H5Tcopy(H5T_C_S1), place.file, place.doing));
+    check(H5Tset_size(type.get(), length), place.file, place.doing);
+    return type;
+}
+
+Space scalar(Place const& place) { return Space(check(H5Screate(H5S_SCALAR), place.file, place.doing)); }
+
+Space simple(Place const& place, std::span<hsize_t const> shape) {
+    return Space(check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), place.file, place.doing));
+}
+
+void put(Place const& place, std::string const& name, hid_t type, Space const& space, void const* values) {
+    Attribute attribute(
+        check(H5Acreate2(place.id, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), place.file + ", " + name, place.doing));
+    check(H5Awrite(attribute.get(), type, values), place.file + ", " + name, place.doing);
+}
+
+/// Strings of one length, one behind the other.
+std::pair<std::size_t, std::string> pack(std::span<std::string const> texts) {
+    std::size_t length = 1;
+    for (std::string const& text : texts) length = std::max(length, text.size() + 1);
+    std::string packed;
+    for (std::string const& text : texts) packed += text + std::string(length - text.size(), '\0');
+    return {length, packed};
+}
+
+/// Chunks of about 256 kB that hold whole frames where these are small and part of one where they are large.
+std::vector<hsize_t> chunk_for(std::vector<hsize_t> const& row, std::size_t element) {
+    hsize_t const row_bytes = std::max<hsize_t>(1, std::accumulate(row.begin(), row.end(), hsize_t{element}, std::multiplies<>()));
+    std::vector<hsize_t> chunk{std::clamp<hsize_t>(chunk_bytes / row_bytes, 1, most_frames_in_chunk)};
+    chunk.insert(chunk.end(), row.begin(), row.end());
+    if (!row.empty() && row_bytes > chunk_bytes) chunk[1] = std::max<hsize_t>(1, row[0] / (1 + row_bytes / chunk_bytes));
+    for (hsize_t& extent : chunk) extent = std::max<hsize_t>(extent, 1);
+    return chunk;
+}
+
+}  // namespace
+
+Group make_group(Place const& place, std::string const& name) {
+    return Group(check(H5Gcreate2(place.id, name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), place.file + ", " + name, place.doing));
+}
+
+bool has(Place const& place, std::string const& name) {
+    // H5Lexists fails where a group on the way is missing: for us that is "no" as well.
+    for (std::size_t end = name.find('/'); end != std::string::npos; end = name.find('/', end + 1))
+        if (H5Lexists(place.id, name.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+    return H5Lexists(place.id, name.c_str(), H5P_DEFAULT) > 0;
+}
+
+void put_attribute(Place const& place, std::string const& name, std::span<std::int64_t const> values) {
+    hsize_t const count = values.size();
+    put(place, name, H5T_NATIVE_INT64, simple(place, std::span(&count, 1)), values.data());
+}
+
+void put_attribute(Place const& place, std::string const& name, std::int64_t value) {
+    put(place, name, H5T_NATIVE_INT64, scalar(place), &value);
+}
+
+void put_text(Place const& place, std::string const& name, std::string_view text) {
+    std::string const terminated(text);
+    put(place, name, text_type(terminated.size() + 1, place).get(), scalar(place), terminated.c_str());
+}
+
+void put_texts(Place const& place, std::string const& name, std::span<std::string const> texts) {
+    auto const [length, packed] = pack(texts);
+    hsize_t const count = texts.size();
+    put(place, name, text_type(length, place).get(), simple(place, std::span(&count, 1)), packed.data());
+}
+
+void put_unit(Place const& place, std::string const& unit) {
+    Type type = text_type(H5T_VARIABLE, place);
+    check(H5Tset_cset(type.get(), H5T_CSET_UTF8), place.file, place.doing);
+    char const* const text = unit.c_str();
+    put(place, "unit", type.get(), scalar(place), &text);
+}
+
+std::string get_text(Place const& place, std::string const& name) {
+    if (H5Aexists(place.id, name.c_str()) <= 0) return "";
+    Attribute const attribute(H5Aopen(place.id, name.c_str(), H5P_DEFAULT));
+    Type const stored(H5Aget_type(attribute.get()));
+    if (!attribute || !stored || H5Tget_class(stored.get()) != H5T_STRING) return "";
+    if (H5Tis_variable_str(stored.get()) > 0) {
+        char* text = nullptr;
+        if (H5Aread(attribute.get(), stored.get(), &text) < 0 || text == nullptr) return "";
+        std::string const copy = text;
+        H5free_memory(text);
+        return copy;
+    }
+    std::string text(H5Tget_size(stored.get()), '\0');
+    if (H5Aread(attribute.get(), stored.get(), text.data()) < 0) return "";
+    return text.substr(0, text.find('\0'));
+}
+
+Dataset put_array(Place const& place, std::string const& name, hid_t type, void const* values, std::span<hsize_t const> shape) {
+    std::string const where = place.file + ", " + name;
+    Space const space = simple(place, shape);
+    Dataset data(check(H5Dcreate2(place.id, name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), where, place.doing));
+    bool const empty = std::any_of(shape.begin(), shape.end(), [](hsize_t extent) { return extent == 0; });
+    if (!empty) check(H5Dwrite(data.get(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), where, place.doing);
+    return data;
+}
+
+Dataset put_array(Place const& place, std::string const& name, std::span<double const> values) {
+    hsize_t const count = values.size();
+    return put_array(place, name, H5T_NATIVE_DOUBLE, values.data(), std::span(&count, 1));
+}
+
+Dataset put_array(Place const& place, std::string const& name, std::span<std::int64_t const> values) {
+    hsize_t const count = values.size();
+    return put_array(place, name, H5T_NATIVE_INT64, values.data(), std::span(&count, 1));
+}
+
+Dataset put_array(Place const& place, std::string const& name, std::span<std::string const> texts) {
+    auto const [length, packed] = pack(texts);
+    hsize_t const count = texts.size();
+    return put_array(place, name, text_type(length, place).get(), packed.data(), std::span(&count, 1));
+}
+
+Series Series::create(Place const& place, std::string const& name, hid_t type, std::vector<hsize_t> row) {
+    std::vector<hsize_t> shape{0}, limit{H5S_UNLIMITED};
+    shape.insert(shape.end(), row.begin(), row.end());
+    limit.insert(limit.end(), row.begin(), row.end());
+    auto const chunk = chunk_for(row, H5Tget_size(type));
+    Space const space(check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()), place.file, place.doing));
+    Properties const properties(check(H5Pcreate(H5P_DATASET_CREATE), place.file, place.doing));
+    check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), place.file, place.doing);
+    Series series;
+    series.type_ = type;
+    series.row_ = std::move(row);
+    series.data_ = Dataset(check(H5Dcreate2(place.id, name.c_str(), type, space.get(), H5P_DEFAULT, properties.get(), H5P_DEFAULT),
+                                 place.file + ", " + name, place.doing));
+    return series;
+}
+
+Series Series::open(Place const& place, std::string const& name, hid_t type) {
+    Series series;
+    series.type_ = type;
+    series.data_ = Dataset(check(H5Dopen2(place.id, name.c_str(), H5P_DEFAULT), place.file + ", " + name, place.doing));
+    Space const space(check(H5Dget_space(series.data_.get()), place.file, place.doing));
+    std::vector<hsize_t> shape(static_cast<std::size_t>(std::max(1, H5Sget_simple_extent_ndims(space.get()))));
+    check(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr), place.file, place.doing);
+    series.row_.assign(shape.begin() + 1, shape.end());
+    return series;
+}
+
+void Series::put(Place const& place, hsize_t frame, void const* values) {
+    std::vector<hsize_t> shape{frame + 1}, start{frame}, count{1};
+    shape.insert(shape.end(), row_.begin(), row_.end());
+    start.resize(shape.size(), 0);
+    count.insert(count.end(), row_.begin(), row_.end());
+    check(H5Dset_extent(data_.get(), shape.data()), place.file, place.doing);
+    Space const file_space(check(H5Dget_space(data_.get()), place.file, place.doing));
+    check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), place.file, place.doing);
+    Space const memory = simple(place, count);
+    check(H5Dwrite(data_.get(), type_, memory.get(), file_space.get(), H5P_DEFAULT, values), place.file, place.doing);
+}
+
+void Series::cut(Place const& place, hsize_t frames) {
+    std::vector<hsize_t> shape{frames};
+    shape.insert(shape.end(), row_.begin(), row_.end());
+    check(H5Dset_extent(data_.get(), shape.data()), place.file, place.doing);
+}
+
+hsize_t Series::frames(Place const& place) const {
+    Space const space(check(H5Dget_space(data_.get()), place.file, place.doing));
+    std::vector<hsize_t> shape(row_.size() + 1);
+    check(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr), place.file, place.doing);
+    return shape[0];
+}
+
+void Series::close(Place const& place) { check(data_.close(), place.file, place.doing); }
+
+}  // namespace catena::hdf5

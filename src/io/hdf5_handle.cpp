@@ -1,0 +1,62 @@
+#include "io/hdf5_handle.hpp"
+
+#include "error.hpp"
+#include "io/output.hpp"
+#include "io/output_file.hpp"
+
+namespace catena::hdf5 {
+namespace {
+
+/// HDF5's drivers quote the system between these marks.
+constexpr char const* system_words = "error message = '";
+
+herr_t innermost_first(unsigned, H5E_error2_t const* error, void* found) {
+    auto& text = *static_cast<std::string*>(found);
+    std::string const description = error->desc != nullptr ? error->desc : "";
+    auto const begin = description.find(system_words);
+    if (begin != std::string::npos) {
+        auto const from = begin + std::string(system_words).size();
+        text = description.substr(from, description.find('\'', from) - from);
+        return 1;
+    }
+    if (text.empty()) text = description;
+    return 0;
+}
+
+}  // namespace
+
+Quiet::Quiet() {
+    // At exit HDF5 would try once more to close files that a full disk kept open, and crash. All that is ours is closed by then.
+    [[maybe_unused]] static herr_t const no_clean_up_at_exit = H5dont_atexit();
+    H5Eget_auto2(H5E_DEFAULT, &function_, &data_);
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+Quiet::~Quiet() { H5Eset_auto2(H5E_DEFAULT, function_, data_); }
+
+std::string cause() {
+    std::string text;
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, innermost_first, &text);
+    return text.empty() ? "HDF5 gives no reason" : text;
+}
+
+void fail(std::string const& file, std::string const& doing) { throw ComputationError("cannot " + doing + " (" + file + "): " + cause()); }
+
+void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) {
+    check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);
+    void* descriptor = nullptr;
+    check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &descriptor), file, doing);
+    sync_to_disk(*static_cast<int const*>(descriptor), file);
+}
+
+}  // namespace catena::hdf5
+
+namespace catena {
+
+std::string hdf5_version() {
+    unsigned major = 0, minor = 0, release = 0;
+    H5get_libversion(&major, &minor, &release);
+    return "HDF5 " + std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(release);
+}
+
+}  // namespace catena

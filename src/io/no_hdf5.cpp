@@ -1,0 +1,22 @@
+// Stands in for the HDF5 files in a build without HDF5; topology, tables, texts and reports are written all the same.
+#include "error.hpp"
+#include "io/output.hpp"
+
+namespace catena {
+namespace {
+
+InputError without(std::string const& use) { return built_without("HDF5", use, "install HDF5 (libhdf5-dev) and build again"); }
+
+}  // namespace
+
+std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool, bool, std::optional<std::int64_t>) {
+    throw without("trajectory " + file);
+}
+
+void write_checkpoint(std::string const& file, Checkpoint const&) { throw without("checkpoint " + file); }
+
+Checkpoint read_checkpoint(std::string const& file) { throw without("checkpoint " + file); }
+
+std::string hdf5_version() { return "none"; }
+
+}  // namespace catena

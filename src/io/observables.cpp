@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "error.hpp"
+#include "io/observables_table.hpp"
+#include "io/output.hpp"
+#include "io/output_file.hpp"
+
+namespace catena {
+namespace {
+
+std::string header_of(std::vector<std::string> const& columns, std::string const& time_unit) {
+    std::string header = "step,time [" + time_unit + "]";
+    for (std::string const& column : columns) header += "," + column;
+    return header + "\n";
+}
+
+std::optional<std::int64_t> step_of(std::string_view line) {
+    std::int64_t step = 0;
+    auto const [end, error] = std::from_chars(line.data(), line.data() + line.size(), step);
+    if (error != std::errc() || end == line.data() + line.size() || *end != ',') return std::nullopt;
+    return step;
+}
+
+/// How many bytes of an earlier run's table stay: its header and the whole lines up to `after_step`.
+std::int64_t kept_size(std::string const& file, std::string const& header, std::int64_t after_step) {
+    std::string const text = read_text_file(file);
+    if (!text.starts_with(header))
+        throw InputError("the table of observables has other columns than this run", file, "restart with the same observables");
+    std::size_t kept = header.size();
+    for (std::size_t line = 2; kept < text.size(); ++line) {
+        std::size_t const end = text.find('\n', kept);
+        if (end == std::string::npos) break;   // a run that was killed while it wrote
+        auto const step = step_of(std::string_view(text).substr(kept, end - kept));
+        if (!step) throw InputError("not a record of observables", file + ", line " + std::to_string(line), "mend or remove the line");
+        if (*step > after_step) break;
+        kept = end + 1;
+    }
+    return static_cast<std::int64_t>(kept);
+}
+
+std::vector<std::string> split(std::string_view line) {
+    std::vector<std::string> cells;
+    for (std::size_t begin = 0; begin <= line.size();) {
+        std::size_t const end = std::min(line.find(',', begin), line.size());
+        cells.emplace_back(line.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return cells;
+}
+
+double number(std::string const& cell, std::string const& where) {
+    double value = 0;
+    auto const [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    if (error == std::errc::result_out_of_range) return std::strtod(cell.c_str(), nullptr);
+    if (error != std::errc() || end != cell.data() + cell.size()) throw InputError("not a number: '" + cell + "'", where, "mend the table");
+    return value;
+}
+
+}  // namespace
+
+struct ObservablesWriter::File {
+    OutputFile out;
+    std::size_t columns;
+};
+
+ObservablesWriter::ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<std::int64_t> after_step,
+                                     std::string const& time_unit) {
+    std::string const header = header_of(columns, time_unit);
+    OutputFile out = after_step ? OutputFile::append(file, kept_size(file, header, *after_step)) : OutputFile::create(file);
+    if (!after_step) out.write(header);
+    out.sync();
+    file_ = std::make_unique<File>(File{std::move(out), columns.size()});
+}
+
+ObservablesWriter::~ObservablesWriter() = default;
+
+void ObservablesWriter::write(std::int64_t step, double time, std::vector<double> const& values) {
+    if (values.size() != file_->columns)
+        throw ComputationError(fmt::format("cannot write the observables ({}, step {}): {} values for {} columns", file_->out.name(), step,
+                                           values.size(), file_->columns));
+    std::string line = fmt::format("{},{:.17g}", step, time);
+    for (double const value : values) line += fmt::format(",{:.17g}", value);
+    file_->out.write(line + "\n");
+    file_->out.flush();
+}
+
+void ObservablesWriter::flush() { file_->out.sync(); }
+
+void ObservablesWriter::close() {
+    file_->out.sync();
+    file_->out.close();
+}
+
+ObservablesTable read_observables(std::string const& file) {
+    std::string const text = read_text_file(file);
+    ObservablesTable table;
+    std::size_t line = 0;
+    for (std::size_t begin = 0; begin < text.size(); ++line) {
+        std::size_t const end = text.find('\n', begin);
+        if (end == std::string::npos) break;
+        auto const cells = split(std::string_view(text).substr(begin, end - begin));
+        std::string const where = file + ", line " + std::to_string(line + 1);
+        begin = end + 1;
+        if (line == 0) {
+            if (cells.size() < 2 || cells[0] != "step") throw InputError("not a table of observables", file, "name the table of a run");
+            table.names = cells;
+            table.columns.resize(cells.size());
+            continue;
+        }
+        if (cells.size() != table.names.size())
+            throw InputError(fmt::format("{} cells for {} columns", cells.size(), table.names.size()), where, "mend the table");
+        for (std::size_t k = 0; k < cells.size(); ++k) table.columns[k].push_back(number(cells[k], where));
+    }
+    if (table.names.empty()) throw InputError("an empty table of observables", file, "name the table of a run");
+    return table;
+}
+
+}  // namespace catena

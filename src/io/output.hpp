@@ -1,0 +1,119 @@
+// The files of a run. Only rank 0 writes; it is handed gathered frames. Every writer checks each write, flush and close
+// and throws ComputationError naming file and cause (a full disk included); bad existing files give InputError.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dca/linear.hpp"
+#include "dca/rotation.hpp"
+
+namespace catena {
+
+/// What a trajectory shows: one site a bead (its position) or a rigid body (its centre of mass), chains one after the other.
+struct Topology {
+    struct Chain {
+        std::string name;
+        std::int64_t first = 0, count = 0;   // sites
+        bool beads = true;
+        bool ring = false;
+    };
+    std::string title;
+    std::vector<Chain> chains;
+    std::vector<std::string> residue;        // three-letter name of each site; bodies: "BDY"
+    std::vector<double> mass;
+    std::optional<Vec3> box;
+    bool si = false;                          // units stay the user's: no unit attributes are written but "m", "s", ...
+};
+
+struct Frame {
+    std::int64_t step = 0;
+    double time = 0;
+    std::vector<Vec3> positions;              // W, unwrapped
+    std::vector<Vec3> velocities;             // empty: not written
+    std::vector<Quat> orientations;           // of bodies, W; empty when the scene has beads alone
+    std::vector<Vector<double, 6>> joint_forces;   // [torque, force] on each site at its inboard joint, W; empty: not written
+};
+
+/// H5MD 1.1 file for MDAnalysis and others.
+class TrajectoryWriter {
+  public:
+    virtual ~TrajectoryWriter() = default;
+    virtual void write(Frame const&) = 0;
+    /// All frames so far are on disk when this returns.
+    virtual void flush() = 0;
+    virtual void close() = 0;
+};
+/// Makes `file`; with `after_step`, opens an existing one and cuts the frames later than that step. "built without HDF5" where it is absent.
+std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool velocities, bool joint_forces,
+                                                  std::optional<std::int64_t> after_step);
+
+/// PDB; beyond 99,999 sites mmCIF beside it as well. Returns the paths written.
+std::vector<std::string> write_topology(std::string const& folder, Topology const&, Frame const& first);
+
+/// Everything that decides how a run goes on, in global order; doubles bit for bit.
+struct Checkpoint {
+    std::int64_t step = 0;
+    double time = 0;
+    std::string scene_hash;
+    std::map<std::string, std::string> notes;              // e.g. tree table version, backend, catena version
+    std::map<std::string, std::int64_t> integers;          // e.g. fixed number of projection sweeps
+    std::map<std::string, std::vector<double>> arrays;
+};
+/// Writes to a temporary name, fsyncs, reopens and verifies a checksum, then renames; the checkpoint before is kept as `<name>.previous.h5`.
+void write_checkpoint(std::string const& file, Checkpoint const&);
+/// InputError for a file that is missing, not a checkpoint, cut short or altered (checksum).
+Checkpoint read_checkpoint(std::string const& file);
+
+/// observables.csv: a header of names with units, then one line a record, %.17g.
+class ObservablesWriter {
+  public:
+    /// Column names as in "total_energy [kJ/mol]". With `after_step`, keeps the lines of an existing file up to that step and appends.
+    /// The first two columns, "step" and "time [<time_unit>]", are the writer's own. InputError for a file of other columns.
+    ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<std::int64_t> after_step,
+                      std::string const& time_unit = "ps");
+    ~ObservablesWriter();
+    void write(std::int64_t step, double time, std::vector<double> const& values);
+    void flush();
+    void close();
+
+  private:
+    struct File;
+    std::unique_ptr<File> file_;
+};
+
+/// report.html: one self-contained page (no network): title, the summary as tables, a line chart (inline SVG) for each observable against time,
+/// a bar picture of the timeline of one step. Reads observables.csv, summary.json and timeline.json in `folder`.
+void write_run_report(std::string const& folder);
+
+/// Writes text to a temporary name beside `file`, fsyncs and renames.
+void write_text_file(std::string const& file, std::string const& text);
+
+/// Progress of long work on a terminal or log: rate and time left. Silent when `quiet`; on a terminal one line that is redrawn, else a line now and then.
+class Progress {
+  public:
+    /// `time_step` in ps gives the rate in ns/day (left out for `si`).
+    Progress(bool quiet, std::int64_t first_step, std::int64_t last_step, double time_step, bool si, std::FILE* out = stderr);
+    void update(std::int64_t step);
+    void finish();
+    /// Steps a second since the start.
+    double rate() const;
+    /// As it is shown, without the bar.
+    std::string line(bool last) const;
+
+  private:
+    void show(bool last) const;
+    bool quiet_, si_, terminal_;
+    std::FILE* out_;
+    std::int64_t first_, last_, now_;
+    double time_step_, start_, last_shown_, interval_;
+};
+
+std::string hdf5_version();   // "HDF5 1.10.8" or "none"
+
+}  // namespace catena

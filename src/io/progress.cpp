@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "io/output.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double seconds_between_redraws = 0.2;
+constexpr double first_interval = 1, longest_interval = 30;   // seconds, of a log
+constexpr int bar_width = 28;
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+std::string duration(double seconds) {
+    if (!std::isfinite(seconds) || seconds > 1e8) return "?";
+    auto const whole = static_cast<std::int64_t>(std::llround(seconds));
+    if (whole >= 86400) return fmt::format("{} d {:02} h", whole / 86400, whole / 3600 % 24);
+    if (whole >= 3600) return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+    return fmt::format("{}:{:02}", whole / 60, whole % 60);
+}
+
+std::string bar(double fraction) {
+    int const filled = static_cast<int>(fraction * bar_width);
+    return "[" + std::string(static_cast<std::size_t>(filled), '=') + std::string(static_cast<std::size_t>(bar_width - filled), ' ') + "]";
+}
+
+std::size_t width_of(int descriptor) {
+    winsize size{};
+    return ::ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+}  // namespace
+
+Progress::Progress(bool quiet, std::int64_t first_step, std::int64_t last_step, double time_step, bool si, std::FILE* out)
+    : quiet_(quiet),
+      si_(si),
+      terminal_(::isatty(::fileno(out)) == 1),
+      out_(out),
+      first_(first_step),
+      last_(last_step),
+      now_(first_step),
+      time_step_(time_step),
+      start_(now()),
+      last_shown_(start_),
+      interval_(terminal_ ? seconds_between_redraws : first_interval) {}
+
+void Progress::update(std::int64_t step) {
+    now_ = step;
+    if (quiet_) return;
+    double const moment = now();
+    if (moment - last_shown_ < interval_) return;
+    last_shown_ = moment;
+    if (!terminal_) interval_ = std::min(2 * interval_, longest_interval);
+    show(false);
+}
+
+void Progress::finish() {
+    if (!quiet_) show(true);
+}
+
+double Progress::rate() const {
+    double const elapsed = now() - start_;
+    return elapsed > 0 ? static_cast<double>(now_ - first_) / elapsed : 0;
+}
+
+std::string Progress::line(bool last) const {
+    double const steps = static_cast<double>(last_ - first_), done = static_cast<double>(now_ - first_), speed = rate();
+    double const fraction = steps > 0 ? std::clamp(done / steps, 0.0, 1.0) : 1;
+    std::string text = fmt::format("{:5.1f} %  step {} of {}  {:.4g} steps/s", 100 * fraction, now_, last_, speed);
+    if (!si_) text += fmt::format("  {:.4g} ns/day", speed * time_step_ * 86.4);
+    text += last ? "  took " + duration(now() - start_) : "  " + duration((steps - done) / speed) + " left";
+    return text;
+}
+
+void Progress::show(bool last) const {
+    std::string text = line(last);
+    if (terminal_) {
+        double const steps = static_cast<double>(last_ - first_);
+        double const fraction = steps > 0 ? std::clamp(static_cast<double>(now_ - first_) / steps, 0.0, 1.0) : 1;
+        std::size_t const width = width_of(::fileno(out_));
+        if (text.size() + bar_width + 3 < width) text = bar(fraction) + " " + text;
+        text = "\r" + text.substr(0, width - 1) + "\x1b[K";
+    }
+    if (!terminal_ || last) text += "\n";
+    std::fputs(text.c_str(), out_);
+    std::fflush(out_);
+}
+
+}  // namespace catena

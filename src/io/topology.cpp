@@ -1,0 +1,164 @@
+// topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) and, where its columns are too narrow, topology.cif.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "io/output.hpp"
+#include "io/output_file.hpp"
+
+namespace catena {
+namespace {
+
+constexpr std::int64_t most_pdb_serials = 99999;
+constexpr std::string_view chain_letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789";
+
+/// Printable ASCII, which is all that these formats hold.
+std::string plain(std::string_view text) {
+    std::string copy(text);
+    for (char& c : copy)
+        if (c < ' ' || c > '~') c = '?';
+    return copy;
+}
+
+/// Serial numbers as they are up to 99,999, then hybrid-36 (http://cci.lbl.gov/hybrid_36): A0000, A0001, ..., ZZZZZ, a0000, ...
+std::string serial(std::int64_t number) {
+    constexpr std::int64_t letters = 26 * 36 * 36 * 36 * 36;
+    if (number <= most_pdb_serials) return fmt::format("{:5}", number);
+    std::int64_t rest = number - most_pdb_serials - 1;
+    bool const lower = rest >= letters;
+    rest = rest % letters + 10 * 36 * 36 * 36 * 36;
+    std::string text(5, '0');
+    for (int place = 4; place >= 0; --place, rest /= 36) {
+        auto const digit = static_cast<char>(rest % 36);
+        text[static_cast<std::size_t>(place)] = static_cast<char>(digit < 10 ? '0' + digit : (lower ? 'a' : 'A') + digit - 10);
+    }
+    return text;
+}
+
+/// A number in `width` columns with up to 3 decimals, fewer where it is large; blank-padded 0.000 where even its integer part is too wide.
+std::string fixed(double value, int width) {
+    for (int decimals = 3; decimals >= 0; --decimals) {
+        std::string const text = fmt::format("{:{}.{}f}", value, width, decimals);
+        if (text.size() == static_cast<std::size_t>(width)) return text;
+    }
+    return fmt::format("{:{}.3f}", 0.0, width);
+}
+
+/// Angstrom for each unit of the scene: 10 for nm; with `units: si` the power of ten that makes a typical link 1 to 10 Angstrom long.
+double angstrom_per_unit(Topology const& topology, Frame const& first) {
+    if (!topology.si) return 10;
+    std::vector<double> links;
+    for (Topology::Chain const& chain : topology.chains)
+        for (std::int64_t k = 1; k < chain.count && links.size() < 10000; ++k) {
+            auto const site = static_cast<std::size_t>(chain.first + k);
+            links.push_back(norm(first.positions[site] - first.positions[site - 1]));
+        }
+    if (links.empty()) return 1;
+    auto const middle = links.begin() + static_cast<std::ptrdiff_t>(links.size() / 2);
+    std::nth_element(links.begin(), middle, links.end());
+    return *middle > 0 && std::isfinite(*middle) ? std::pow(10.0, -std::floor(std::log10(*middle))) : 1;
+}
+
+std::string residue_of(Topology const& topology, std::size_t site) {
+    std::string const name = site < topology.residue.size() && !topology.residue[site].empty() ? plain(topology.residue[site]) : "UNK";
+    return name.substr(0, 3);
+}
+
+void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
+    std::string const title = plain(topology.title);
+    for (std::size_t at = 0, part = 1; at < title.size(); at += 68, ++part)
+        out.write(part == 1 ? fmt::format("TITLE     {}\n", title.substr(at, 68)) : fmt::format("TITLE   {:2} {}\n", part % 100, title.substr(at, 68)));
+    out.write("REMARK   1 WRITTEN BY CATENA: ONE SITE A BEAD OR RIGID BODY (BDY, CENTRE OF MASS)\n");
+    if (topology.si) out.write(fmt::format("REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR {:.0E} M\n", 1 / scale));
+    if (topology.box) {
+        Vec3 const edges = scale * *topology.box;
+        out.write(fmt::format("CRYST1{}{}{}  90.00  90.00  90.00 P 1           1\n", fixed(edges[0], 9), fixed(edges[1], 9), fixed(edges[2], 9)));
+    }
+}
+
+void write_bonds(AtomicFile& out, Topology const& topology) {
+    for (Topology::Chain const& chain : topology.chains)
+        for (std::int64_t k = 0; k < chain.count; ++k) {
+            bool const ring = chain.ring && chain.count > 2;
+            std::string neighbours;
+            if (k > 0) neighbours += serial(chain.first + k);
+            if (k == 0 && ring) neighbours += serial(chain.first + chain.count);
+            if (k + 1 < chain.count) neighbours += serial(chain.first + k + 2);
+            if (k + 1 == chain.count && ring) neighbours += serial(chain.first + 1);
+            if (!neighbours.empty()) out.write("CONECT" + serial(chain.first + k + 1) + neighbours + "\n");
+        }
+}
+
+void write_pdb(std::string const& file, Topology const& topology, Frame const& first) {
+    AtomicFile out(file);
+    double const scale = angstrom_per_unit(topology, first);
+    write_remarks(out, topology, scale);
+    for (std::size_t c = 0; c < topology.chains.size(); ++c) {
+        Topology::Chain const& chain = topology.chains[c];
+        for (std::int64_t k = 0; k < chain.count; ++k) {
+            auto const site = static_cast<std::size_t>(chain.first + k);
+            Vec3 const x = scale * first.positions[site];
+            out.write(fmt::format("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n", serial(chain.first + k + 1),
+                                  residue_of(topology, site), chain_letters[c % chain_letters.size()], (k + 1) % 10000, fixed(x[0], 8),
+                                  fixed(x[1], 8), fixed(x[2], 8)));
+        }
+        out.write("TER\n");
+    }
+    if (static_cast<std::int64_t>(first.positions.size()) <= most_pdb_serials) write_bonds(out, topology);
+    out.write("END\n");
+    out.publish();
+}
+
+/// A, B, ..., Z, AA, AB, ...: mmCIF's chain names have no width.
+std::string chain_name(std::size_t number) {
+    std::string name;
+    for (++number; number > 0; number = (number - 1) / 26) name.insert(name.begin(), static_cast<char>('A' + (number - 1) % 26));
+    return name;
+}
+
+void write_cif(std::string const& file, Topology const& topology, Frame const& first) {
+    AtomicFile out(file);
+    double const scale = angstrom_per_unit(topology, first);
+    std::string title = plain(topology.title);
+    std::replace(title.begin(), title.end(), '"', '\'');
+    out.write("data_catena\n#\n_struct.entry_id catena\n_struct.title \"" + title + "\"\n#\n");
+    if (topology.box) {
+        Vec3 const edges = scale * *topology.box;
+        out.write(fmt::format("_cell.length_a {:.6g}\n_cell.length_b {:.6g}\n_cell.length_c {:.6g}\n_cell.angle_alpha 90\n_cell.angle_beta 90\n"
+                              "_cell.angle_gamma 90\n_symmetry.space_group_name_H-M \"P 1\"\n#\n",
+                              edges[0], edges[1], edges[2]));
+    }
+    out.write("loop_\n");
+    for (char const* column : {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id",
+                               "label_entity_id", "label_seq_id", "pdbx_PDB_ins_code", "Cartn_x", "Cartn_y", "Cartn_z", "occupancy",
+                               "B_iso_or_equiv", "auth_seq_id", "auth_asym_id", "pdbx_PDB_model_num"})
+        out.write(fmt::format("_atom_site.{}\n", column));
+    for (std::size_t c = 0; c < topology.chains.size(); ++c) {
+        Topology::Chain const& chain = topology.chains[c];
+        std::string const name = chain_name(c);
+        for (std::int64_t k = 0; k < chain.count; ++k) {
+            auto const site = static_cast<std::size_t>(chain.first + k);
+            Vec3 const x = scale * first.positions[site];
+            out.write(fmt::format("ATOM {} C CA . {} {} 1 {} ? {:.3f} {:.3f} {:.3f} 1.00 0.00 {} {} 1\n", site + 1, residue_of(topology, site), name,
+                                  k + 1, x[0], x[1], x[2], k + 1, name));
+        }
+    }
+    out.write("#\n");
+    out.publish();
+}
+
+}  // namespace
+
+std::vector<std::string> write_topology(std::string const& folder, Topology const& topology, Frame const& first) {
+    std::filesystem::path const in(folder);
+    std::vector<std::string> written{(in / "topology.pdb").string()};
+    write_pdb(written[0], topology, first);
+    if (static_cast<std::int64_t>(first.positions.size()) <= most_pdb_serials) return written;
+    written.push_back((in / "topology.cif").string());
+    write_cif(written[1], topology, first);
+    return written;
+}
+
+}  // namespace catena

@@ -1,0 +1,164 @@
+// The writer of trajectory.h5md; what lies where in the file: trajectory_layout.hpp.
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "error.hpp"
+#include "io/hdf5_data.hpp"
+#include "io/output.hpp"
+#include "io/trajectory_layout.hpp"
+
+namespace catena {
+namespace {
+
+using namespace hdf5;
+
+std::string const writing = "write the trajectory";
+constexpr double seconds_between_flushes = 10;
+
+static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double), "frames are handed to HDF5 as they lie");
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Metadata stay in memory between flushes: a killed run leaves the file as its last flush left it, whole.
+Properties keep_metadata_until_flush(std::string const& file) {
+    Properties access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
+    H5AC_cache_config_t cache;
+    cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    check(H5Pget_mdc_config(access.get(), &cache), file, writing);
+    cache.evictions_enabled = false;
+    cache.incr_mode = H5C_incr__off;
+    cache.flash_incr_mode = H5C_flash_incr__off;
+    cache.decr_mode = H5C_decr__off;
+    check(H5Pset_mdc_config(access.get(), &cache), file, writing);
+    return access;
+}
+
+class H5mdWriter final : public TrajectoryWriter {
+  public:
+    H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces, std::optional<std::int64_t> after_step)
+        : name_(std::move(file)), contents_(contents_of(topology, velocities, joint_forces)), box_(topology.box.value_or(Vec3::zero())) {
+        Quiet const quiet;
+        if (after_step)
+            open(*after_step);
+        else
+            create(topology);
+        flush();
+    }
+
+    ~H5mdWriter() override {
+        Quiet const quiet;
+        for (Series* series : series_.present()) *series = Series();
+    }
+
+    void write(Frame const& frame) override {
+        Quiet const quiet;
+        require(frame);
+        series_.position.put(place(), frames_, frame.positions.data());
+        if (contents_.velocities) series_.velocity.put(place(), frames_, frame.velocities.data());
+        if (contents_.periodic) series_.edges.put(place(), frames_, box_.data);
+        if (!contents_.bodies.empty()) series_.orientation.put(place(), frames_, frame.orientations.data());
+        if (contents_.joint_forces) write_joint_forces(frame);
+        series_.time.put(place(), frames_, &frame.time);
+        series_.step.put(place(), frames_, &frame.step);
+        ++frames_;
+        last_step_ = frame.step;
+        if (now() - flushed_ < seconds_between_flushes) return;
+        check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
+        flushed_ = now();
+    }
+
+    void flush() override {
+        Quiet const quiet;
+        flush_to_disk(file_, name_, writing);
+        flushed_ = now();
+    }
+
+    void close() override {
+        if (!file_) return;
+        // A full disk shows at the flush; H5Fclose reports success all the same.
+        flush();
+        Quiet const quiet;
+        for (Series* series : series_.present()) series->close(place());
+        check(file_.close(), name_, writing);
+    }
+
+  private:
+    Place place() const { return {file_.get(), name_, writing}; }
+
+    void create(Topology const& topology) {
+        Properties const access = keep_metadata_until_flush(name_);
+        file_ = File(check(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), name_, writing));
+        series_ = create_trajectory(place(), topology, contents_);
+    }
+
+    void open(std::int64_t after_step) {
+        if (!std::filesystem::exists(name_)) throw InputError("no trajectory to go on with", name_, "restart in the folder that holds it");
+        Properties const access = keep_metadata_until_flush(name_);
+        file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
+        if (!file_) throw InputError("the trajectory cannot be opened, " + cause(), name_, "close it elsewhere, or start anew with --overwrite");
+        std::vector<std::int64_t> steps;
+        try {
+            series_ = open_trajectory(place(), contents_);
+            steps = read_steps();
+        } catch (ComputationError const& error) {
+            throw InputError("the trajectory is damaged, " + std::string(error.what()), name_, "start anew with --overwrite");
+        }
+        auto const kept = std::find_if(steps.begin(), steps.end(), [&](std::int64_t step) { return step > after_step; });
+        frames_ = static_cast<hsize_t>(kept - steps.begin());
+        if (frames_ > 0) last_step_ = steps[frames_ - 1];
+        for (Series* series : series_.present()) series->cut(place(), frames_);
+    }
+
+    /// The steps of the frames that are whole.
+    std::vector<std::int64_t> read_steps() {
+        hsize_t whole = series_.step.frames(place());
+        std::vector<std::int64_t> steps(whole);
+        if (whole > 0)
+            check(H5Dread(series_.step.get(), H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, steps.data()), name_, "read the steps");
+        for (Series* series : series_.present()) whole = std::min(whole, series->frames(place()));
+        steps.resize(whole);
+        return steps;
+    }
+
+    void require(Frame const& frame) const {
+        auto const fits = [](std::size_t size, bool wanted, std::size_t count) { return !wanted || size == count; };
+        if (!file_) throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
+        if (frame.positions.size() != contents_.sites || !fits(frame.velocities.size(), contents_.velocities, contents_.sites) ||
+            !fits(frame.orientations.size(), true, contents_.bodies.size()) ||
+            !fits(frame.joint_forces.size(), contents_.joint_forces, contents_.sites))
+            throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(frame.step) +
+                                   "): the frame's arrays do not fit the topology");
+        if (frames_ > 0 && frame.step <= last_step_)
+            throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(frame.step) +
+                                   "): its last frame is already of step " + std::to_string(last_step_));
+    }
+
+    void write_joint_forces(Frame const& frame) {
+        std::vector<double> torque, force;
+        for (Vector<double, 6> const& wrench : frame.joint_forces) {
+            torque.insert(torque.end(), wrench.data, wrench.data + 3);
+            force.insert(force.end(), wrench.data + 3, wrench.data + 6);
+        }
+        series_.torque.put(place(), frames_, torque.data());
+        series_.force.put(place(), frames_, force.data());
+    }
+
+    std::string name_;
+    TrajectoryContents contents_;
+    Vec3 box_;
+    File file_;
+    TrajectorySeries series_;
+    hsize_t frames_ = 0;
+    std::int64_t last_step_ = 0;
+    double flushed_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const& topology, bool velocities, bool joint_forces,
+                                                  std::optional<std::int64_t> after_step) {
+    return std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, after_step);
+}
+
+}  // namespace catena

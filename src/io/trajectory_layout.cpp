@@ -1,0 +1,206 @@
+#include "io/trajectory_layout.hpp"
+
+#include <pwd.h>
+#include <unistd.h>
+
+#include <array>
+#include <numeric>
+
+#include "error.hpp"
+
+namespace catena::hdf5 {
+namespace {
+
+constexpr std::int64_t format_version = 1;
+std::string const position_group = "particles/trajectory/position";
+
+struct Units {
+    std::string length, time, velocity, mass, torque, force;
+};
+
+Units units_of(bool si) {
+    if (si) return {"m", "s", "m s-1", "kg", "N m", "N"};
+    return {"nm", "ps", "nm ps-1", "u", "kJ mol-1", "kJ mol-1 nm-1"};
+}
+
+std::string author() {
+    passwd const* const user = ::getpwuid(::geteuid());
+    return user != nullptr ? user->pw_name : "unknown";
+}
+
+/// Makes the objects of a new file.
+class Builder {
+  public:
+    Builder(Place const& root, Topology const& topology, TrajectoryContents const& contents)
+        : root_(root), topology_(topology), contents_(contents), units_(units_of(contents.si)) {}
+
+    TrajectorySeries build() {
+        describe_file();
+        Group const particles = make_group(root_, "particles");
+        Group const sites = make_group(at(particles), "trajectory");
+        add_element(at(sites), "position", {contents_.sites, 3}, units_.length, series_.position, "W, unwrapped");
+        if (contents_.velocities) add_element(at(sites), "velocity", {contents_.sites, 3}, units_.velocity, series_.velocity, "W");
+        add_box(at(sites));
+        put_unit(at(put_array(at(sites), "mass", topology_.mass)), units_.mass);
+        std::vector<std::int64_t> id(contents_.sites);
+        std::iota(id.begin(), id.end(), 1);
+        put_array(at(sites), "id", id);
+        add_own_group();
+        return std::move(series_);
+    }
+
+  private:
+    template <class Owner>
+    Place at(Owner const& owner) const {
+        return {owner.get(), root_.file, root_.doing};
+    }
+
+    void describe_file() {
+        Group const h5md = make_group(root_, "h5md");
+        put_attribute(at(h5md), "version", std::array<std::int64_t, 2>{1, 1});
+        Group const who = make_group(at(h5md), "author");
+        put_text(at(who), "name", author());
+        Group const creator = make_group(at(h5md), "creator");
+        put_text(at(creator), "name", "catena");
+        put_text(at(creator), "version", CATENA_VERSION);
+        Group const modules = make_group(at(h5md), "modules");
+        Group const units = make_group(at(modules), "units");
+        put_attribute(at(units), "version", std::array<std::int64_t, 2>{1, 0});
+        put_text(at(units), "system", "SI");
+    }
+
+    void add_own_group() {
+        Group const own = make_group(root_, "catena");
+        put_attribute(at(own), "format_version", format_version);
+        put_text(at(own), "title", topology_.title);
+        describe_chains(at(own));
+        if (!contents_.bodies.empty()) {
+            auto const bodies = static_cast<hsize_t>(contents_.bodies.size());
+            Group const element = add_element(at(own), "orientation", {bodies, 4}, "", series_.orientation, "w x y z, body axes to W");
+            put_array(at(element), "site", H5T_NATIVE_HSIZE, contents_.bodies.data(), std::span(&bodies, 1));
+        }
+        if (!contents_.joint_forces) return;
+        std::string const frame = "W, on each site at its inboard joint";
+        add_element(at(own), "joint_torque", {contents_.sites, 3}, units_.torque, series_.torque, frame);
+        add_element(at(own), "joint_force", {contents_.sites, 3}, units_.force, series_.force, frame);
+    }
+
+    void describe_chains(Place const& own) {
+        Group const chains = make_group(own, "chains");
+        std::vector<std::int64_t> first, count, beads, ring;
+        std::vector<std::string> name;
+        for (Topology::Chain const& chain : topology_.chains) {
+            first.push_back(chain.first);
+            count.push_back(chain.count);
+            beads.push_back(chain.beads);
+            ring.push_back(chain.ring);
+            name.push_back(chain.name);
+        }
+        put_array(at(chains), "first", first);
+        put_array(at(chains), "count", count);
+        put_array(at(chains), "beads", beads);
+        put_array(at(chains), "ring", ring);
+        put_array(at(chains), "name", name);
+    }
+
+    /// A group {step, time, value}. The first one makes step and time, the others link them.
+    Group add_element(Place const& parent, std::string const& name, std::vector<hsize_t> row, std::string const& unit, Series& value,
+                      std::string const& frame) {
+        Group element = make_group(parent, name);
+        if (!series_.step) {
+            series_.step = Series::create(at(element), "step", H5T_NATIVE_INT64, {});
+            series_.time = Series::create(at(element), "time", H5T_NATIVE_DOUBLE, {});
+            put_unit(at(series_.time), units_.time);
+        } else {
+            for (std::string const shared : {"step", "time"})
+                check(H5Lcreate_hard(root_.id, (position_group + "/" + shared).c_str(), element.get(), shared.c_str(), H5P_DEFAULT,
+                                     H5P_DEFAULT),
+                      root_.file, root_.doing);
+        }
+        value = Series::create(at(element), "value", H5T_NATIVE_DOUBLE, std::move(row));
+        if (!unit.empty()) put_unit(at(value), unit);
+        if (!frame.empty()) put_text(at(value), "frame", frame);
+        return element;
+    }
+
+    void add_box(Place const& sites) {
+        Group const box = make_group(sites, "box");
+        put_attribute(at(box), "dimension", std::int64_t{3});
+        put_texts(at(box), "boundary", std::vector<std::string>(3, contents_.periodic ? "periodic" : "none"));
+        if (contents_.periodic) add_element(at(box), "edges", {3}, units_.length, series_.edges, "");
+    }
+
+    Place const& root_;
+    Topology const& topology_;
+    TrajectoryContents const& contents_;
+    Units units_;
+    TrajectorySeries series_;
+};
+
+[[noreturn]] void refuse(Place const& root, std::string const& what) {
+    throw InputError("the trajectory " + what, root.file, "restart with the scene and folder that it was written with");
+}
+
+void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
+    bool const present = has(root, group);
+    if (present != wanted) refuse(root, std::string(present ? "holds " : "holds no ") + what + (present ? " that" : " but") + " this run " +
+                                            (wanted ? "writes them" : "does not write"));
+}
+
+}  // namespace
+
+TrajectoryContents contents_of(Topology const& topology, bool velocities, bool joint_forces) {
+    TrajectoryContents contents;
+    contents.velocities = velocities;
+    contents.joint_forces = joint_forces;
+    contents.periodic = topology.box.has_value();
+    contents.si = topology.si;
+    contents.sites = topology.mass.size();
+    for (Topology::Chain const& chain : topology.chains)
+        for (std::int64_t k = 0; !chain.beads && k < chain.count; ++k) contents.bodies.push_back(static_cast<hsize_t>(chain.first + k));
+    return contents;
+}
+
+std::vector<Series*> TrajectorySeries::present() {
+    std::vector<Series*> all;
+    for (Series* series : {&position, &velocity, &edges, &orientation, &torque, &force, &time, &step})
+        if (*series) all.push_back(series);
+    return all;
+}
+
+TrajectorySeries create_trajectory(Place const& root, Topology const& topology, TrajectoryContents const& contents) {
+    return Builder(root, topology, contents).build();
+}
+
+TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& contents) {
+    auto const text_of = [&](std::string const& object, std::string const& attribute) -> std::string {
+        if (!has(root, object)) return "";
+        Object const opened(H5Oopen(root.id, object.c_str(), H5P_DEFAULT));
+        return opened ? get_text({opened.get(), root.file, root.doing}, attribute) : "";
+    };
+    if (text_of("h5md/creator", "name") != "catena" || !has(root, "catena")) refuse(root, "was not written by Catena");
+    std::string const position = position_group + "/value";
+    if (!has(root, position)) refuse(root, "has no positions");
+    TrajectorySeries series;
+    series.position = Series::open(root, position, H5T_NATIVE_DOUBLE);
+    if (series.position.row() != std::vector<hsize_t>{contents.sites, 3})
+        refuse(root, "has " + (series.position.row().empty() ? "no" : std::to_string(series.position.row()[0])) + " sites but the scene " +
+                         std::to_string(contents.sites));
+    if (text_of(position, "unit") != units_of(contents.si).length) refuse(root, "is in " + text_of(position, "unit") + ", unlike the scene");
+    require(root, "particles/trajectory/velocity", contents.velocities, "velocities");
+    require(root, "particles/trajectory/box/edges", contents.periodic, "box edges");
+    require(root, "catena/orientation", !contents.bodies.empty(), "orientations");
+    require(root, "catena/joint_force", contents.joint_forces, "joint forces");
+    series.step = Series::open(root, position_group + "/step", H5T_NATIVE_INT64);
+    series.time = Series::open(root, position_group + "/time", H5T_NATIVE_DOUBLE);
+    if (contents.velocities) series.velocity = Series::open(root, "particles/trajectory/velocity/value", H5T_NATIVE_DOUBLE);
+    if (contents.periodic) series.edges = Series::open(root, "particles/trajectory/box/edges/value", H5T_NATIVE_DOUBLE);
+    if (!contents.bodies.empty()) series.orientation = Series::open(root, "catena/orientation/value", H5T_NATIVE_DOUBLE);
+    if (series.orientation && series.orientation.row()[0] != contents.bodies.size()) refuse(root, "has another number of bodies");
+    if (!contents.joint_forces) return series;
+    series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
+    series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);
+    return series;
+}
+
+}  // namespace catena::hdf5

@@ -1,0 +1,48 @@
+// What a Catena trajectory holds, by name: H5MD 1.1 (https://www.nongnu.org/h5md/releases/h5md-1.1.0.html) and Catena's own group.
+//
+//   /h5md                         version [1, 1], author, creator "catena", modules/units
+//   /particles/trajectory         one site a bead or body, in the order of the topology
+//       box                       dimension, boundary; edges when periodic
+//       position, velocity        {step, time, value [frames][sites][3]}, ground axes, unwrapped
+//       mass, id                  [sites], id from 1
+//   /catena                       format_version, title
+//       chains                    first, count, beads, ring, name: [chains]
+//       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to ground axes; site [bodies] from 0
+//       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each site at its inboard joint, ground axes
+//
+// All steps are one dataset and all times another, linked hard from each element, so the elements cannot disagree. MDAnalysis
+// 2.11 wants exactly one group in /particles, named `trajectory`, and `unit` attributes of variable length.
+// `units: si` writes the units as they are (m, s, m s-1, N): MDAnalysis 2.11 knows no metre and refuses such a file, h5py reads it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "io/hdf5_data.hpp"
+#include "io/output.hpp"
+
+namespace catena::hdf5 {
+
+/// What of the optional parts a trajectory has.
+struct TrajectoryContents {
+    std::vector<hsize_t> bodies;   // the sites that are bodies
+    bool velocities = false, joint_forces = false, periodic = false, si = false;
+    hsize_t sites = 0;
+};
+TrajectoryContents contents_of(Topology const&, bool velocities, bool joint_forces);
+
+/// The growing datasets; those that a run does not write are empty.
+struct TrajectorySeries {
+    Series step, time, position, velocity, edges, orientation, torque, force;
+
+    /// `step` is the last: a frame counts when its step is there.
+    std::vector<Series*> present();
+};
+
+TrajectorySeries create_trajectory(Place const& root, Topology const&, TrajectoryContents const&);
+
+/// Opens what create_trajectory made. InputError when the file is another program's or holds other things than `contents`.
+TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const&);
+
+}  // namespace catena::hdf5

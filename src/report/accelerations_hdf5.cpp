@@ -1,0 +1,49 @@
+// `catena solve --accelerations FILE`: what the JSON holds, for any number of bodies.
+#include <array>
+#include <cstdio>
+
+#include "error.hpp"
+#include "io/hdf5_data.hpp"
+#include "io/output_file.hpp"
+#include "report/solution.hpp"
+
+namespace catena {
+namespace {
+
+using namespace hdf5;
+
+std::string const writing = "write the accelerations";
+
+void write(std::string const& draft, std::string const& file, Solution const& s) {
+    File handle(check(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), file, writing));
+    Place const root{handle.get(), file, writing};
+    put_text(root, "format", "catena accelerations");
+    put_attribute(root, "version", std::int64_t{1});
+    std::vector<std::int64_t> offsets;
+    for (std::size_t b = 0; b < s.acceleration_offset.size(); ++b) offsets.insert(offsets.end(), {s.acceleration_offset[b], s.force_offset[b]});
+    std::array<hsize_t, 2> const shape{s.acceleration_offset.size(), 2};
+    Dataset accelerations = put_array(root, "accelerations", s.acceleration);
+    Dataset forces = put_array(root, "joint_forces", s.joint_force);
+    Dataset starts = put_array(root, "offsets", H5T_NATIVE_INT64, offsets.data(), shape);
+    for (Dataset* const data : {&accelerations, &forces, &starts}) check(data->close(), file, writing);
+    flush_to_disk(handle, file, writing);
+    check(handle.close(), file, writing);
+}
+
+}  // namespace
+
+void require_accelerations_writer(std::string const&) {}
+
+void write_accelerations(std::string const& file, Solution const& solution) {
+    Quiet const quiet;
+    std::string const draft = file + ".part";
+    try {
+        write(draft, file, solution);
+        rename_file(draft, file);
+    } catch (...) {
+        std::remove(draft.c_str());
+        throw;
+    }
+}
+
+}  // namespace catena

@@ -1,0 +1,75 @@
+#include "report/solution.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena {
+namespace {
+
+void append(std::vector<double>& list, Vec3 const& v) { list.insert(list.end(), v.data, v.data + 3); }
+
+JointType joint_of(ChainSpec const& chain, std::size_t k) { return chain.is_beads() ? JointType::link : chain.bodies.joint[k]; }
+
+/// The force along link k is -tension towards the outboard bead.
+double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot const& at, std::size_t body, Vector<double, 6> const& wrench) {
+    if (k == 0 && chain.base == Base::free) return 0.0;
+    Vec3 const link = at.position[body] - (k == 0 ? chain.beads.anchor : at.position[body - 1]);
+    return -dot((1.0 / norm(link)) * link, Vec3{{wrench[3], wrench[4], wrench[5]}});
+}
+
+}  // namespace
+
+char const* kind_of(ChainSpec const& chain) {
+    if (chain.is_beads()) return "link";
+    auto const& joints = chain.bodies.joint;
+    return std::find(joints.begin(), joints.end(), JointType::revolute) != joints.end() ? "revolute" : "spherical";
+}
+
+Solution solution_of(ChainSystem& system) {
+    ChainSystem::Accelerations const a = system.accelerations();
+    ChainSystem::Snapshot const at = system.snapshot();
+    Solution s;
+    if (system.communicator().rank() != 0) return s;
+    std::size_t body = 0;
+    for (ChainSpec const& chain : system.scene().chains)
+        for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
+            s.acceleration_offset.push_back(static_cast<std::int64_t>(s.acceleration.size()));
+            s.force_offset.push_back(static_cast<std::int64_t>(s.joint_force.size()));
+            if (chain.is_beads()) {
+                append(s.acceleration, a.acceleration[body]);
+                s.bead_acceleration.push_back(a.acceleration[body]);
+                if (system.openmm()) s.bead_force.push_back(a.bead_force[body]);
+                s.joint_force.push_back(tension(chain, k, at, body, a.joint_force[body]));
+                continue;
+            }
+            JointType const joint = chain.bodies.joint[k];
+            if (joint == JointType::revolute)
+                s.acceleration.push_back(a.joint_acceleration[body][0]);
+            else
+                append(s.acceleration, a.joint_acceleration[body]);
+            if (joint == JointType::free) append(s.acceleration, a.base_acceleration[body]);
+            s.joint_force.insert(s.joint_force.end(), a.joint_force[body].data, a.joint_force[body].data + 6);
+        }
+    s.acceleration_offset.push_back(static_cast<std::int64_t>(s.acceleration.size()));
+    s.force_offset.push_back(static_cast<std::int64_t>(s.joint_force.size()));
+    return s;
+}
+
+double largest_difference(Scene const& scene, Solution const& found, std::vector<double> const& reference) {
+    enum { angular, base, bead, classes };
+    double difference[classes] = {}, largest[classes] = {};
+    std::size_t body = 0;
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.size(); ++k, ++body)
+            for (std::int64_t i = found.acceleration_offset[body]; i < found.acceleration_offset[body + 1]; ++i) {
+                bool const linear = joint_of(chain, k) == JointType::free && i >= found.acceleration_offset[body] + 3;
+                int const kind = chain.is_beads() ? bead : linear ? base : angular;
+                difference[kind] = larger(difference[kind], std::abs(found.acceleration[i] - reference[i]));
+                largest[kind] = std::max(largest[kind], std::abs(reference[i]));
+            }
+    double worst = 0;
+    for (int kind = 0; kind < classes; ++kind) worst = larger(worst, largest[kind] > 0 ? difference[kind] / largest[kind] : difference[kind]);
+    return worst;
+}
+
+}  // namespace catena

@@ -1,0 +1,85 @@
+#include "report/timing.hpp"
+
+#include <algorithm>
+
+#include "force/openmm_path.hpp"
+
+namespace catena {
+namespace {
+
+/// Sums over the solvers of a system, and the system's own clocks.
+struct Clocks {
+    double matrix = 0, bias = 0, exchange = 0, forces = 0, waiting = 0, moment = 0;
+    std::int64_t matrix_sweeps = 0, bias_sweeps = 0;
+};
+
+Clocks read_clocks(ChainSystem const& system) {
+    Clocks c;
+    for (SolverReport const& r : system.solver_reports()) {
+        c.matrix += r.matrix_seconds;
+        c.bias += r.bias_seconds;
+        c.exchange += r.exchange_seconds;
+        c.matrix_sweeps = std::max(c.matrix_sweeps, r.matrix_sweeps);
+        c.bias_sweeps = std::max(c.bias_sweeps, r.bias_sweeps);
+    }
+    auto const own = [&](char const* phase) {
+        auto const found = system.seconds().find(phase);
+        return found == system.seconds().end() ? 0.0 : found->second;
+    };
+    c.forces = own("forces");
+    c.waiting = own("waiting for forces");
+    c.moment = seconds_now();
+    return c;
+}
+
+}  // namespace
+
+Spread spread_of(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    std::size_t const n = values.size(), middle = n / 2;
+    double const median = n % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+    return {median, values.front(), values.back(), static_cast<int>(n)};
+}
+
+Timing time_evaluations(ChainSystem& system, int repeat) {
+    Communicator const& communicator = system.communicator();
+    int const warm_up = system.openmm() ? 2 * PathChoice::trials + 1 : 2;
+    for (int i = 0; i < warm_up; ++i) system.evaluate();
+
+    repeat = std::max(repeat, 1);
+    std::vector<Clocks> before, after;
+    for (int i = 0; i < repeat; ++i) {
+        communicator.barrier();
+        before.push_back(read_clocks(system));
+        system.evaluate();
+        after.push_back(read_clocks(system));
+    }
+    auto const samples = [&](auto const& quantity) {
+        std::vector<double> values;
+        for (int i = 0; i < repeat; ++i) values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
+        return values;
+    };
+    auto const mean = [&](auto const& quantity) { return communicator.max((quantity(after.back()) - quantity(before.front())) / repeat); };
+    auto const sum_of_waits = [](Clocks const& c) { return c.matrix + c.bias + c.waiting; };
+
+    Timing t;
+    t.evaluation = spread_of(samples([](Clocks const& c) { return c.moment; }));
+    t.matrix_sweeps = static_cast<int>(after.front().matrix_sweeps - before.front().matrix_sweeps);
+    t.bias_sweeps = static_cast<int>(after.front().bias_sweeps - before.front().bias_sweeps);
+    t.matrix_sweep = spread_of(samples([&](Clocks const& c) { return c.matrix / std::max(t.matrix_sweeps, 1); }));
+    t.bias_sweep = spread_of(samples([&](Clocks const& c) { return c.bias / std::max(t.bias_sweeps, 1); }));
+    t.phases = {{"matrix sweep", mean([](Clocks const& c) { return c.matrix; })},
+                {"bias sweep", mean([](Clocks const& c) { return c.bias; })},
+                {"exchange of units", mean([](Clocks const& c) { return c.exchange; })}};
+    if (system.openmm()) {
+        t.phases.emplace_back("forces", mean([](Clocks const& c) { return c.forces; }));
+        t.phases.emplace_back("waiting for forces", mean([](Clocks const& c) { return c.waiting; }));
+    }
+    double between = 0;   // the barriers and the reading of clocks are no part of an evaluation
+    for (int i = 0; i < repeat; ++i) between += (after[i].moment - before[i].moment) - (sum_of_waits(after[i]) - sum_of_waits(before[i]));
+    t.phases.emplace_back("other", communicator.max(std::max(between, 0.0) / repeat));
+    return t;
+}
+
+}  // namespace catena

@@ -1,0 +1,62 @@
+#include "scene/chain_request.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/conformation.hpp"
+#include "scene/files.hpp"
+#include "scene/random.hpp"
+
+namespace catena::scene {
+
+void ChainRequest::allow(char const* kind, Names keys) const {
+    for (char const* const key : {"model", "positions", "links", "anchor", "conformation"}) {
+        Node const* const here = fields.find(key);
+        if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
+            fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
+    }
+    links_as_given();  // checks the word even where no positions are given
+    Node const* const ground = fields.find("anchor");
+    if (ground && base == Base::free) fail(*ground, "an anchor without a fixed base", "write `base: fixed` or leave `anchor` out");
+}
+
+Vec3 ChainRequest::anchor() const {
+    Node const* const ground = fields.find("anchor");
+    return ground ? vector3(*ground) : Vec3::zero();
+}
+
+bool ChainRequest::links_as_given() const {
+    Node const* const links = fields.find("links");
+    return links && choice<bool>(*links, {{"model", false}, {"as_given", true}});
+}
+
+std::uint64_t ChainRequest::seed(std::int64_t copy) const {
+    return seed_of_stream(scene.dynamics.seed, (static_cast<std::uint64_t>(index) << 40) + static_cast<std::uint64_t>(copy));
+}
+
+std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t beads) const {
+    std::string const path = resolved(text(file), scene.file);
+    bool const pdb = path.ends_with(".pdb") || path.ends_with(".ent") || file.key == "pdb";
+    if (pdb && scene.si) fail(file, "positions in a PDB file are in angstrom, the scene is in SI units", "give a table x,y,z in metres");
+    std::vector<Vec3> positions = pdb ? read_pdb(path, file, false).position : read_position_table(path, file);
+    if (positions.size() != beads)
+        fail(file, fmt::format("`{}` holds {} positions, the chain has {} beads", shown_path(file.text), positions.size(), beads),
+             "give one position a bead");
+    return positions;
+}
+
+void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const {
+    beads.position = positions;
+    refuse_coincident(beads, from);
+    links_as_given() ? take_lengths(beads, base) : project_to_lengths(beads, base);
+}
+
+void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from) const {
+    std::int64_t const k = coincident_bead(beads, base);
+    if (k < 0) return;
+    std::string const other = k == 0 ? "the anchor" : fmt::format("bead {}", k);
+    fail_at(from, "bead", k + 1, fmt::format("bead {} stands on {}: their link has no direction", k + 1, other), "move one of them");
+}
+
+}  // namespace catena::scene

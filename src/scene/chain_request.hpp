@@ -1,0 +1,37 @@
+// What every kind of chain asks of its entry in `chains:`.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "scene/fields.hpp"
+#include "scene/node.hpp"
+#include "scene/scene.hpp"
+
+namespace catena::scene {
+
+struct ChainRequest {
+    Fields fields;
+    Node const& node;
+    std::size_t index;   // in `chains`, from 0
+    Scene const& scene;  // everything but the chains
+    Base base = Base::free;
+
+    /// Refuses those of `model, positions, links, anchor, conformation` that are not in `keys`: they mean nothing for this kind of chain.
+    void allow(char const* kind, Names keys) const;
+    /// Origin where none is given.
+    Vec3 anchor() const;
+    bool links_as_given() const;
+    /// The scene's seed, told apart by chain and copy.
+    std::uint64_t seed(std::int64_t copy) const;
+
+    /// Positions from the table or PDB file that `file` names: one a bead.
+    std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
+    /// Puts the beads at `positions`, which `from` gave, and fits positions to lengths or, with `links: as_given`, lengths to positions.
+    void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
+    /// InputError when two neighbours coincide.
+    void refuse_coincident(BeadArrays const& beads, Node const& from) const;
+};
+
+}  // namespace catena::scene

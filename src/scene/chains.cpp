@@ -1,0 +1,163 @@
+#include "scene/chains.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "scene/bodies.hpp"
+#include "scene/chain_request.hpp"
+#include "scene/conformation.hpp"
+#include "scene/fields.hpp"
+#include "scene/generator_entry.hpp"
+#include "scene/sequences.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+Fields chain_fields(Node const& entry) {
+    return Fields(entry, {"name", "count", "sequence", "fasta", "pdb", "bodies", "generator", "model", "positions", "links", "base", "tip",
+                          "anchor", "conformation", "velocities"});
+}
+
+/// The one key that says what the chain is made of.
+Node const& source_of(Fields const& fields) {
+    Node const* source = nullptr;
+    for (char const* const key : {"sequence", "fasta", "pdb", "bodies", "generator"}) {
+        Node const* const here = fields.find(key);
+        if (here && source) fail(*here, fmt::format("the chain has both `{}` and `{}`", source->key, key), "keep one of them");
+        if (here) source = here;
+    }
+    if (!source)
+        fail(fields.node(), "the chain says nothing of its bodies", "add one of `sequence`, `fasta`, `pdb`, `bodies`, `generator`");
+    return *source;
+}
+
+Base base_of(Fields const& fields, Node const& source) {
+    if (Node const* const base = fields.find("base")) return choice<Base>(*base, {{"free", Base::free}, {"fixed", Base::fixed}});
+    return source.find("pendulum") ? Base::fixed : Base::free;
+}
+
+Tip tip_of(Fields const& fields) {
+    Node const* const tip = fields.find("tip");
+    if (!tip) return Tip::free;
+    if (tip->kind == Node::Kind::map) Fields(*tip, {"joint"}), fail_later(*tip, "a jointed tip");
+    return choice<Tip>(*tip, {{"free", Tip::free}}, {"ring"});
+}
+
+/// Beads written one by one: lengths as written, else (and with `links: as_given`) as the positions say. Whether velocities are written.
+bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays& beads) {
+    request.allow("beads written one by one", {"links", "anchor"});
+    ExplicitBeads made = read_beads(source, request.base);
+    beads = std::move(made.beads);
+    beads.anchor = request.anchor();
+    request.refuse_coincident(beads, source);
+    std::vector<double> const written = beads.length;
+    take_lengths(beads, request.base);
+    if (request.links_as_given()) return made.velocities;
+    bool any = false;
+    for (std::size_t k = 0; k < written.size(); ++k)
+        if (!std::isnan(written[k])) beads.length[k] = written[k], any = true;
+    if (any) project_to_lengths(beads, request.base);
+    return made.velocities;
+}
+
+class ChainReader {
+  public:
+    ChainReader(Node const& entry, std::size_t index, Scene const& scene, bool warm)
+        : request_{chain_fields(entry), entry, index, scene}, source_(source_of(request_.fields)), warm_(warm) {
+        request_.base = base_of(request_.fields, source_);
+        tip_ = tip_of(request_.fields);
+        if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
+        if (source_.key == "generator") generator_.emplace(request_, source_);
+        if (source_.key == "bodies" && source_.kind == Node::Kind::map)
+            Fields(source_, {"hdf5"}), fail_later(source_, "bodies from an HDF5 file");
+    }
+
+    void append_to(std::vector<Draft>& drafts) const {
+        Node const* const named = request_.fields.find("name");
+        std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
+        if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
+        ChainSpec first = make(0);
+        refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
+        bool const free_to_move = movable(first);
+        for (std::int64_t copy = 1; copy < count_; ++copy) {
+            drafts.push_back({is_random() ? make(copy) : first, &request_.node, free_to_move});
+            drafts.back().chain.name = fmt::format("{}-{}", name, copy + 1);
+        }
+        first.name = count_ == 1 ? name : name + "-1";
+        drafts.insert(drafts.end() - (count_ - 1), Draft{std::move(first), &request_.node, free_to_move});
+    }
+
+  private:
+    ChainSpec make(std::int64_t copy) const {
+        ChainSpec chain;
+        chain.base = request_.base;
+        chain.tip = tip_;
+        bool velocities = true;
+        if (generator_) {
+            generator_->make(chain, copy);
+            velocities = generator_->gives_velocities();
+        } else if (source_.key != "bodies") {
+            chain.beads = read_sequence(request_, copy);
+            velocities = false;
+        } else if (describes_beads(source_)) {
+            velocities = explicit_beads(request_, source_, chain.beads);
+        } else {
+            request_.allow("rigid bodies", {});
+            chain.bodies = read_bodies(source_, request_.base);
+        }
+        set_velocities(chain, velocities);
+        return chain;
+    }
+
+    void set_velocities(ChainSpec& chain, bool given) const {
+        chain.velocities = given ? StartVelocities::given : warm_ ? StartVelocities::thermal : StartVelocities::zero;
+        if (Node const* const velocities = request_.fields.find("velocities"))
+            chain.velocities =
+                choice<StartVelocities>(*velocities, {{"thermal", StartVelocities::thermal}, {"zero", StartVelocities::zero}});
+        if (chain.velocities == StartVelocities::given) return;
+        std::fill(chain.beads.velocity.begin(), chain.beads.velocity.end(), Vec3::zero());
+        std::fill(chain.bodies.qd.begin(), chain.bodies.qd.end(), Vec3::zero());
+        chain.bodies.free_velocity = Vec3::zero();
+    }
+
+    /// Whether copies differ from each other.
+    bool is_random() const {
+        Node const* const conformation = request_.fields.find("conformation");
+        return (generator_ && !source_.find("pendulum")) || (conformation && conformation->text == "self_avoiding");
+    }
+    bool movable(ChainSpec const& chain) const {
+        if (count_ > 1) return true;
+        Node const* const conformation = request_.fields.find("conformation");
+        bool const from_file =
+            request_.fields.find("positions") || source_.key == "pdb" || (conformation && conformation->kind == Node::Kind::map);
+        return chain.is_beads() && chain.base == Base::free && source_.key != "bodies" && !from_file;
+    }
+    /// What cannot fit is refused before it is tried.
+    void refuse_too_large(std::int64_t size, bool beads) const {
+        double const bytes = (beads ? 150.0 : 700.0) * static_cast<double>(size) * static_cast<double>(count_);
+        double const present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+        if (bytes > present)
+            fail(request_.node, fmt::format("the chain needs about {:.3g} GB, this machine has {:.3g} GB", bytes * 1e-9, present * 1e-9),
+                 "make fewer bodies or copies");
+    }
+
+    ChainRequest request_;
+    Node const& source_;
+    bool warm_;
+    Tip tip_ = Tip::free;
+    std::int64_t count_ = 1;
+    std::optional<GeneratorEntry> generator_;  // refers to request_: a reader is never moved
+};
+
+}  // namespace
+
+void read_chain(Node const& entry, std::size_t index, Scene const& scene, bool warm, std::vector<Draft>& drafts) {
+    ChainReader(entry, index, scene, warm).append_to(drafts);
+}
+
+}  // namespace catena::scene

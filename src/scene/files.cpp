@@ -1,0 +1,165 @@
+#include "scene/files.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "scene/fields.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+std::string trimmed(std::string const& text) {
+    char const* const blanks = " \t\r\n";
+    std::size_t const first = text.find_first_not_of(blanks);
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// Lines with their numbers from 1; text from `comment` on is dropped, blank lines are left out.
+std::vector<std::pair<int, std::string>> lines_of(std::string const& text, char comment) {
+    std::vector<std::pair<int, std::string>> lines;
+    std::istringstream stream(text);
+    std::string line;
+    for (int n = 1; std::getline(stream, line); ++n) {
+        if (comment) line = line.substr(0, line.find(comment));
+        if (line = trimmed(line); !line.empty()) lines.emplace_back(n, line);
+    }
+    return lines;
+}
+
+std::vector<std::string> cells_of(std::string const& line) {
+    std::vector<std::string> cells;
+    std::istringstream stream(line);
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(trimmed(cell));
+    if (line.back() == ',') cells.emplace_back();
+    return cells;
+}
+
+bool is_header(std::vector<std::string> const& cells) {
+    double value = 0;
+    for (std::string const& cell : cells)
+        if (cell.empty() || parse_number(cell, value) != NumberFault::not_a_number || std::isdigit(static_cast<unsigned char>(cell[0])))
+            return false;
+    return true;
+}
+
+[[noreturn]] void refuse_line(std::string const& what, std::string const& path, int line, std::string const& remedy) {
+    throw InputError(what, fmt::format("{}: line {}", path, line), remedy);
+}
+
+double cell_number(std::string const& cell, std::string const& path, int line) {
+    double value = 0;
+    switch (parse_number(cell, value)) {
+        case NumberFault::none:
+            return value;
+        case NumberFault::not_a_number:
+            refuse_line(fmt::format("`{}` is not a number", shown(cell)), path, line, "give finite decimal numbers");
+        case NumberFault::not_finite:
+            refuse_line(fmt::format("`{}` is not finite", shown(cell)), path, line, "give finite decimal numbers");
+        case NumberFault::out_of_range:
+            break;
+    }
+    refuse_line(fmt::format("`{}` is beyond the range of double precision", shown(cell)), path, line, "give finite decimal numbers");
+}
+
+struct PdbAtom {
+    std::string name, residue, chain, residue_id;
+    Vec3 position;  // nm
+};
+
+/// Columns as in the PDB format 3.3, section "ATOM".
+PdbAtom atom_of(std::string const& line, std::string const& path, int n) {
+    if (line.size() < 54) refuse_line("the atom's line is cut short", path, n, "give coordinates in columns 31 to 54");
+    PdbAtom atom{trimmed(line.substr(12, 4)), trimmed(line.substr(17, 3)), line.substr(21, 1), line.substr(21, 6), Vec3::zero()};
+    for (int i = 0; i < 3; ++i)
+        atom.position[i] = 0.1 * cell_number(trimmed(line.substr(static_cast<std::size_t>(30 + 8 * i), 8)), path, n);
+    return atom;
+}
+
+std::vector<PdbAtom> atoms_of(std::string const& path, Node const& at) {
+    std::vector<PdbAtom> atoms;
+    std::istringstream stream(read_text_file(path, at));
+    std::string line;
+    for (int n = 1; std::getline(stream, line); ++n) {
+        if (line.starts_with("ENDMDL")) break;
+        if (!line.starts_with("ATOM  ") && !line.starts_with("HETATM")) continue;
+        PdbAtom const atom = atom_of(line, path, n);
+        if (line[16] == ' ' || line[16] == 'A') atoms.push_back(atom);
+    }
+    return atoms;
+}
+
+}  // namespace
+
+std::string read_text_file(std::string const& path, Node const& at) {
+    std::error_code ignored;
+    bool const folder = std::filesystem::is_directory(path, ignored);
+    std::ifstream stream(path, std::ios::binary);
+    if (folder || !stream)
+        fail(at, fmt::format("{} `{}`", folder ? "a folder, not a file:" : "no such file:", shown_path(path)), "check the path");
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (stream.bad()) fail(at, "the file cannot be read: `" + shown_path(path) + "`", "check the file and its permissions");
+    return text.str();
+}
+
+std::string resolved(std::string const& path, std::string const& scene_file) {
+    return (std::filesystem::path(scene_file).parent_path() / path).string();
+}
+
+std::string read_fasta(std::string const& path, Node const& at) {
+    std::string sequence;
+    bool inside = false;
+    for (auto const& [n, line] : lines_of(read_text_file(path, at), 0)) {
+        if (line[0] == '>') {
+            if (inside) break;
+            inside = true;
+        } else if (!inside) {
+            refuse_line("sequence before the first record", path, n, "start the record with a line `>name`");
+        } else {
+            sequence += line;
+        }
+    }
+    if (!sequence.empty() && sequence.back() == '*') sequence.pop_back();
+    if (sequence.empty()) fail(at, "no sequence in `" + shown_path(path) + "`", "give a record: `>name`, then one-letter codes");
+    return sequence;
+}
+
+std::vector<Vec3> read_position_table(std::string const& path, Node const& at) {
+    std::vector<Vec3> positions;
+    bool first = true;
+    for (auto const& [n, line] : lines_of(read_text_file(path, at), '#')) {
+        std::vector<std::string> const cells = cells_of(line);
+        if (std::exchange(first, false) && is_header(cells)) continue;
+        if (cells.size() != 3) refuse_line(fmt::format("the line has {} columns, not 3", cells.size()), path, n, "give x,y,z");
+        positions.push_back({{cell_number(cells[0], path, n), cell_number(cells[1], path, n), cell_number(cells[2], path, n)}});
+    }
+    return positions;
+}
+
+PdbSites read_pdb(std::string const& path, Node const& at, bool single_chain) {
+    std::vector<PdbAtom> const atoms = atoms_of(path, at);
+    bool alpha_carbons = false;
+    for (PdbAtom const& atom : atoms) alpha_carbons = alpha_carbons || atom.name == "CA";
+    PdbSites sites;
+    PdbAtom const* previous = nullptr;
+    for (PdbAtom const& atom : atoms) {
+        if (alpha_carbons && atom.name != "CA") continue;
+        if (previous && atom.residue_id == previous->residue_id)
+            fail(at,
+                 fmt::format("residue {} of `{}` has several atoms and none is its only CA", trimmed(atom.residue_id), shown_path(path)),
+                 "keep one atom a residue");
+        if (previous && single_chain && atom.chain != previous->chain)
+            fail(at, fmt::format("`{}` holds chains {} and {}", shown_path(path), previous->chain, atom.chain), "keep one chain a file");
+        sites.position.push_back(atom.position);
+        sites.residue.push_back(atom.residue);
+        previous = &atom;
+    }
+    if (atoms.empty()) fail(at, "no atoms in `" + shown_path(path) + "`", "give ATOM records");
+    return sites;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,118 @@
+#include "scene/hash.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "error.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+class Fingerprint {
+  public:
+    void word(std::uint64_t value) {
+        a_ = std::rotl(a_ ^ value, 27) * 0x9E3779B185EBCA87u + 0x165667B19E3779F9u;
+        b_ = (std::rotl(b_, 31) + value) * 0xC2B2AE3D27D4EB4Fu ^ (b_ >> 29);
+    }
+    void add(double value) { word(std::bit_cast<std::uint64_t>(value)); }
+    void add(std::int64_t value) { word(static_cast<std::uint64_t>(value)); }
+    void add(std::uint64_t value) { word(value); }
+    void add(int value) { word(static_cast<std::uint64_t>(value)); }
+    void add(bool value) { word(value ? 1 : 0); }
+    void add(std::string const& text) {
+        word(text.size());
+        for (std::size_t i = 0; i < text.size(); i += 8) {
+            std::uint64_t packed = 0;
+            for (std::size_t j = i; j < text.size() && j < i + 8; ++j)
+                packed |= std::uint64_t{static_cast<unsigned char>(text[j])} << (8 * (j - i));
+            word(packed);
+        }
+    }
+    template <class Enum>
+        requires std::is_enum_v<Enum>
+    void add(Enum value) {
+        word(static_cast<std::uint64_t>(value));
+    }
+    template <std::size_t N>
+    void add(std::array<double, N> const& values) {
+        for (double const value : values) add(value);
+    }
+    void add(Vec3 const& v) { add_all(v.data); }
+    void add(Mat3 const& m) { add_all(m.data); }
+    void add(Sym3 const& m) { add_all(m.data); }
+    void add(std::optional<double> const& value) {
+        add(value.has_value());
+        add(value.value_or(0));
+    }
+    template <class A, class B>
+    void add(std::pair<A, B> const& values) {
+        add(values.first);
+        add(values.second);
+    }
+    template <class T>
+    void add(std::vector<T> const& values) {
+        word(values.size());
+        for (T const& value : values) add(value);
+    }
+    template <class... T>
+    void add_each(T const&... values) {
+        (add(values), ...);
+    }
+    std::string text() const { return fmt::format("{:016x}{:016x}", mixed(a_), mixed(b_)); }
+
+  private:
+    template <std::size_t N>
+    void add_all(double const (&values)[N]) {
+        for (double const value : values) add(value);
+    }
+    static std::uint64_t mixed(std::uint64_t h) {
+        h = (h ^ (h >> 33)) * 0xFF51AFD7ED558CCDu;
+        h = (h ^ (h >> 33)) * 0xC4CEB9FE1A85EC53u;
+        return h ^ (h >> 33);
+    }
+    std::uint64_t a_ = 0x243F6A8885A308D3u, b_ = 0x13198A2E03707344u;  // digits of pi
+};
+
+std::string content_of(std::string const& path) {
+    if (path.empty()) return {};
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (!stream) throw InputError("the file cannot be read", path, "check the file and its permissions");
+    return text.str();
+}
+
+void add_chain(Fingerprint& print, ChainSpec const& chain) {
+    print.add_each(chain.name, chain.base, chain.tip, chain.velocities);
+    BeadArrays const& beads = chain.beads;
+    print.add_each(beads.mass, beads.position, beads.velocity, beads.length, beads.residue, beads.anchor);
+    BodyArrays const& b = chain.bodies;
+    print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.q, b.qd, b.free_position, b.free_velocity);
+    print.add_each(b.torque, b.stiffness, b.damping, b.rest, b.wrench);
+}
+
+}  // namespace
+
+std::string fingerprint(Scene const& scene) {
+    Fingerprint print;
+    print.add(std::string("catena scene 1"));
+    print.add_each(scene.si, scene.box.has_value(), scene.box.value_or(Vec3::zero()), scene.forces.gravity, scene.chains.size());
+    for (ChainSpec const& chain : scene.chains) add_chain(print, chain);
+    print.add(scene.forces.openmm.has_value());
+    if (scene.forces.openmm) {
+        OpenMmSpec const& o = *scene.forces.openmm;
+        print.add_each(o.builder, content_of(o.system), content_of(o.topology), o.map, o.temperature, o.ionic_strength, o.ph,
+                       o.switch_width);
+        print.add(o.force_groups);
+    }
+    DynamicsSpec const& d = scene.dynamics;
+    print.add_each(d.given, d.integrator, d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
+    return print.text();
+}
+
+}  // namespace catena::scene

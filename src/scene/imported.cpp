@@ -1,0 +1,46 @@
+#include "scene/imported.hpp"
+
+#include <fmt/format.h>
+
+#include "force/openmm_import.hpp"
+#include "scene/conformation.hpp"
+#include "scene/fields.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm) {
+    Draft draft;
+    draft.node = &openmm;
+    draft.chain.name = std::move(from.name);
+    draft.chain.velocities = warm ? StartVelocities::thermal : StartVelocities::zero;
+    BeadArrays& beads = draft.chain.beads;
+    beads.mass = std::move(from.mass);
+    beads.position = std::move(from.position);
+    beads.velocity.assign(beads.mass.size(), Vec3::zero());
+    beads.length = std::move(from.length);
+    beads.residue = std::move(from.residue);
+    if (std::int64_t const k = coincident_bead(beads, Base::free); k >= 0)
+        fail_at(openmm, "bead", k + 1, fmt::format("bead {} of chain `{}` stands on bead {}", k + 1, shown(draft.chain.name), k),
+                "move one of them in the topology");
+    project_to_lengths(beads, Base::free);
+    return draft;
+}
+
+}  // namespace
+
+std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
+    OpenMmSpec const& spec = *scene.forces.openmm;
+    if (spec.topology.empty())
+        fail(openmm, "the scene has no `chains`, the system no topology", "add `topology: topology.pdb`, or `chains`");
+    if (Node const* const map = openmm.find("map"))
+        fail(*map, "a map of chains in a scene that takes them from the topology", "leave it out or write `chains`");
+    ImportedSystem imported = import_openmm_system(spec.system, spec.topology, scene.file);
+    if (!scene.box && imported.periodic) scene.box = imported.box;
+    std::vector<Draft> drafts;
+    for (ImportedChain& chain : imported.chains) drafts.push_back(draft_of(std::move(chain), openmm, warm));
+    return drafts;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,62 @@
+#include "force/ghosts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace catena {
+namespace {
+
+std::vector<Vec3> scattered(std::size_t n, double edge, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> place(-edge, edge);
+    std::vector<Vec3> positions;
+    for (std::size_t k = 0; k < n; ++k) positions.push_back({{place(random), place(random), place(random)}});
+    return positions;
+}
+
+std::vector<std::int64_t> by_all_pairs(std::vector<Vec3> const& x, std::int64_t first, std::int64_t last, double radius,
+                                       std::optional<Vec3> const& box) {
+    std::vector<std::int64_t> ghosts;
+    for (std::int64_t k = 0; k < std::ssize(x); ++k) {
+        if (k >= first && k < last) continue;
+        bool is_near = false;
+        for (std::int64_t own = first; own < last; ++own) {
+            Vec3 d = x[k] - x[own];
+            if (box)
+                for (int i = 0; i < 3; ++i) d[i] = std::remainder(d[i], (*box)[i]);
+            is_near = is_near || norm(d) < radius;
+        }
+        if (is_near) ghosts.push_back(k);
+    }
+    return ghosts;
+}
+
+TEST(Ghosts, AreThoseOfAllPairs) {
+    auto const positions = scattered(400, 10, 1);
+    for (double const radius : {0.5, 2.0, 4.5, 50.0})
+        for (auto const& [first, last] : {std::pair{0, 7}, {100, 150}, {399, 400}, {0, 400}, {5, 5}})
+            EXPECT_EQ(ghosts_of(positions, first, last, radius, {}), by_all_pairs(positions, first, last, radius, {})) << radius << ' ' << first;
+}
+
+TEST(Ghosts, InABoxTheyAreNearestImages) {
+    auto const positions = scattered(300, 30, 2);   // many boxes away
+    for (Vec3 const box : {Vec3{{9, 10, 11}}, Vec3{{4, 40, 7.3}}, Vec3{{3, 3, 3}}})
+        for (double const radius : {0.8, 1.49, 2.5, 3.6})
+            for (auto const& [first, last] : {std::pair{0, 4}, {120, 123}, {299, 300}})
+                EXPECT_EQ(ghosts_of(positions, first, last, radius, box), by_all_pairs(positions, first, last, radius, box))
+                    << radius << ' ' << box[0] << ' ' << first;
+}
+
+TEST(Ghosts, DisplacementIsTheLargest) {
+    auto const from = scattered(50, 1, 3);
+    auto to = from;
+    EXPECT_EQ(largest_displacement(from, to), 0);
+    to[7] = to[7] + Vec3{{0.3, 0, 0.4}};
+    to[8] = to[8] + Vec3{{0.1, 0.1, 0.1}};
+    EXPECT_NEAR(largest_displacement(from, to), 0.5, 1e-15);
+}
+
+}  // namespace
+}  // namespace catena

@@ -1,0 +1,194 @@
+// Forces computed on several ranks are those of the whole System.
+#include <OpenMM.h>
+
+#include <cmath>
+#include <utility>
+
+#include "tests/force/beads.hpp"
+#include "tests/force/every_force.hpp"
+#include "tests/force/ranks.hpp"
+
+namespace catena::testing {
+namespace {
+
+/// Sums of the same doubles in another order: relative to the largest force.
+double constexpr same = 1e-12;
+
+class Ranks : public ::testing::TestWithParam<int> {
+  protected:
+    void SetUp() override {
+        if (!has_ranks(GetParam())) GTEST_SKIP() << "another number of ranks runs here";
+    }
+
+    /// Evaluations along a walk of all beads; with `rebuilt`, some rank's list must have been made anew on the way.
+    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, bool rebuilt) {
+        on_ranks(GetParam(), [&](Communicator const& communicator) {
+            BeadSystem const beads = split(all_beads, communicator.size());
+            auto const serial = serial_communicator();
+            auto const force = make_openmm_force(spec, beads, communicator);
+            auto const whole = make_openmm_force(spec, split(all_beads, 1), *serial);
+            auto positions = wound(beads, 3);
+            int const evaluations = 7;
+            for (int i = 0; i < evaluations; ++i) {
+                auto const expected = evaluate(*whole, positions);
+                auto const own = evaluate(*force, beads, communicator.rank(), positions);
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected)) << "evaluation " << i;
+                if (i % 3 == 0) expect_same_energies(*force, *whole);
+                shake(positions, stride, 100 + i);
+            }
+            bool const anew = force->rebuilds() > 1 && force->rebuilds() < evaluations;
+            EXPECT_EQ(communicator.max(anew ? 1 : 0) == 1, rebuilt && communicator.size() > 1) << force->rebuilds();
+            double const least = -communicator.max(-static_cast<double>(force->largest_context()));
+            if (rebuilt && communicator.size() > 1) {
+                EXPECT_LT(least, static_cast<double>(beads.size()));
+            }
+        });
+    }
+
+    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole) {
+        auto const terms = force.energies(), expected = whole.energies();
+        EXPECT_EQ(terms.size(), expected.size());
+        for (std::size_t i = 0; i < std::min(terms.size(), expected.size()); ++i) {
+            EXPECT_EQ(terms[i].name, expected[i].name);
+            EXPECT_NEAR(terms[i].value, expected[i].value, same * std::max(1.0, std::abs(expected[i].value)));
+        }
+    }
+
+    static OpenMmSpec of_system(OpenMM::System const& system, std::string const& name) {
+        OpenMmSpec spec = on_reference("");
+        spec.system = scratch_file(name, xml_of(system));
+        return spec;
+    }
+};
+
+TEST_P(Ranks, Calvados2) {
+    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, true);
+}
+
+TEST_P(Ranks, Calvados2InABox) {
+    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, true);
+}
+
+TEST_P(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
+    compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1, false);
+}
+
+TEST_P(Ranks, OnAWorkerThread) {
+    OpenMmSpec spec = on_reference();
+    spec.path = "host";
+    compare(spec, proteins({random_sequence(150, 9)}), 0.1, true);
+}
+
+TEST_P(Ranks, FewerBeadsThanRanks) {
+    compare(on_reference(), proteins({"K"}), 0.1, false);
+    compare(on_reference(), proteins({"KD", "E"}), 0.1, false);
+}
+
+TEST_P(Ranks, EveryForce) {
+    BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
+    compare(of_system(*every_force(beads), "every.xml"), beads, 0.03, true);
+}
+
+TEST_P(Ranks, EveryForceInABox) {
+    BeadSystem const beads = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
+    compare(of_system(*every_force(beads), "every-box.xml"), beads, 0.03, true);
+}
+
+TEST_P(Ranks, BondedForcesAlone) {
+    BeadSystem const beads = proteins({random_sequence(60, 16)});
+    auto const system = bare_system(beads);
+    auto* bonds = new OpenMM::CustomBondForce("r^2");
+    for (int i = 0; i + 2 < 60; ++i) bonds->addBond(i, i + 2);
+    system->addForce(bonds);
+    compare(of_system(*system, "bonded.xml"), beads, 0.1, false);
+}
+
+TEST_P(Ranks, WithoutACutoff) {
+    BeadSystem const beads = proteins({random_sequence(40, 17), random_sequence(20, 18)});
+    auto const system = bare_system(beads);
+    auto* pairs = new OpenMM::CustomNonbondedForce("1/r");
+    for (int i = 0; i < 60; ++i) pairs->addParticle();
+    system->addForce(pairs);
+    compare(of_system(*system, "everywhere.xml"), beads, 0.1, false);
+}
+
+TEST_P(Ranks, Replicated) {
+    BeadSystem const beads = proteins({random_sequence(40, 19)}, 1, Vec3{{13, 6, 6}});
+    auto const system = bare_system(beads);
+    auto* charges = new OpenMM::NonbondedForce;
+    charges->setNonbondedMethod(OpenMM::NonbondedForce::PME);
+    charges->setCutoffDistance(1.5);
+    for (int i = 0; i < 40; ++i) charges->addParticle(i % 2 - 0.5, 0.3, 0.2);
+    system->addForce(charges);
+    OpenMmSpec spec = of_system(*system, "pme.xml");
+    spec.replicate = true;
+    compare(spec, beads, 0.05, false);
+    if (GetParam() == 1) return;
+    spec.replicate = false;
+    on_ranks(GetParam(), [&](Communicator const& communicator) {
+        std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
+        EXPECT_EQ(text, "NonbondedForce (PME) cannot be split over " + std::to_string(GetParam()) +
+                            " ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
+                            "or run on one rank");
+    });
+}
+
+TEST_P(Ranks, ChainsInAnotherOrderThanTheirParticles) {
+    BeadSystem const in_system = proteins({random_sequence(20, 20), random_sequence(60, 21)});
+    BeadSystem scene = proteins({random_sequence(60, 21), random_sequence(20, 20)});
+    std::swap(scene.chain_name[0], scene.chain_name[1]);
+    OpenMmSpec spec = of_system(*every_force(in_system), "order.xml");
+    spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
+    compare(spec, scene, 0.03, true);
+
+    // The same forces as in the System's own order.
+    auto const serial = serial_communicator();
+    auto positions = wound(in_system, 5);
+    spec.map.clear();
+    auto const expected = evaluate(*make_openmm_force(spec, in_system, *serial), positions);
+    spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
+    std::rotate(positions.begin(), positions.begin() + 20, positions.end());
+    auto forces = evaluate(*make_openmm_force(spec, scene, *serial), positions);
+    std::rotate(forces.begin(), forces.begin() + 60, forces.end());
+    EXPECT_LT(difference(forces, expected), same * largest(expected));
+}
+
+TEST_P(Ranks, OneRanksTroubleIsEverybodysMessage) {
+    BeadSystem const beads = proteins({"KDEKDE"});
+    auto const system = bare_system(beads);
+    auto* pairs = new OpenMM::CustomBondForce("r^");   // no expression
+    pairs->addBond(0, 2);
+    system->addForce(pairs);
+    OpenMmSpec const spec = of_system(*system, "wrong.xml");
+    on_ranks(GetParam(), [&](Communicator const& communicator) {
+        std::string const text =
+            complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
+        EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
+        EXPECT_NE(text.find(" (scene.yaml, forces.openmm): "), std::string::npos) << text;
+    });
+}
+
+TEST_P(Ranks, ThePathIsTheSameOnEveryRank) {
+    on_ranks(GetParam(), [&](Communicator const& communicator) {
+        BeadSystem const beads = split(proteins({random_sequence(30, 22)}), communicator.size());
+        OpenMmSpec spec = on_reference();
+        spec.path = "auto";
+        auto const force = make_openmm_force(spec, beads, communicator);
+        EXPECT_EQ(force->path(), "inline");
+        bool both = false;
+        for (int i = 0; i < 14; ++i) {
+            evaluate(*force, beads, communicator.rank(), wound(beads, 3));
+            both = both || force->path() == "host";
+        }
+        EXPECT_TRUE(both);
+        EXPECT_EQ(communicator.sum(force->path() == "host" ? 1 : 0) % communicator.size(), 0);
+        bool found = false;
+        for (auto const& line : force->description()) found = found || line.find("the faster one: from begin to end ") != std::string::npos;
+        EXPECT_TRUE(found);
+    });
+}
+
+INSTANTIATE_TEST_SUITE_P(On, Ranks, ::testing::Values(1, 2, 3, 6));
+
+}  // namespace
+}  // namespace catena::testing

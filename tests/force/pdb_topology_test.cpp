@@ -1,0 +1,49 @@
+#include "force/pdb_topology.hpp"
+
+#include "tests/force/beads.hpp"
+
+namespace catena::testing {
+namespace {
+
+std::string atom(int serial, std::string const& residue, char chain, double x) {
+    char line[100];
+    std::snprintf(line, sizeof line, "ATOM  %5d  CA  %3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           C\n", serial, residue.c_str(), chain, serial, x, -1.5,
+                  20.25);
+    return line;
+}
+
+std::vector<PdbChain> read(std::string const& text) { return read_pdb_topology(scratch_file("topology.pdb", text), "scene.yaml, topology"); }
+
+TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
+    auto const chains = read("REMARK x\n" + atom(1, "MET", 'A', 1) + atom(2, "ALA", 'A', 2) + "TER\n" + atom(3, "GLY", 'A', 3) + atom(4, "LYS", 'B', 4) +
+                             atom(5, "TRP", ' ', 5) + "END\n");
+    ASSERT_EQ(chains.size(), 4u);
+    EXPECT_EQ(chains[0].name, "A");
+    EXPECT_EQ(chains[0].residue, (std::vector<std::string>{"MET", "ALA"}));
+    EXPECT_EQ(chains[1].name, "A");
+    EXPECT_EQ(chains[2].residue, std::vector<std::string>{"LYS"});
+    EXPECT_EQ(chains[3].name, "4");
+    EXPECT_NEAR(chains[0].position[1][0], 0.2, 1e-15);
+    EXPECT_NEAR(chains[0].position[1][1], -0.15, 1e-15);
+    EXPECT_NEAR(chains[0].position[1][2], 2.025, 1e-15);
+}
+
+TEST(PdbTopology, TheFirstModelAloneAndLinesOfOtherSystems) {
+    auto const chains = read("MODEL 1\r\n" + atom(1, "GLY", 'A', 1) + "TER\r\n" + atom(2, "GLY", 'A', 2) + "ENDMDL\n" + atom(3, "GLY", 'A', 3));
+    ASSERT_EQ(chains.size(), 2u);
+    EXPECT_EQ(chains[1].size(), 1u);
+}
+
+TEST(PdbTopology, Messages) {
+    EXPECT_EQ(complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml, topology"); }),
+              "cannot open /nowhere/a.pdb (scene.yaml, topology): name a PDB file that can be read");
+    EXPECT_NE(complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml, topology): "), std::string::npos);
+    std::string broken = atom(1, "GLY", 'A', 1);
+    broken.replace(30, 8, "   1.x  ");
+    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("\"1.x\" is no coordinate ("), std::string::npos);
+    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("topology.pdb, line 2): "), std::string::npos);
+    EXPECT_NE(complaint([&] { read(broken.substr(0, 30) + "\n"); }).find("\"\" is no coordinate"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace catena::testing

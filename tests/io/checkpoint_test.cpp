@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "sample_checkpoint.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST(Checkpoint, ReadsBackBitForBit) {
+    TemporaryFolder const folder;
+    write_checkpoint(folder / "checkpoint.h5", sample());
+    expect_same(read_checkpoint(folder / "checkpoint.h5"), sample());
+    EXPECT_FALSE(std::filesystem::exists(folder / "checkpoint.h5.writing"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "checkpoint.previous.h5"));
+}
+
+TEST(Checkpoint, KeepsTheOneBefore) {
+    TemporaryFolder const folder;
+    std::string const file = folder / "checkpoint.h5";
+    for (std::int64_t const step : {100, 200, 300}) write_checkpoint(file, sample(step));
+    expect_same(read_checkpoint(file), sample(300));
+    expect_same(read_checkpoint(folder / "checkpoint.previous.h5"), sample(200));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
+}
+
+TEST(Checkpoint, LeftoversOfAKilledRunDoNotDisturb) {
+    TemporaryFolder const folder;
+    std::string const file = folder / "checkpoint.h5";
+    write_checkpoint(file, sample(100));
+    put_bytes(file + ".writing", "half");
+    put_bytes(folder / "checkpoint.previous.h5.writing", "half");
+    write_checkpoint(file, sample(200));
+    expect_same(read_checkpoint(file), sample(200));
+    expect_same(read_checkpoint(folder / "checkpoint.previous.h5"), sample(100));
+}
+
+TEST(Checkpoint, OneAlteredNumberIsSeen) {
+    TemporaryFolder const folder;
+    std::string const file = folder / "checkpoint.h5";
+    write_checkpoint(file, sample());
+    std::string bytes = bytes_of(file);
+    double const number = 1e308;
+    auto const at = bytes.find(std::string(reinterpret_cast<char const*>(&number), sizeof number));
+    ASSERT_NE(at, std::string::npos);
+    bytes[at] = static_cast<char>(bytes[at] ^ 1);
+    put_bytes(file, bytes);
+    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" + file + "): start anew");
+    put_bytes(folder / "checkpoint.previous.h5", "");
+    EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")), std::string::npos) << refusal(file);
+}
+
+TEST(Checkpoint, TwoFlippedSignsAreSeen) {
+    TemporaryFolder const folder;
+    std::string const file = folder / "checkpoint.h5";
+    write_checkpoint(file, sample());
+    std::string bytes = bytes_of(file);
+    double const third[] = {1 / 3.0, 1 / 3.0};
+    auto const at = bytes.find(std::string(reinterpret_cast<char const*>(third), sizeof third));
+    ASSERT_NE(at, std::string::npos);
+    for (std::size_t const sign : {at + 7, at + 15}) bytes[sign] = static_cast<char>(bytes[sign] ^ 0x80);
+    put_bytes(file, bytes);
+    EXPECT_NE(refusal(file).find("checksum"), std::string::npos) << refusal(file);
+}
+
+TEST(Checkpoint, MissingAndForeignFilesAreRefused) {
+    TemporaryFolder const folder;
+    EXPECT_EQ(refusal(folder / "none.h5"), "no such checkpoint (" + (folder / "none.h5") + "): name the checkpoint.h5 of a run");
+    make_trajectory(folder / "trajectory.h5md", {}, false, false, {})->close();
+    EXPECT_NE(refusal(folder / "trajectory.h5md").find("not a checkpoint of Catena"), std::string::npos);
+    EXPECT_NE(refusal(folder.path()).find("not a checkpoint"), std::string::npos);
+}
+
+TEST(Checkpoint, KeysThatAreNoNamesAreRefused) {
+    TemporaryFolder const folder;
+    Checkpoint checkpoint = sample();
+    checkpoint.arrays["a/b"] = {1};
+    EXPECT_THROW(write_checkpoint(folder / "checkpoint.h5", checkpoint), ComputationError);
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace catena::test

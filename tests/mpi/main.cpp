@@ -1,0 +1,45 @@
+// main() of the tests that run on several ranks: rank 0 reports as GoogleTest does, the others say only what failed on them,
+// and all return the same status.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/mpi/world.hpp"
+
+namespace catena::testing {
+namespace {
+
+Communicator const* current = nullptr;
+
+class FailuresOfRank : public ::testing::EmptyTestEventListener {
+  public:
+    explicit FailuresOfRank(int rank) : rank_(rank) {}
+    void OnTestPartResult(::testing::TestPartResult const& result) override {
+        if (!result.failed()) return;
+        auto const* const test = ::testing::UnitTest::GetInstance()->current_test_info();
+        std::fprintf(stderr, "[rank %d] %s.%s: %s:%d: %s\n", rank_, test != nullptr ? test->test_suite_name() : "-",
+                     test != nullptr ? test->name() : "-", result.file_name(), result.line_number(), result.message());
+    }
+
+  private:
+    int rank_;
+};
+
+}  // namespace
+
+Communicator const& world() { return *current; }
+
+}  // namespace catena::testing
+
+int main(int argc, char** argv) {
+    auto const world = catena::world_communicator(&argc, &argv);
+    catena::testing::current = world.get();
+    ::testing::InitGoogleTest(&argc, argv);
+    if (world->rank() != 0) {
+        auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
+        delete listeners.Release(listeners.default_result_printer());
+        listeners.Append(new catena::testing::FailuresOfRank(world->rank()));
+    }
+    double const failed = RUN_ALL_TESTS() != 0 ? 1 : 0;
+    return static_cast<int>(world->max(failed));
+}

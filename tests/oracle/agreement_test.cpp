@@ -1,0 +1,76 @@
+// The articulated-body algorithm against the dense system on random chains.
+#include <gtest/gtest.h>
+
+#include "error.hpp"
+#include "tests/oracle/compare.hpp"
+#include "tests/support/random_chain.hpp"
+
+namespace catena::test {
+namespace {
+
+using oracle::Quad;
+
+struct Case {
+    ChainSpec chain;
+    oracle::Loads loads;
+};
+
+/// Every kind of chain in turn: fixed and free base, each mixture of joints, with and without springs; n from 1 to `largest`,
+/// small ones more often.
+Case random_case(std::uint64_t seed, double largest) {
+    Random random(1'000'000 + seed);
+    RandomChainOptions options;
+    options.bodies = static_cast<std::size_t>(std::pow(largest + 0.99, random.uniform()));
+    options.base = seed % 2 == 0 ? Base::fixed : Base::free;
+    options.joints = static_cast<RandomJoints>(seed / 2 % 3);
+    options.springs = seed / 6 % 2 == 1;
+    options.moving = seed / 12 % 4 != 0;
+    options.loaded = seed / 12 % 4 != 1;
+    return {random_chain(seed, options), {random.vector(10), {}}};
+}
+
+template <class S>
+void compare(int count, double largest) {
+    Agreement<S> agreement;
+    for (int seed = 0; seed < count; ++seed) {
+        Case const c = random_case(static_cast<std::uint64_t>(seed), largest);
+        ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
+    }
+    agreement.print();
+    EXPECT_GT(agreement.error(), 0.0);  // two algorithms, not one
+}
+
+TEST(RandomChains, AThousandRandomChains) { compare<double>(1000, 32); }
+TEST(RandomChains, InLongDouble) { compare<long double>(120, 16); }
+/// With 113 bits conditioning hides nothing: the two derivations are the same mechanics.
+TEST(RandomChains, In113Bits) { compare<Quad>(48, 6); }
+
+TEST(RandomChains, EmptyChain) {
+    ChainSpec const chain;
+    EXPECT_TRUE(oracle::aba<double>(chain, {}).qdd.empty());
+    EXPECT_TRUE(oracle::dense<double>(chain, {}).qdd.empty());
+    EXPECT_EQ(oracle::condition_estimate(chain), 1.0);
+}
+
+TEST(RandomChains, UnphysicalAndUnknownChainsAreRefusedByBody) {
+    ChainSpec chain = random_chain(3, {.bodies = 4});
+    chain.bodies.joint[2] = JointType::link;
+    try {
+        oracle::aba<double>(chain, {});
+        FAIL() << "a link joint between rigid bodies passed";
+    } catch (ComputationError const& error) {
+        EXPECT_NE(std::string(error.what()).find("(joint 3)"), std::string::npos) << error.what();
+    }
+    chain = random_chain(3, {.bodies = 4, .joints = RandomJoints::spherical});
+    for (double& x : chain.bodies.inertia[3].data) x = -x;
+    chain.bodies.com[3] = Vec3::zero();
+    try {
+        oracle::aba<double>(chain, {});
+        FAIL() << "a negative inertia passed";
+    } catch (ComputationError const& error) {
+        EXPECT_NE(std::string(error.what()).find("(body 4)"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace catena::test

@@ -1,0 +1,108 @@
+// Conventions against time itself: coordinates moved on by a short time, differences taken, no formula of the oracles used.
+#include <gtest/gtest.h>
+
+#include "tests/oracle/compare.hpp"
+#include "tests/support/random_chain.hpp"
+
+namespace catena::test {
+namespace {
+
+using oracle::Kinematics;
+using oracle::OracleResult;
+
+Vec3 const gravity{{2, -1, -9}};
+
+/// The chain a time h later, correct to h^2 in coordinates and h in velocities with errors even in h where it matters for
+/// central differences: spherical and free joints turn by the rotation vector h (w + h/2 w') about their body's axes.
+ChainSpec moved(ChainSpec chain, OracleResult<double> const& a, double h) {
+    BodyArrays& b = chain.bodies;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        Vec3 const step = h * (b.qd[k] + (0.5 * h) * a.qdd[k]);
+        if (b.joint[k] == JointType::revolute) {
+            b.q[k][0] += step[0];
+        } else {
+            auto const& q = b.q[k];
+            Quat const turned = normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
+            b.q[k] = {turned.w, turned.x, turned.y, turned.z};
+        }
+        b.qd[k] = b.qd[k] + h * a.qdd[k];
+    }
+    b.free_position = b.free_position + h * (b.free_velocity + (0.5 * h) * a.base_acceleration);
+    b.free_velocity = b.free_velocity + h * a.base_acceleration;
+    return chain;
+}
+
+using Vectors = std::vector<Vec3>;
+Vectors central(Vectors const& ahead, Vectors const& behind, double h) {
+    Vectors d;
+    for (std::size_t k = 0; k < ahead.size(); ++k) d.push_back((0.5 / h) * (ahead[k] - behind[k]));
+    return d;
+}
+
+struct Differences {
+    Vectors velocity, acceleration, alpha;
+    double energy;  // d/dt of kinetic, potential and spring energy
+    double spring;  // of the last alone
+};
+Differences differences(ChainSpec const& chain, OracleResult<double> const& a, double h) {
+    oracle::Loads const loads{gravity, {}};
+    auto const ahead = oracle::kinematics<double>(moved(chain, a, h), loads),
+               behind = oracle::kinematics<double>(moved(chain, a, -h), loads);
+    auto const total = [](Kinematics<double> const& k) { return k.kinetic_energy + k.potential_energy + k.spring_energy; };
+    return {central(ahead.com_position, behind.com_position, h), central(ahead.com_velocity, behind.com_velocity, h),
+            central(ahead.omega, behind.omega, h), (total(ahead) - total(behind)) / (2 * h),
+            (ahead.spring_energy - behind.spring_energy) / (2 * h)};
+}
+
+/// The error of a central difference falls by 4 when the step is halved, if what it tends to is right; else it stays.
+void expect_second_order(double coarse, double fine, char const* what) {
+    EXPECT_LT(coarse, 0.02) << what;
+    EXPECT_GT(coarse, 1e-9) << what << ": too small to tell the order";
+    EXPECT_NEAR(coarse / fine, 4, 0.3) << what;
+}
+
+class Motion : public ::testing::TestWithParam<int> {
+  protected:
+    ChainSpec chain(bool springs) const {
+        return random_chain(static_cast<std::uint64_t>(40 + GetParam()), {.bodies = 5,
+                                                                          .joints = static_cast<RandomJoints>(GetParam() % 3),
+                                                                          .base = GetParam() < 3 ? Base::fixed : Base::free,
+                                                                          .springs = springs});
+    }
+};
+INSTANTIATE_TEST_SUITE_P(AllKinds, Motion, ::testing::Range(0, 6));
+
+TEST_P(Motion, VelocitiesAndAccelerationsAreTimeDerivatives) {
+    ChainSpec const c = chain(true);
+    auto const a = oracle::aba<double>(c, {gravity, {}});
+    auto const k = oracle::kinematics<double>(c, {gravity, {}});
+    double const h = 1e-3;
+    Differences const coarse = differences(c, a, h), fine = differences(c, a, h / 2);
+    expect_second_order(relative_difference(coarse.velocity, k.com_velocity), relative_difference(fine.velocity, k.com_velocity),
+                        "velocity");
+    expect_second_order(relative_difference(coarse.acceleration, a.com_acceleration),
+                        relative_difference(fine.acceleration, a.com_acceleration), "acceleration");
+    expect_second_order(relative_difference(coarse.alpha, a.alpha), relative_difference(fine.alpha, a.alpha), "angular acceleration");
+}
+
+/// Springs conserve, whatever their three stiffnesses: the energy changes by the power of dampers, torques and wrenches.
+TEST_P(Motion, EnergyChangesByThePowerOfWhatIsNotConservative) {
+    ChainSpec const c = chain(true);
+    auto const a = oracle::aba<double>(c, {gravity, {}});
+    auto const k = oracle::kinematics<double>(c, {gravity, {}});
+    double power = 0;
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        power += dot(c.bodies.wrench[i].first, k.omega[i]) + dot(c.bodies.wrench[i].second, k.com_velocity[i]);
+        if (c.bodies.joint[i] == JointType::free) continue;
+        Vec3 const& qd = c.bodies.qd[i];
+        for (int j = 0; j < 3; ++j) power += (c.bodies.torque[i][j] - c.bodies.damping[i][j] * qd[j]) * qd[j];
+    }
+    double const h = 1e-3;
+    Differences const coarse = differences(c, a, h), fine = differences(c, a, h / 2);
+    double const scale = std::abs(power) + std::abs(coarse.spring);
+    EXPECT_GT(std::abs(coarse.spring), 1e-3 * scale);  // the springs take part
+    expect_second_order(std::abs(coarse.energy - power) / scale, std::abs(fine.energy - power) / scale, "power");
+}
+
+}  // namespace
+}  // namespace catena::test

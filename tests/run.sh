@@ -1,0 +1,127 @@
+#!/usr/bin/env bash
+# Builds and runs every test of Catena on a Debian 12 or Ubuntu 24.04 machine. See --help.
+set -euo pipefail
+
+usage() {
+    cat <<'TEXT'
+usage: tests/run.sh [--quick] [--long] [--help]
+
+Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
+  format      clang-format finds nothing to change
+  release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
+  cuda        the mathematics shared with GPUs compiles with nvcc, where there is one
+  asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests
+  no-mpi      build without MPI, all tests
+  minimal     build without any optional package, all tests
+  tidy        clang-tidy on the library's own sources, for 4 minutes at most (what was left out is named)
+
+  --quick  format and release alone
+  --long   also the long tests (statistics, drift; an hour or so)
+Logs: build/logs/. Exit status 0 if everything passed, 1 if not; the last line counts tests and checks.
+TEXT
+}
+
+quick=no long=no
+for option in "$@"; do
+    case $option in
+        --quick) quick=yes ;;
+        --long) long=yes ;;
+        -h | --help) usage; exit 0 ;;
+        *) echo "unknown option: $option (see tests/run.sh --help)" >&2; exit 2 ;;
+    esac
+done
+
+# shellcheck source=jobs/common.sh
+source "$(dirname "${BASH_SOURCE[0]}")/../jobs/common.sh"
+passed=0 failed=0
+summary=()
+
+# check NAME COMMAND...: one check, timed and counted; the others go on if it fails.
+check() {
+    local name=$1 start=$SECONDS word=passed
+    if step "$@"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        word=FAILED
+    fi
+    summary+=("$(printf '%-22s %-8s %5d s' "$name" "$word" $((SECONDS - start)))")
+    [ "$word" = passed ]
+}
+
+# ctests NAME ARGUMENTS...: counts the tests that CTest ran. A run without a summary counts as one failure.
+ctests() {
+    local name=$1 start=$SECONDS bad total
+    shift
+    step "$name" ctest --parallel "$(nproc)" "$@" || true
+    read -r bad total < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests failed out of ([0-9]+)$/\1 \2/p' "$logs/$name.log" | tail -n 1) || { bad=1; total=1; }
+    passed=$((passed + total - bad))
+    failed=$((failed + bad))
+    summary+=("$(printf '%-22s %-8s %5d s  %d of %d tests passed' "$name" "$([ "$bad" -eq 0 ] && echo passed || echo FAILED)" \
+        $((SECONDS - start)) $((total - bad)) "$total")")
+}
+
+# build PRESET: configured and built with warnings as errors.
+build() {
+    say "$1"
+    check "$1-configure" cmake --preset "$1" -DCATENA_WERROR=ON || return 1
+    sed -n '/^-- Catena /,/^$/p' "$logs/$1-configure.log"
+    check "$1-build" cmake --build --preset "$1" --parallel "$(build_jobs)"
+}
+
+format() {
+    find src mpi cuda tests \( -name '*.hpp' -o -name '*.cpp' -o -name '*.cu' \) -print0 | xargs -0 "$VIRTUAL_ENV/bin/clang-format" --dry-run --Werror
+}
+
+tidy() {
+    local until=$(($(date +%s) + 240)) sources
+    # Sources changed since the last commit come first.
+    sources=$({ git diff --name-only HEAD 2>/dev/null | sed "s|^|$root/|"; sed -nE 's/^ *"file": "(.*)",?$/\1/p' build/release/compile_commands.json; } |
+        grep -E "^$root/(src|mpi)/.*\.cpp$" | awk '!seen[$0]++' | while read -r f; do grep -qF "\"$f\"" build/release/compile_commands.json && echo "$f"; done)
+    # shellcheck disable=SC2016
+    until=$until xargs -P "$(nproc)" -I{} bash -c \
+        'if [ "$(date +%s)" -ge "$until" ]; then echo "left out, time is up: {}"; else "$VIRTUAL_ENV/bin/clang-tidy" -p build/release --quiet "{}" 2>/dev/null; fi' \
+        <<<"$sources"
+}
+
+finish() {
+    say "Summary, $((SECONDS / 60)) min $((SECONDS % 60)) s"
+    printf '%s\n' "${summary[@]}"
+    printf '\n%d passed, %d failed\n' "$passed" "$failed"
+    [ "$failed" -eq 0 ]
+}
+
+say "Packages"
+need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev libbenchmark-dev ccache git
+need_science
+tools=yes
+need_python "$root/tests/requirements.txt" || tools=no
+mpi_environment
+
+say "format"
+if [ $tools = yes ]; then check format format || true; else echo "   LEFT OUT: no clang-format (PyPI cannot be reached)"; fi
+
+if build release; then
+    ctests release-tests --preset release
+    if [ $long = yes ]; then ctests long-tests --test-dir build/release --output-on-failure -L long; fi
+fi
+if [ $quick = yes ]; then finish; exit; fi
+
+if grep -q '^CATENA_NVCC:FILEPATH=/' build/release/CMakeCache.txt; then
+    check cuda cmake --build --preset release --target catena_cuda || true
+else
+    printf '\n   LEFT OUT: no nvcc here, so nothing shows that the shared mathematics still compiles for GPUs\n'
+    summary+=("cuda                   left out, no nvcc")
+fi
+if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast; fi
+if build no-mpi; then ctests no-mpi-tests --preset no-mpi; fi
+if build minimal; then ctests minimal-tests --preset minimal; fi
+
+say "tidy"
+if [ $tools = yes ]; then
+    check tidy tidy || true
+    grep 'left out' "$logs/tidy.log" || true
+else
+    echo "   LEFT OUT: no clang-tidy (PyPI cannot be reached)"
+fi
+finish

@@ -1,0 +1,49 @@
+// Physically valid random chains for tests: the same chain for the same seed on every machine.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/scene.hpp"
+
+namespace catena::test {
+
+/// SplitMix64 (Steele, Lea & Flood 2014): short, and its numbers are the same wherever it runs.
+class Random {
+  public:
+    explicit Random(std::uint64_t seed) : state_(seed) {}
+    /// In [low, high).
+    double uniform(double low = 0, double high = 1);
+    bool chance(double probability) { return uniform() < probability; }
+    /// Each component in [-size, size).
+    Vec3 vector(double size);
+    Vec3 direction();
+    Quat orientation();
+
+  private:
+    std::uint64_t state_;
+};
+
+enum class RandomJoints { revolute, spherical, mixed };
+
+struct RandomChainOptions {
+    std::size_t bodies = 8;
+    RandomJoints joints = RandomJoints::mixed;
+    Base base = Base::fixed;
+    bool moving = true;    // velocities
+    bool loaded = true;    // joint torques and wrenches
+    bool springs = false;  // joint springs (unequal about the three axes) and dampers
+};
+
+/// Rigid bodies of mass 0.3 .. 3, size about 0.3, any shape a real body can have.
+ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options);
+
+/// Point beads of mass 0.3 .. 3 on links of 0.2 .. 0.6; velocities keep the lengths to rounding.
+ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base);
+/// A force on each bead.
+std::vector<Vec3> random_forces(std::uint64_t seed, std::size_t beads);
+
+/// The chain with every number moved by up to `size` of itself (rotations by angles up to `size`). What the accelerations
+/// change by, over `size`, is the problem's own growth of errors: no solver can be asked for less than growth x eps.
+ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size);
+
+}  // namespace catena::test
