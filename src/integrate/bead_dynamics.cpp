@@ -129,19 +129,22 @@ class BeadDynamics final : public AbsoluteDynamics {
         return r;
     }
     double residual() override {
-        exchange_from_inboard(communicator_, group_, change_.view());
+        Field<4> terms(group_.size);   // acceleration and the size of what each force adds to it
         double worst = 0;
         for (std::int64_t k = 0; k < group_.size; ++k) {
             Vec3 const ma = group_.mass.view().at(k, 0) * change_[k], f = force_[k];
             Vec3 const inboard = joint_force_.view().load<1>(k)[0] * direction_[k];
             Vec3 const outboard = group_.is_last[k] ? Vec3::zero() : joint_force_.view().load<1>(k + 1)[0] * direction_.view().load(k + 1);
-            double const newton = relative(norm(ma - f - inboard + outboard), norm(ma) + norm(f) + norm(inboard) + norm(outboard));
-            double closing = 0;
-            if (has_link(k)) {
-                Vec3 const before = to_ground(k) ? Vec3::zero() : change_.view().load(k - 1);
-                closing = relative(dot(direction_[k], change_[k] - before) + swing(k), norm(change_[k]) + norm(before) + swing(k));
-            }
-            worst = larger(worst, larger(newton, closing));
+            double const size = norm(f) + norm(inboard) + norm(outboard);
+            worst = larger(worst, relative(norm(ma - f - inboard + outboard), norm(ma) + size));
+            terms.set(k, {{change_[k][0], change_[k][1], change_[k][2], group_.inverse_mass.view().at(k, 0) * size}});
+        }
+        exchange_from_inboard(communicator_, group_, terms.view());
+        for (std::int64_t k = 0; k < group_.size; ++k) {
+            if (!has_link(k)) continue;
+            Vector<double, 4> const mine = terms[k], before = to_ground(k) ? Vector<double, 4>::zero() : terms.view().load(k - 1);
+            Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
+            worst = larger(worst, relative(dot(direction_[k], across) + swing(k), mine[3] + before[3] + swing(k)));
         }
         return communicator_.max(worst);
     }

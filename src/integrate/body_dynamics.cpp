@@ -263,10 +263,15 @@ class BodyDynamics final : public AbsoluteDynamics {
         });
         solver_->solve({angular_momentum_.view(), momentum_.view(), {}, {}}, {omega, velocity, {}});
     }
+    /// With the size of what each force and moment on the body, and its turning, adds (chapter, eqs 2.1-2.2).
     HandleAcceleration handle_acceleration(std::int64_t k, Vec3 const& r) const {
-        Vec3 const w = observed_omega_[k], a = acceleration_[k];
-        Vec3 const tangential = cross(alpha_[k], r), centripetal = cross(w, cross(w, r));
-        return {a + turn(orientation_, k) * (tangential + centripetal), norm(a) + norm(tangential) + norm(centripetal)};
+        Mat3 const to_ground = turn(orientation_, k);
+        Vec3 const w = observed_omega_[k], centripetal = cross(w, cross(w, r));
+        Vec3 const f1 = joint_force_.view().load<3>(k), f2 = group_.is_last[k] ? Vec3::zero() : joint_force_.view().load<3>(k + 1);
+        double terms = norm(centripetal) + group_.inverse_mass.view().at(k, 0) * (norm(force_[k]) + norm(f1) + norm(f2));
+        for (Vec3 const& moment : {momentum_[k], cross(group_.r1[k], transposed_times(to_ground, f1)), cross(group_.r2[k], transposed_times(to_ground, f2))})
+            terms += norm(cross(as_symmetric(group_.inverse_inertia[k]) * moment, r));
+        return {acceleration_[k] + to_ground * (cross(alpha_[k], r) + centripetal), terms};
     }
     double newton_euler_residual(std::int64_t k) const {
         Mat3 const r = turn(orientation_, k);

@@ -10,7 +10,7 @@
 namespace catena {
 namespace {
 
-constexpr double label_digits = 1e5;   // labels that would need more digits than this get an offset
+constexpr double label_digits = 1e5;  // labels that would need more digits than this get an offset
 
 /// 1, 2 or 5 times a power of ten.
 double round_step(double range, int ticks) {

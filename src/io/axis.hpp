@@ -11,10 +11,10 @@ struct Axis {
         double value;
         std::string label;
     };
-    double low = 0, high = 1;     // what is drawn, in value or, if logarithmic, in log10
+    double low = 0, high = 1;  // what is drawn, in value or, if logarithmic, in log10
     bool logarithmic = false;
     std::vector<Tick> ticks;
-    std::string note;             // "x 10^-6", "+ 1234.5": what was taken out of the labels; may be empty
+    std::string note;  // "x 10^-6", "+ 1234.5": what was taken out of the labels; may be empty
 
     /// 0 at `low`, 1 at `high`.
     double place(double value) const;

@@ -102,7 +102,8 @@ std::vector<std::string> keys_of(Place const& group) {
         ssize_t const length =
             check(H5Lget_name_by_idx(group.id, ".", H5_INDEX_NAME, H5_ITER_INC, k, nullptr, 0, H5P_DEFAULT), group.file, group.doing);
         std::string key(static_cast<std::size_t>(length) + 1, '\0');
-        check(H5Lget_name_by_idx(group.id, ".", H5_INDEX_NAME, H5_ITER_INC, k, key.data(), key.size(), H5P_DEFAULT), group.file, group.doing);
+        check(H5Lget_name_by_idx(group.id, ".", H5_INDEX_NAME, H5_ITER_INC, k, key.data(), key.size(), H5P_DEFAULT), group.file,
+              group.doing);
         key.pop_back();
         keys.push_back(std::move(key));
     }
@@ -148,9 +149,7 @@ std::int64_t get_integer(Place const& root, std::string const& name) {
     return value;
 }
 
-Group open_group(Place const& root, char const* name) {
-    return Group(check(H5Gopen2(root.id, name, H5P_DEFAULT), root.file, root.doing));
-}
+Group open_group(Place const& root, char const* name) { return Group(check(H5Gopen2(root.id, name, H5P_DEFAULT), root.file, root.doing)); }
 
 enum class Arrays { keep, only_check };
 
@@ -206,7 +205,7 @@ void keep_previous(std::string const& file) {
     std::string const spare = previous_of(file) + ".writing";
     ::unlink(spare.c_str());
     if (::link(file.c_str(), spare.c_str()) == 0) return rename_file(spare, previous_of(file));
-    rename_file(file, previous_of(file));   // a file system without hard links
+    rename_file(file, previous_of(file));  // a file system without hard links
 }
 
 }  // namespace

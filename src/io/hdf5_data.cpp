@@ -84,7 +84,7 @@ void put_unit(Place const& place, std::string const& unit) {
     Type type = text_type(H5T_VARIABLE, place);
     check(H5Tset_cset(type.get(), H5T_CSET_UTF8), place.file, place.doing);
     char const* const text = unit.c_str();
-    put(place, "unit", type.get(), scalar(place), &text);
+    put(place, "unit", type.get(), scalar(place), static_cast<void const*>(&text));
 }
 
 std::string get_text(Place const& place, std::string const& name) {
@@ -94,7 +94,7 @@ std::string get_text(Place const& place, std::string const& name) {
     if (!attribute || !stored || H5Tget_class(stored.get()) != H5T_STRING) return "";
     if (H5Tis_variable_str(stored.get()) > 0) {
         char* text = nullptr;
-        if (H5Aread(attribute.get(), stored.get(), &text) < 0 || text == nullptr) return "";
+        if (H5Aread(attribute.get(), stored.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return "";
         std::string const copy = text;
         H5free_memory(text);
         return copy;

@@ -14,7 +14,7 @@ namespace catena::hdf5 {
 struct Place {
     hid_t id;
     std::string const& file;
-    std::string const& doing;   // "write the trajectory"
+    std::string const& doing;  // "write the trajectory"
 };
 
 Group make_group(Place const&, std::string const& name);
@@ -53,7 +53,7 @@ class Series {
 
   private:
     Dataset data_;
-    hid_t type_ = H5I_INVALID_HID;   // a native type of the library, not owned
+    hid_t type_ = H5I_INVALID_HID;  // a native type of the library, not owned
     std::vector<hsize_t> row_;
 };
 

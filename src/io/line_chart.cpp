@@ -32,7 +32,8 @@ Points finite_points(Curve const& curve) {
 }
 
 Axis axis_of_values(Points const& points) {
-    auto const [low, high] = std::minmax_element(points.begin(), points.end(), [](auto const& a, auto const& b) { return a.second < b.second; });
+    auto const [low, high] =
+        std::minmax_element(points.begin(), points.end(), [](auto const& a, auto const& b) { return a.second < b.second; });
     bool const logarithmic = low->second > 0 && high->second > decades_for_logarithm * low->second;
     return logarithmic ? logarithmic_axis(low->second, high->second) : linear_axis(low->second, high->second, 0.06, 6);
 }
@@ -53,7 +54,8 @@ std::string axes(Drawing const& drawing, Curve const& curve) {
     }
     std::string const x_note = drawing.x.note.empty() ? "" : " (" + drawing.x.note + ")";
     std::string const y_note = drawing.y.note.empty() ? "" : "  " + drawing.y.note;
-    svg += fmt::format("<text class=\"middle\" x=\"{}\" y=\"{}\">{}</text>\n", left + inner_width / 2, height - 6, escaped(curve.x_label + x_note));
+    svg += fmt::format("<text class=\"middle\" x=\"{}\" y=\"{}\">{}</text>\n", left + inner_width / 2, height - 6,
+                       escaped(curve.x_label + x_note));
     svg += fmt::format("<text x=\"{}\" y=\"14\">{}</text>\n", 4, escaped(curve.y_label + y_note));
     return svg;
 }
@@ -82,7 +84,8 @@ Points thinned(Points const& points, std::size_t buckets) {
 std::string line_chart(Curve const& curve) {
     Points const points = finite_points(curve);
     if (points.empty()) return "<p>No finite values.</p>\n";
-    Drawing const drawing{linear_axis(points.front().first, std::max(points.front().first, points.back().first), 0, 7), axis_of_values(points)};
+    Drawing const drawing{linear_axis(points.front().first, std::max(points.front().first, points.back().first), 0, 7),
+                          axis_of_values(points)};
     std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{} against {}\">\n", width, height,
                                   escaped(curve.y_label), escaped(curve.x_label));
     svg += axes(drawing, curve);
@@ -94,7 +97,8 @@ std::string line_chart(Curve const& curve) {
     for (auto const& [x, y] : thinned(points, most_buckets)) svg += fmt::format("{:.1f},{:.1f} ", drawing.at_x(x), drawing.at_y(y));
     svg += "\"/>\n";
     if (points.size() == 1)
-        svg += fmt::format("<circle class=\"c0\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n", drawing.at_x(points[0].first), drawing.at_y(points[0].second));
+        svg += fmt::format("<circle class=\"c0\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>\n", drawing.at_x(points[0].first),
+                           drawing.at_y(points[0].second));
     return svg + "</svg>\n";
 }
 

@@ -9,7 +9,7 @@ namespace catena {
 
 struct Curve {
     std::string x_label, y_label;
-    std::vector<double> x, y;   // of one length, x ascending; what is not finite is left out
+    std::vector<double> x, y;  // of one length, x ascending; what is not finite is left out
 };
 
 /// Ticks at round numbers; a common power of ten or a large offset stands once, above the axis. Logarithmic where all values are

@@ -32,7 +32,7 @@ std::int64_t kept_size(std::string const& file, std::string const& header, std::
     std::size_t kept = header.size();
     for (std::size_t line = 2; kept < text.size(); ++line) {
         std::size_t const end = text.find('\n', kept);
-        if (end == std::string::npos) break;   // a run that was killed while it wrote
+        if (end == std::string::npos) break;  // a run that was killed while it wrote
         auto const step = step_of(std::string_view(text).substr(kept, end - kept));
         if (!step) throw InputError("not a record of observables", file + ", line " + std::to_string(line), "mend or remove the line");
         if (*step > after_step) break;
@@ -66,8 +66,8 @@ struct ObservablesWriter::File {
     std::size_t columns;
 };
 
-ObservablesWriter::ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<std::int64_t> after_step,
-                                     std::string const& time_unit) {
+ObservablesWriter::ObservablesWriter(std::string const& file, std::vector<std::string> const& columns,
+                                     std::optional<std::int64_t> after_step, std::string const& time_unit) {
     std::string const header = header_of(columns, time_unit);
     OutputFile out = after_step ? OutputFile::append(file, kept_size(file, header, *after_step)) : OutputFile::create(file);
     if (!after_step) out.write(header);

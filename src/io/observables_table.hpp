@@ -7,8 +7,8 @@
 namespace catena {
 
 struct ObservablesTable {
-    std::vector<std::string> names;              // "step", "time [ps]", "total_energy [kJ/mol]", ...
-    std::vector<std::vector<double>> columns;    // one for each name
+    std::vector<std::string> names;            // "step", "time [ps]", "total_energy [kJ/mol]", ...
+    std::vector<std::vector<double>> columns;  // one for each name
 };
 
 /// InputError naming file and line for anything but a table of ObservablesWriter; a last line without its end is left out.

@@ -19,25 +19,25 @@ namespace catena {
 struct Topology {
     struct Chain {
         std::string name;
-        std::int64_t first = 0, count = 0;   // sites
+        std::int64_t first = 0, count = 0;  // sites
         bool beads = true;
         bool ring = false;
     };
     std::string title;
     std::vector<Chain> chains;
-    std::vector<std::string> residue;        // three-letter name of each site; bodies: "BDY"
+    std::vector<std::string> residue;  // three-letter name of each site; bodies: "BDY"
     std::vector<double> mass;
     std::optional<Vec3> box;
-    bool si = false;                          // units stay the user's: no unit attributes are written but "m", "s", ...
+    bool si = false;  // units stay the user's: no unit attributes are written but "m", "s", ...
 };
 
 struct Frame {
     std::int64_t step = 0;
     double time = 0;
-    std::vector<Vec3> positions;              // W, unwrapped
-    std::vector<Vec3> velocities;             // empty: not written
-    std::vector<Quat> orientations;           // of bodies, W; empty when the scene has beads alone
-    std::vector<Vector<double, 6>> joint_forces;   // [torque, force] on each site at its inboard joint, W; empty: not written
+    std::vector<Vec3> positions;                  // W, unwrapped
+    std::vector<Vec3> velocities;                 // empty: not written
+    std::vector<Quat> orientations;               // of bodies, W; empty when the scene has beads alone
+    std::vector<Vector<double, 6>> joint_forces;  // [torque, force] on each site at its inboard joint, W; empty: not written
 };
 
 /// H5MD 1.1 file for MDAnalysis and others.
@@ -49,7 +49,8 @@ class TrajectoryWriter {
     virtual void flush() = 0;
     virtual void close() = 0;
 };
-/// Makes `file`; with `after_step`, opens an existing one and cuts the frames later than that step. "built without HDF5" where it is absent.
+/// Makes `file`; with `after_step`, opens an existing one and cuts the frames later than that step. "built without HDF5" where it is
+/// absent.
 std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool velocities, bool joint_forces,
                                                   std::optional<std::int64_t> after_step);
 
@@ -61,11 +62,12 @@ struct Checkpoint {
     std::int64_t step = 0;
     double time = 0;
     std::string scene_hash;
-    std::map<std::string, std::string> notes;              // e.g. tree table version, backend, catena version
-    std::map<std::string, std::int64_t> integers;          // e.g. fixed number of projection sweeps
+    std::map<std::string, std::string> notes;      // e.g. tree table version, backend, catena version
+    std::map<std::string, std::int64_t> integers;  // e.g. fixed number of projection sweeps
     std::map<std::string, std::vector<double>> arrays;
 };
-/// Writes to a temporary name, fsyncs, reopens and verifies a checksum, then renames; the checkpoint before is kept as `<name>.previous.h5`.
+/// Writes to a temporary name, fsyncs, reopens and verifies a checksum, then renames; the checkpoint before is kept as
+/// `<name>.previous.h5`.
 void write_checkpoint(std::string const& file, Checkpoint const&);
 /// InputError for a file that is missing, not a checkpoint, cut short or altered (checksum).
 Checkpoint read_checkpoint(std::string const& file);
@@ -87,14 +89,15 @@ class ObservablesWriter {
     std::unique_ptr<File> file_;
 };
 
-/// report.html: one self-contained page (no network): title, the summary as tables, a line chart (inline SVG) for each observable against time,
-/// a bar picture of the timeline of one step. Reads observables.csv, summary.json and timeline.json in `folder`.
+/// report.html: one self-contained page (no network): title, the summary as tables, a line chart (inline SVG) for each observable against
+/// time, a bar picture of the timeline of one step. Reads observables.csv, summary.json and timeline.json in `folder`.
 void write_run_report(std::string const& folder);
 
 /// Writes text to a temporary name beside `file`, fsyncs and renames.
 void write_text_file(std::string const& file, std::string const& text);
 
-/// Progress of long work on a terminal or log: rate and time left. Silent when `quiet`; on a terminal one line that is redrawn, else a line now and then.
+/// Progress of long work on a terminal or log: rate and time left. Silent when `quiet`; on a terminal one line that is redrawn, else a line
+/// now and then.
 class Progress {
   public:
     /// `time_step` in ps gives the rate in ns/day (left out for `si`).
@@ -114,6 +117,6 @@ class Progress {
     double time_step_, start_, last_shown_, interval_;
 };
 
-std::string hdf5_version();   // "HDF5 1.10.8" or "none"
+std::string hdf5_version();  // "HDF5 1.10.8" or "none"
 
 }  // namespace catena

@@ -12,7 +12,7 @@ namespace catena {
 namespace {
 
 constexpr double seconds_between_redraws = 0.2;
-constexpr double first_interval = 1, longest_interval = 30;   // seconds, of a log
+constexpr double first_interval = 1, longest_interval = 30;  // seconds, of a log
 constexpr int bar_width = 28;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }

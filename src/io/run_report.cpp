@@ -52,26 +52,28 @@ std::string statistics(std::vector<double> const& values) {
 std::string charts(ObservablesTable const& table) {
     if (table.columns[0].empty()) return "<p>No record was written.</p>\n";
     auto const [time, time_unit] = name_and_unit(table.names[1]);
+    std::string const time_label = time_unit.empty() ? time : fmt::format("{} / {}", time, time_unit);
     std::string html = "<div class=\"charts\">\n";
     for (std::size_t k = 2; k < table.names.size(); ++k) {
         auto const [name, unit] = name_and_unit(table.names[k]);
-        Curve const curve{time + (time_unit.empty() ? "" : " / " + time_unit), unit, table.columns[1], table.columns[k]};
-        html += fmt::format("<figure>\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n", escaped(readable_name(name)), line_chart(curve),
-                            statistics(table.columns[k]));
+        Curve const curve{time_label, unit, table.columns[1], table.columns[k]};
+        html += fmt::format("<figure>\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n", escaped(readable_name(name)),
+                            line_chart(curve), statistics(table.columns[k]));
     }
     return html + "</div>\n";
 }
 
 std::string files_in(fs::path const& folder) {
     static constexpr std::pair<char const*, char const*> known[] = {
-        {"trajectory.h5md", "trajectory (H5MD 1.1)"},      {"topology.pdb", "topology for the trajectory"},
-        {"topology.cif", "topology for the trajectory"},   {"observables.csv", "observables"},
-        {"checkpoint.h5", "checkpoint for --restart"},     {"checkpoint.previous.h5", "the checkpoint before"},
-        {"summary.json", "the numbers above"},             {"timeline.json", "phases of recorded steps"},
+        {"trajectory.h5md", "trajectory (H5MD 1.1)"},    {"topology.pdb", "topology for the trajectory"},
+        {"topology.cif", "topology for the trajectory"}, {"observables.csv", "observables"},
+        {"checkpoint.h5", "checkpoint for --restart"},   {"checkpoint.previous.h5", "the checkpoint before"},
+        {"summary.json", "the numbers above"},           {"timeline.json", "phases of recorded steps"},
         {"picture.png", "observables and conformation"}};
     std::string rows;
     for (auto const& [name, use] : known)
-        if (fs::exists(folder / name)) rows += fmt::format("<tr><th><a href=\"{}\"><code>{}</code></a></th><td>{}</td></tr>\n", name, name, use);
+        if (fs::exists(folder / name))
+            rows += fmt::format("<tr><th><a href=\"{}\"><code>{}</code></a></th><td>{}</td></tr>\n", name, name, use);
     return rows.empty() ? "" : "<h2>Files</h2>\n<section class=\"card files\">\n<table>\n" + rows + "</table>\n</section>\n";
 }
 

@@ -12,7 +12,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t most_entries = 8, most_rows = 40;
 
 bool is_rows(Json const& value) {
-    return value.is_array() && !value.empty() && std::all_of(value.begin(), value.end(), [](Json const& entry) { return entry.is_object(); });
+    return value.is_array() && !value.empty() &&
+           std::all_of(value.begin(), value.end(), [](Json const& entry) { return entry.is_object(); });
 }
 
 std::string cell(Json const& value) {
@@ -43,7 +44,8 @@ std::string table_of_rows(Json const& rows) {
     table += "</tr></thead>\n<tbody>\n";
     for (std::size_t k = 0; k < std::min(rows.size(), most_rows); ++k) {
         table += "<tr>";
-        for (auto const& column : rows[0].items()) table += "<td>" + (rows[k].contains(column.key()) ? cell(rows[k][column.key()]) : "") + "</td>";
+        for (auto const& column : rows[0].items())
+            table += "<td>" + (rows[k].contains(column.key()) ? cell(rows[k][column.key()]) : "") + "</td>";
         table += "</tr>\n";
     }
     if (rows.size() > most_rows) table += fmt::format("<tr><td>… {} in all</td></tr>\n", rows.size());

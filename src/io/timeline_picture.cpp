@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double width = 1160, left = 170, right = 14, lane_height = 26, bar_height = 19, rank_gap = 10, axis_height = 40;
 constexpr double character_width = 6.4;
-constexpr std::size_t most_ranks = 8, colours = 9, idle_colour = 9;   // of the page's style
+constexpr std::size_t most_ranks = 8, colours = 9, idle_colour = 9;  // of the page's style
 
 struct Phase {
     std::string name, lane;
@@ -93,8 +93,8 @@ class Picture {
             y += rank_gap;
         }
         std::string const unit = scale_ == 1 ? "s" : scale_ == 1e3 ? "ms" : "µs";
-        std::string svg = fmt::format("<svg viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"timeline of step {}\">\n", width,
-                                      y + axis_height, step_);
+        std::string svg =
+            fmt::format("<svg viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"timeline of step {}\">\n", width, y + axis_height, step_);
         for (Axis::Tick const& tick : axis_.ticks) {
             double const x = at(tick.value);
             svg += fmt::format("<line class=\"grid\" x1=\"{:.1f}\" x2=\"{:.1f}\" y1=\"4\" y2=\"{:.1f}\"/>", x, x, y);
@@ -109,7 +109,7 @@ class Picture {
     double at(double value) const { return left + (width - left - right) * axis_.place(value); }
 
     std::size_t colour_of(std::string const& name) {
-        if (name.starts_with("wait")) return idle_colour;   // labelled in its bar
+        if (name.starts_with("wait")) return idle_colour;  // labelled in its bar
         auto const place = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), name) - names_.begin());
         if (place == names_.size()) names_.push_back(name);
         return place % colours;
@@ -132,8 +132,10 @@ class Picture {
     std::string draw_bar(Phase const& phase, double start, double y) {
         double const from = at((phase.begin - start) * scale_), wide = std::max(0.8, at((phase.end - start) * scale_) - from);
         std::string svg = fmt::format(
-            "<rect class=\"c{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\" rx=\"2\"><title>{}: {:.4g} to {:.4g}</title></rect>",
-            colour_of(phase.name), from, y, wide, bar_height, escaped(phase.name), (phase.begin - start) * scale_, (phase.end - start) * scale_);
+            "<rect class=\"c{}\" x=\"{:.2f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{}\" rx=\"2\"><title>{}: {:.4g} to "
+            "{:.4g}</title></rect>",
+            colour_of(phase.name), from, y, wide, bar_height, escaped(phase.name), (phase.begin - start) * scale_,
+            (phase.end - start) * scale_);
         if (wide > character_width * static_cast<double>(phase.name.size()) + 8)
             svg += fmt::format("<text class=\"inside\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", from + 5, y + 13.5, escaped(phase.name));
         return svg + "\n";
@@ -141,7 +143,8 @@ class Picture {
 
     std::string legend() const {
         std::string html = "<div class=\"legend\">";
-        for (std::size_t k = 0; k < names_.size(); ++k) html += fmt::format("<span><i class=\"c{}\"></i>{}</span>", k % colours, escaped(names_[k]));
+        for (std::size_t k = 0; k < names_.size(); ++k)
+            html += fmt::format("<span><i class=\"c{}\"></i>{}</span>", k % colours, escaped(names_[k]));
         return html + "</div>\n";
     }
 
@@ -159,7 +162,8 @@ std::string timeline_picture(Json const& timeline) {
     if (ranks.empty()) return "";
     std::int64_t const step = typical_step(ranks.front());
     std::size_t const recorded = ranks.front().steps.size();
-    std::string caption = fmt::format("Step {}{}.", step, recorded > 1 ? fmt::format(", of median length among the {} recorded", recorded) : "");
+    std::string caption =
+        fmt::format("Step {}{}.", step, recorded > 1 ? fmt::format(", of median length among the {} recorded", recorded) : "");
     if (ranks.size() > most_ranks) caption += fmt::format(" The first {} of {} ranks.", most_ranks, ranks.size());
     return "<figure>\n" + Picture(ranks, step).draw() + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
 }

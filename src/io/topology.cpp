@@ -69,12 +69,14 @@ std::string residue_of(Topology const& topology, std::size_t site) {
 void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     std::string const title = plain(topology.title);
     for (std::size_t at = 0, part = 1; at < title.size(); at += 68, ++part)
-        out.write(part == 1 ? fmt::format("TITLE     {}\n", title.substr(at, 68)) : fmt::format("TITLE   {:2} {}\n", part % 100, title.substr(at, 68)));
+        out.write(part == 1 ? fmt::format("TITLE     {}\n", title.substr(at, 68))
+                            : fmt::format("TITLE   {:2} {}\n", part % 100, title.substr(at, 68)));
     out.write("REMARK   1 WRITTEN BY CATENA: ONE SITE A BEAD OR RIGID BODY (BDY, CENTRE OF MASS)\n");
     if (topology.si) out.write(fmt::format("REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR {:.0E} M\n", 1 / scale));
     if (topology.box) {
         Vec3 const edges = scale * *topology.box;
-        out.write(fmt::format("CRYST1{}{}{}  90.00  90.00  90.00 P 1           1\n", fixed(edges[0], 9), fixed(edges[1], 9), fixed(edges[2], 9)));
+        out.write(
+            fmt::format("CRYST1{}{}{}  90.00  90.00  90.00 P 1           1\n", fixed(edges[0], 9), fixed(edges[1], 9), fixed(edges[2], 9)));
     }
 }
 
@@ -126,9 +128,10 @@ void write_cif(std::string const& file, Topology const& topology, Frame const& f
     out.write("data_catena\n#\n_struct.entry_id catena\n_struct.title \"" + title + "\"\n#\n");
     if (topology.box) {
         Vec3 const edges = scale * *topology.box;
-        out.write(fmt::format("_cell.length_a {:.6g}\n_cell.length_b {:.6g}\n_cell.length_c {:.6g}\n_cell.angle_alpha 90\n_cell.angle_beta 90\n"
-                              "_cell.angle_gamma 90\n_symmetry.space_group_name_H-M \"P 1\"\n#\n",
-                              edges[0], edges[1], edges[2]));
+        out.write(
+            fmt::format("_cell.length_a {:.6g}\n_cell.length_b {:.6g}\n_cell.length_c {:.6g}\n_cell.angle_alpha 90\n_cell.angle_beta 90\n"
+                        "_cell.angle_gamma 90\n_symmetry.space_group_name_H-M \"P 1\"\n#\n",
+                        edges[0], edges[1], edges[2]));
     }
     out.write("loop_\n");
     for (char const* column : {"group_PDB", "id", "type_symbol", "label_atom_id", "label_alt_id", "label_comp_id", "label_asym_id",
@@ -141,8 +144,8 @@ void write_cif(std::string const& file, Topology const& topology, Frame const& f
         for (std::int64_t k = 0; k < chain.count; ++k) {
             auto const site = static_cast<std::size_t>(chain.first + k);
             Vec3 const x = scale * first.positions[site];
-            out.write(fmt::format("ATOM {} C CA . {} {} 1 {} ? {:.3f} {:.3f} {:.3f} 1.00 0.00 {} {} 1\n", site + 1, residue_of(topology, site), name,
-                                  k + 1, x[0], x[1], x[2], k + 1, name));
+            out.write(fmt::format("ATOM {} C CA . {} {} 1 {} ? {:.3f} {:.3f} {:.3f} 1.00 0.00 {} {} 1\n", site + 1,
+                                  residue_of(topology, site), name, k + 1, x[0], x[1], x[2], k + 1, name));
         }
     }
     out.write("#\n");

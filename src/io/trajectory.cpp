@@ -96,7 +96,8 @@ class H5mdWriter final : public TrajectoryWriter {
         if (!std::filesystem::exists(name_)) throw InputError("no trajectory to go on with", name_, "restart in the folder that holds it");
         Properties const access = keep_metadata_until_flush(name_);
         file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
-        if (!file_) throw InputError("the trajectory cannot be opened, " + cause(), name_, "close it elsewhere, or start anew with --overwrite");
+        if (!file_)
+            throw InputError("the trajectory cannot be opened, " + cause(), name_, "close it elsewhere, or start anew with --overwrite");
         std::vector<std::int64_t> steps;
         try {
             series_ = open_trajectory(place(), contents_);

@@ -112,10 +112,11 @@ class Builder {
             series_.time = Series::create(at(element), "time", H5T_NATIVE_DOUBLE, {});
             put_unit(at(series_.time), units_.time);
         } else {
-            for (std::string const shared : {"step", "time"})
-                check(H5Lcreate_hard(root_.id, (position_group + "/" + shared).c_str(), element.get(), shared.c_str(), H5P_DEFAULT,
-                                     H5P_DEFAULT),
-                      root_.file, root_.doing);
+            for (std::string const shared : {"step", "time"}) {
+                std::string const source = std::string(position_group).append("/").append(shared);
+                check(H5Lcreate_hard(root_.id, source.c_str(), element.get(), shared.c_str(), H5P_DEFAULT, H5P_DEFAULT), root_.file,
+                      root_.doing);
+            }
         }
         value = Series::create(at(element), "value", H5T_NATIVE_DOUBLE, std::move(row));
         if (!unit.empty()) put_unit(at(value), unit);
@@ -143,8 +144,9 @@ class Builder {
 
 void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
     bool const present = has(root, group);
-    if (present != wanted) refuse(root, std::string(present ? "holds " : "holds no ") + what + (present ? " that" : " but") + " this run " +
-                                            (wanted ? "writes them" : "does not write"));
+    if (present != wanted)
+        refuse(root, std::string(present ? "holds " : "holds no ") + what + (present ? " that" : " but") + " this run " +
+                         (wanted ? "writes them" : "does not write"));
 }
 
 }  // namespace
@@ -186,7 +188,8 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     if (series.position.row() != std::vector<hsize_t>{contents.sites, 3})
         refuse(root, "has " + (series.position.row().empty() ? "no" : std::to_string(series.position.row()[0])) + " sites but the scene " +
                          std::to_string(contents.sites));
-    if (text_of(position, "unit") != units_of(contents.si).length) refuse(root, "is in " + text_of(position, "unit") + ", unlike the scene");
+    if (text_of(position, "unit") != units_of(contents.si).length)
+        refuse(root, "is in " + text_of(position, "unit") + ", unlike the scene");
     require(root, "particles/trajectory/velocity", contents.velocities, "velocities");
     require(root, "particles/trajectory/box/edges", contents.periodic, "box edges");
     require(root, "catena/orientation", !contents.bodies.empty(), "orientations");

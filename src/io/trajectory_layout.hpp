@@ -26,7 +26,7 @@ namespace catena::hdf5 {
 
 /// What of the optional parts a trajectory has.
 struct TrajectoryContents {
-    std::vector<hsize_t> bodies;   // the sites that are bodies
+    std::vector<hsize_t> bodies;  // the sites that are bodies
     bool velocities = false, joint_forces = false, periodic = false, si = false;
     hsize_t sites = 0;
 };

@@ -139,7 +139,7 @@ class ChainReader {
     }
     /// What cannot fit is refused before it is tried.
     void refuse_too_large(std::int64_t size, bool beads) const {
-        double const bytes = (beads ? 150.0 : 700.0) * static_cast<double>(size) * static_cast<double>(count_);
+        double const bytes = ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) * static_cast<double>(count_);
         double const present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
         if (bytes > present)
             fail(request_.node, fmt::format("the chain needs about {:.3g} GB, this machine has {:.3g} GB", bytes * 1e-9, present * 1e-9),

@@ -14,15 +14,11 @@ namespace {
 /// Sums of the same doubles in another order: relative to the largest force.
 double constexpr same = 1e-12;
 
-class Ranks : public ::testing::TestWithParam<int> {
+class Ranks : public ::testing::Test {
   protected:
-    void SetUp() override {
-        if (!has_ranks(GetParam())) GTEST_SKIP() << "another number of ranks runs here";
-    }
-
     /// Evaluations along a walk of all beads; with `rebuilt`, some rank's list must have been made anew on the way.
     void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, bool rebuilt) {
-        on_ranks(GetParam(), [&](Communicator const& communicator) {
+        on_ranks([&](Communicator const& communicator) {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
             auto const force = make_openmm_force(spec, beads, communicator);
@@ -32,12 +28,12 @@ class Ranks : public ::testing::TestWithParam<int> {
             for (int i = 0; i < evaluations; ++i) {
                 auto const expected = evaluate(*whole, positions);
                 auto const own = evaluate(*force, beads, communicator.rank(), positions);
-                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected)) << "evaluation " << i;
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected)) << "evaluation " << i << " on " << communicator.size() << " ranks";
                 if (i % 3 == 0) expect_same_energies(*force, *whole);
                 shake(positions, stride, 100 + i);
             }
             bool const anew = force->rebuilds() > 1 && force->rebuilds() < evaluations;
-            EXPECT_EQ(communicator.max(anew ? 1 : 0) == 1, rebuilt && communicator.size() > 1) << force->rebuilds();
+            EXPECT_EQ(communicator.max(anew ? 1 : 0) == 1, rebuilt && communicator.size() > 1) << force->rebuilds() << " on " << communicator.size() << " ranks";
             double const least = -communicator.max(-static_cast<double>(force->largest_context()));
             if (rebuilt && communicator.size() > 1) {
                 EXPECT_LT(least, static_cast<double>(beads.size()));
@@ -61,40 +57,40 @@ class Ranks : public ::testing::TestWithParam<int> {
     }
 };
 
-TEST_P(Ranks, Calvados2) {
+TEST_F(Ranks, Calvados2) {
     compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, true);
 }
 
-TEST_P(Ranks, Calvados2InABox) {
+TEST_F(Ranks, Calvados2InABox) {
     compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, true);
 }
 
-TEST_P(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
+TEST_F(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
     compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1, false);
 }
 
-TEST_P(Ranks, OnAWorkerThread) {
+TEST_F(Ranks, OnAWorkerThread) {
     OpenMmSpec spec = on_reference();
     spec.path = "host";
     compare(spec, proteins({random_sequence(150, 9)}), 0.1, true);
 }
 
-TEST_P(Ranks, FewerBeadsThanRanks) {
+TEST_F(Ranks, FewerBeadsThanRanks) {
     compare(on_reference(), proteins({"K"}), 0.1, false);
     compare(on_reference(), proteins({"KD", "E"}), 0.1, false);
 }
 
-TEST_P(Ranks, EveryForce) {
+TEST_F(Ranks, EveryForce) {
     BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
     compare(of_system(*every_force(beads), "every.xml"), beads, 0.03, true);
 }
 
-TEST_P(Ranks, EveryForceInABox) {
+TEST_F(Ranks, EveryForceInABox) {
     BeadSystem const beads = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
     compare(of_system(*every_force(beads), "every-box.xml"), beads, 0.03, true);
 }
 
-TEST_P(Ranks, BondedForcesAlone) {
+TEST_F(Ranks, BondedForcesAlone) {
     BeadSystem const beads = proteins({random_sequence(60, 16)});
     auto const system = bare_system(beads);
     auto* bonds = new OpenMM::CustomBondForce("r^2");
@@ -103,7 +99,7 @@ TEST_P(Ranks, BondedForcesAlone) {
     compare(of_system(*system, "bonded.xml"), beads, 0.1, false);
 }
 
-TEST_P(Ranks, WithoutACutoff) {
+TEST_F(Ranks, WithoutACutoff) {
     BeadSystem const beads = proteins({random_sequence(40, 17), random_sequence(20, 18)});
     auto const system = bare_system(beads);
     auto* pairs = new OpenMM::CustomNonbondedForce("1/r");
@@ -112,7 +108,7 @@ TEST_P(Ranks, WithoutACutoff) {
     compare(of_system(*system, "everywhere.xml"), beads, 0.1, false);
 }
 
-TEST_P(Ranks, Replicated) {
+TEST_F(Ranks, Replicated) {
     BeadSystem const beads = proteins({random_sequence(40, 19)}, 1, Vec3{{13, 6, 6}});
     auto const system = bare_system(beads);
     auto* charges = new OpenMM::NonbondedForce;
@@ -123,17 +119,17 @@ TEST_P(Ranks, Replicated) {
     OpenMmSpec spec = of_system(*system, "pme.xml");
     spec.replicate = true;
     compare(spec, beads, 0.05, false);
-    if (GetParam() == 1) return;
     spec.replicate = false;
-    on_ranks(GetParam(), [&](Communicator const& communicator) {
+    on_ranks([&](Communicator const& communicator) {
+        if (communicator.size() == 1) return;
         std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
-        EXPECT_EQ(text, "NonbondedForce (PME) cannot be split over " + std::to_string(GetParam()) +
+        EXPECT_EQ(text, "NonbondedForce (PME) cannot be split over " + std::to_string(communicator.size()) +
                             " ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
                             "or run on one rank");
     });
 }
 
-TEST_P(Ranks, ChainsInAnotherOrderThanTheirParticles) {
+TEST_F(Ranks, ChainsInAnotherOrderThanTheirParticles) {
     BeadSystem const in_system = proteins({random_sequence(20, 20), random_sequence(60, 21)});
     BeadSystem scene = proteins({random_sequence(60, 21), random_sequence(20, 20)});
     std::swap(scene.chain_name[0], scene.chain_name[1]);
@@ -153,14 +149,14 @@ TEST_P(Ranks, ChainsInAnotherOrderThanTheirParticles) {
     EXPECT_LT(difference(forces, expected), same * largest(expected));
 }
 
-TEST_P(Ranks, OneRanksTroubleIsEverybodysMessage) {
+TEST_F(Ranks, OneRanksTroubleIsEverybodysMessage) {
     BeadSystem const beads = proteins({"KDEKDE"});
     auto const system = bare_system(beads);
     auto* pairs = new OpenMM::CustomBondForce("r^");   // no expression
     pairs->addBond(0, 2);
     system->addForce(pairs);
     OpenMmSpec const spec = of_system(*system, "wrong.xml");
-    on_ranks(GetParam(), [&](Communicator const& communicator) {
+    on_ranks([&](Communicator const& communicator) {
         std::string const text =
             complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
         EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
@@ -168,8 +164,8 @@ TEST_P(Ranks, OneRanksTroubleIsEverybodysMessage) {
     });
 }
 
-TEST_P(Ranks, ThePathIsTheSameOnEveryRank) {
-    on_ranks(GetParam(), [&](Communicator const& communicator) {
+TEST_F(Ranks, ThePathIsTheSameOnEveryRank) {
+    on_ranks([&](Communicator const& communicator) {
         BeadSystem const beads = split(proteins({random_sequence(30, 22)}), communicator.size());
         OpenMmSpec spec = on_reference();
         spec.path = "auto";
@@ -187,8 +183,6 @@ TEST_P(Ranks, ThePathIsTheSameOnEveryRank) {
         EXPECT_TRUE(found);
     });
 }
-
-INSTANTIATE_TEST_SUITE_P(On, Ranks, ::testing::Values(1, 2, 3, 6));
 
 }  // namespace
 }  // namespace catena::testing

@@ -7,10 +7,8 @@
 
 namespace catena::testing {
 
-/// Whether `on_ranks` can have so many.
-bool has_ranks(int ranks);
-
-/// Runs `body` once a rank, all at the same time (GoogleTest's EXPECT_ only: a rank that leaves early would leave the others waiting).
-void on_ranks(int ranks, std::function<void(Communicator const&)> const& body);
+/// Runs `body` once a rank, all at the same time: with threads on 1, 2, 3 and 6 ranks in turn, under mpirun on as many as there are.
+/// GoogleTest's EXPECT_ only: a rank that leaves early would leave the others waiting.
+void on_ranks(std::function<void(Communicator const&)> const& body);
 
 }  // namespace catena::testing

@@ -85,11 +85,7 @@ class ThreadCommunicator final : public Communicator {
     mutable std::int64_t rounds_ = 0;
 };
 
-}  // namespace
-
-bool has_ranks(int) { return true; }
-
-void on_ranks(int ranks, std::function<void(Communicator const&)> const& body) {
+void on_threads(int ranks, std::function<void(Communicator const&)> const& body) {
     Meeting meeting(ranks);
     std::vector<std::thread> threads;
     for (int r = 0; r < ranks; ++r)
@@ -99,6 +95,12 @@ void on_ranks(int ranks, std::function<void(Communicator const&)> const& body) {
             body(communicator);
         });
     for (auto& thread : threads) thread.join();
+}
+
+}  // namespace
+
+void on_ranks(std::function<void(Communicator const&)> const& body) {
+    for (int const ranks : {1, 2, 3, 6}) on_threads(ranks, body);
 }
 
 }  // namespace catena::testing

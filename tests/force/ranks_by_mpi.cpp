@@ -3,8 +3,6 @@
 
 namespace catena::testing {
 
-bool has_ranks(int ranks) { return world().size() == ranks; }
-
-void on_ranks(int, std::function<void(Communicator const&)> const& body) { body(world()); }
+void on_ranks(std::function<void(Communicator const&)> const& body) { body(world()); }
 
 }  // namespace catena::testing

@@ -3,10 +3,12 @@
 
 #include "sample_checkpoint.hpp"
 
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming): the sanitizers' names
 extern "C" char const* __asan_default_options();
 extern "C" char const* __asan_default_options() { return "allocator_may_return_null=1"; }
 extern "C" char const* __lsan_default_suppressions();
 extern "C" char const* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)
 
 namespace catena::test {
 namespace {

@@ -118,7 +118,8 @@ TEST(FileTooLarge, CheckpointAndTrajectoryAreNoSuccess) {
     std::string const file = folder / "checkpoint.h5", trajectory = folder / "trajectory.h5md";
     write_checkpoint(file, checkpoint_of(10));
     FileSizeLimit const limit(100000);
-    expect_failure(message_of([&] { write_checkpoint(file, checkpoint_of(20000)); }), "cannot write the checkpoint (" + file, "File too large");
+    expect_failure(message_of([&] { write_checkpoint(file, checkpoint_of(20000)); }), "cannot write the checkpoint (" + file,
+                   "File too large");
     EXPECT_EQ(read_checkpoint(file).arrays, checkpoint_of(10).arrays);
     EXPECT_FALSE(std::filesystem::exists(file + ".writing"));
     expect_failure(fill_with_frames(trajectory, true), "cannot write the trajectory (" + trajectory, "File too large");

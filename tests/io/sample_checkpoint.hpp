@@ -23,7 +23,8 @@ inline Checkpoint sample(std::int64_t step = 123456789012) {
     checkpoint.notes = {{"backend", "segments"}, {"empty", ""}, {"version", "0.1.0, größer"}};
     checkpoint.integers = {{"sweeps", 6}, {"negative", std::numeric_limits<std::int64_t>::min()}};
     double const odd_nan = std::bit_cast<double>(0x7ff80000deadbeefULL);
-    checkpoint.arrays = {{"positions", {0.1, -0.0, 1e-320, odd_nan, 1e308}}, {"nothing", {}}, {"velocities", std::vector<double>(300, 1 / 3.0)}};
+    checkpoint.arrays = {
+        {"positions", {0.1, -0.0, 1e-320, odd_nan, 1e308}}, {"nothing", {}}, {"velocities", std::vector<double>(300, 1 / 3.0)}};
     return checkpoint;
 }
 

@@ -15,14 +15,16 @@ namespace {
 
 // UniProt P37840
 constexpr std::string_view alpha_synuclein =
-    "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMPSEEGYQDYEPEA";
+    "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMPSEEGYQ"
+    "DYEPEA";
 constexpr double residue_mass = 110, link = 0.38, boltzmann = 0.00831446261815324;
 constexpr std::int64_t steps_between_frames = 100;
 
 std::string three_letters(char one) {
-    static constexpr std::pair<char, char const*> names[] = {
-        {'A', "ALA"}, {'C', "CYS"}, {'D', "ASP"}, {'E', "GLU"}, {'F', "PHE"}, {'G', "GLY"}, {'H', "HIS"}, {'I', "ILE"}, {'K', "LYS"}, {'L', "LEU"},
-        {'M', "MET"}, {'N', "ASN"}, {'P', "PRO"}, {'Q', "GLN"}, {'R', "ARG"}, {'S', "SER"}, {'T', "THR"}, {'V', "VAL"}, {'W', "TRP"}, {'Y', "TYR"}};
+    static constexpr std::pair<char, char const*> names[] = {{'A', "ALA"}, {'C', "CYS"}, {'D', "ASP"}, {'E', "GLU"}, {'F', "PHE"},
+                                                             {'G', "GLY"}, {'H', "HIS"}, {'I', "ILE"}, {'K', "LYS"}, {'L', "LEU"},
+                                                             {'M', "MET"}, {'N', "ASN"}, {'P', "PRO"}, {'Q', "GLN"}, {'R', "ARG"},
+                                                             {'S', "SER"}, {'T', "THR"}, {'V', "VAL"}, {'W', "TRP"}, {'Y', "TYR"}};
     auto const* const found = std::find_if(std::begin(names), std::end(names), [&](auto const& entry) { return entry.first == one; });
     return found->second;
 }
@@ -31,7 +33,8 @@ std::string three_letters(char one) {
 class Wanderer {
   public:
     Wanderer(std::size_t sites, double length, double stiffness) : length_(length), directions_(sites), noise_(12345) {
-        for (std::size_t k = 0; k < sites; ++k) directions_[k] = unit(plus_scaled(gaussian(), stiffness, k > 0 ? directions_[k - 1] : gaussian()));
+        for (std::size_t k = 0; k < sites; ++k)
+            directions_[k] = unit(plus_scaled(gaussian(), stiffness, k > 0 ? directions_[k - 1] : gaussian()));
     }
     void wander(double amount) {
         Vec3 shared = gaussian();
@@ -96,7 +99,12 @@ std::vector<double> observables_of(Frame const& frame, Wanderer& wanderer) {
     double squares = 0;
     for (Vec3 const& x : frame.positions) squares += dot(x - centre, x - centre) / count;
     double const kinetic = 1.5 * count * boltzmann * (300 + 20 * wanderer.number()), potential = -120 + 6 * wanderer.number();
-    return {potential, kinetic, potential + kinetic, kinetic / (1.5 * count * boltzmann), 1e-12 * std::exp(wanderer.number()), std::sqrt(squares),
+    return {potential,
+            kinetic,
+            potential + kinetic,
+            kinetic / (1.5 * count * boltzmann),
+            1e-12 * std::exp(wanderer.number()),
+            std::sqrt(squares),
             norm(frame.positions.back() - frame.positions.front())};
 }
 
@@ -107,7 +115,8 @@ void add_optional_parts(Frame& frame, Topology const& topology, Wanderer& wander
         frame.joint_forces.push_back({{torque[0], torque[1], torque[2], force[0], force[1], force[2]}});
     }
     for (Topology::Chain const& chain : topology.chains)
-        for (std::int64_t k = 0; !chain.beads && k < chain.count; ++k) frame.orientations.push_back(from_rotation_vector(wanderer.gaussian()));
+        for (std::int64_t k = 0; !chain.beads && k < chain.count; ++k)
+            frame.orientations.push_back(from_rotation_vector(wanderer.gaussian()));
 }
 
 std::string timeline() {
@@ -122,7 +131,8 @@ std::string timeline() {
 }
 
 std::string summary(Topology const& topology) {
-    return R"({"title": ")" + topology.title + R"(", "scene": "none", "catena": "0.1.0", "ranks": 2, "threads": 1, "steps": 20000, "valid": true,
+    return R"({"title": ")" + topology.title +
+           R"(", "scene": "none", "catena": "0.1.0", "ranks": 2, "threads": 1, "steps": 20000, "valid": true,
  "rate": {"steps_per_second": 3512.4, "ns_per_day": 3034.7, "wall_seconds": 5.694},
  "solver": {"backend": "segments", "handles": "projected", "residual": 3.1e-16, "residual_bound": 1.7e-14},
  "forces": {"platform": "CPU", "version": "8.6.1", "hidden_fraction": 0.83, "terms": {"ashbaugh_hatch": -121.5, "yukawa": 4.25}},

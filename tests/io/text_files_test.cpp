@@ -29,7 +29,8 @@ TEST(Observables, HeaderHasUnitsAndNumbersReadBackBitForBit) {
         table.write(2, 1e-320, {-0.0, std::numeric_limits<double>::quiet_NaN()});
         table.close();
     }
-    EXPECT_TRUE(read_text_file(file).starts_with("step,time [ps],total_energy [kJ/mol],odd\n1,0.30000000000000004,0.33333333333333331,-inf\n"));
+    EXPECT_TRUE(
+        read_text_file(file).starts_with("step,time [ps],total_energy [kJ/mol],odd\n1,0.30000000000000004,0.33333333333333331,-inf\n"));
     ObservablesTable const table = read_observables(file);
     EXPECT_EQ(table.columns[1], (std::vector<double>{0.1 + 0.2, 1e-320}));
     EXPECT_EQ(table.columns[2], (std::vector<double>{1 / 3.0, 0}));

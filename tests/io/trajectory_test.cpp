@@ -90,8 +90,10 @@ TEST(Trajectory, EveryElementHasTheSameStepDataset) {
     TemporaryFolder const folder;
     std::string const file = folder / "trajectory.h5md";
     write_frames(file, {0, 5});
-    for (char const* element : {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation", "catena/joint_force"}) {
-        EXPECT_EQ((read<std::int64_t>(file, std::string(element) + "/step", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{0, 5})) << element;
+    for (char const* element :
+         {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation", "catena/joint_force"}) {
+        EXPECT_EQ((read<std::int64_t>(file, std::string(element) + "/step", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{0, 5}))
+            << element;
         EXPECT_EQ(numbers(file, std::string(element) + "/time"), (std::vector<double>{0, 0.5})) << element;
     }
 }
@@ -108,7 +110,8 @@ TEST(Trajectory, WithoutBoxVelocitiesAndForcesTheseAreAbsent) {
     trajectory->write(sample_frame(1, topology));
     trajectory->close();
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    for (char const* absent : {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation", "catena/joint_force"})
+    for (char const* absent :
+         {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation", "catena/joint_force"})
         EXPECT_EQ(H5Lexists(handle.get(), absent, H5P_DEFAULT), 0) << absent;
     EXPECT_EQ(H5Lexists(handle.get(), "particles/trajectory/box", H5P_DEFAULT), 1);
 }
@@ -215,7 +218,8 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
     File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)).close();
     EXPECT_NE(restart(topology).find("was not written by Catena"), std::string::npos) << restart(topology);
     write_frames(file, {0, 10});
-    EXPECT_NE(restart(topology, false).find("holds velocities that this run does not write"), std::string::npos) << restart(topology, false);
+    EXPECT_NE(restart(topology, false).find("holds velocities that this run does not write"), std::string::npos)
+        << restart(topology, false);
     Topology larger = topology;
     larger.mass.push_back(1);
     ++larger.chains[1].count;

@@ -64,7 +64,7 @@ void expect_second_order(double coarse, double fine, char const* what) {
 class Motion : public ::testing::TestWithParam<int> {
   protected:
     ChainSpec chain(bool springs) const {
-        return random_chain(static_cast<std::uint64_t>(40 + GetParam()), {.bodies = 5,
+        return random_chain(40 + static_cast<std::uint64_t>(GetParam()), {.bodies = 5,
                                                                           .joints = static_cast<RandomJoints>(GetParam() % 3),
                                                                           .base = GetParam() < 3 ? Base::fixed : Base::free,
                                                                           .springs = springs});

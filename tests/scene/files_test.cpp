@@ -4,8 +4,11 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "force/calvados2.hpp"
+#include "force/openmm_force.hpp"
 #include "tests/scene/refusal.hpp"
 
 namespace catena::test {
@@ -50,10 +53,11 @@ class SceneFiles : public testing::Test {
     std::string const with_pdb_ = "chains: [{pdb: a.pdb, model: calvados2, links: as_given}]";
 };
 
-std::string atom(int serial, std::string const& name, std::string const& residue, char chain, int number, double x, char alternate = ' ') {
+std::string atom(int serial, std::string const& name, std::string const& residue, char chain, int number, double x, char alternate = ' ',
+                 double y = 0.5, double z = -0.25) {
     char line[100];
     std::snprintf(line, sizeof line, "ATOM  %5d  %-3s%c%-3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00\n", serial, name.c_str(), alternate,
-                  residue.c_str(), chain, number, x, 0.5, -0.25);
+                  residue.c_str(), chain, number, x, y, z);
     return line;
 }
 
@@ -193,6 +197,29 @@ TEST_F(SystemFiles, what_a_system_says_itself) {
     EXPECT_EQ(
         refusal("forces: {openmm: {system: system.xml, map: {a: [0, 2]}}}"),
         "the scene has no `chains`, the system no topology (s.yaml: forces.openmm, line 1): add `topology: topology.pdb`, or `chains`");
+}
+
+/// A scene without chains takes them from the System and its topology.
+TEST_F(SystemFiles, chains_of_the_topology) {
+    if (openmm_version() == "none") GTEST_SKIP() << "built without OpenMM";
+    nlohmann::json reference;
+    std::ifstream(CATENA_TEST_DATA "/reference/calvados2-asyn-coil.json") >> reference;
+    std::string pdb;
+    std::string const letters = reference["sequence"];
+    for (std::size_t k = 0; k < letters.size(); ++k) {
+        auto const& p = reference["positions"][k];
+        pdb += atom(static_cast<int>(k) + 1, "CA", find_calvados2(letters[k])->name, 'A', static_cast<int>(k) + 1, 10 * p[0].get<double>(),
+                    ' ', 10 * p[1].get<double>(), 10 * p[2].get<double>());
+    }
+    write("topology.pdb", pdb + "END\n");
+    Scene const s = read("forces: {openmm: {system: " CATENA_TEST_DATA "/reference/calvados2-asyn-system.xml, topology: topology.pdb}}");
+    ASSERT_EQ(s.chains.size(), 1u);
+    BeadArrays const& beads = s.chains[0].beads;
+    ASSERT_EQ(beads.size(), 140u);
+    EXPECT_EQ(beads.residue[0], "MET");
+    EXPECT_NEAR(beads.mass[139], 71.07 + 16, 1e-12);
+    for (std::size_t k = 1; k < beads.size(); ++k) EXPECT_NEAR(norm(beads.position[k] - beads.position[k - 1]), 0.38, 1e-14);
+    EXPECT_FALSE(s.box.has_value());
 }
 
 TEST_F(SystemFiles, content_decides_the_hash) {

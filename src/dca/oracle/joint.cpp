@@ -174,14 +174,17 @@ V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
     return loads.bead_forces.empty() ? weight : weight + lift<S>(loads.bead_forces[k]);
 }
 
-#define CATENA_ORACLE(Scalar)                                                                   \
-    template std::vector<Link<Scalar>> read_links<Scalar>(ChainSpec const&);                    \
-    template std::vector<Attitude<Scalar>> attitudes<Scalar>(std::vector<Link<Scalar>> const&); \
-    template std::vector<BeadLink<Scalar>> read_bead_links<Scalar>(ChainSpec const&);           \
-    template V3<Scalar> bead_force<Scalar>(ChainSpec const&, Loads const&, std::size_t);
-CATENA_ORACLE(double)
-CATENA_ORACLE(long double)
-CATENA_ORACLE(Quad)
-#undef CATENA_ORACLE
+template std::vector<Link<double>> read_links<double>(ChainSpec const&);
+template std::vector<Attitude<double>> attitudes<double>(std::vector<Link<double>> const&);
+template std::vector<BeadLink<double>> read_bead_links<double>(ChainSpec const&);
+template V3<double> bead_force<double>(ChainSpec const&, Loads const&, std::size_t);
+template std::vector<Link<long double>> read_links<long double>(ChainSpec const&);
+template std::vector<Attitude<long double>> attitudes<long double>(std::vector<Link<long double>> const&);
+template std::vector<BeadLink<long double>> read_bead_links<long double>(ChainSpec const&);
+template V3<long double> bead_force<long double>(ChainSpec const&, Loads const&, std::size_t);
+template std::vector<Link<Quad>> read_links<Quad>(ChainSpec const&);
+template std::vector<Attitude<Quad>> attitudes<Quad>(std::vector<Link<Quad>> const&);
+template std::vector<BeadLink<Quad>> read_bead_links<Quad>(ChainSpec const&);
+template V3<Quad> bead_force<Quad>(ChainSpec const&, Loads const&, std::size_t);
 
 }  // namespace catena::oracle

@@ -6,7 +6,7 @@
 namespace catena::oracle {
 
 #if defined(__SIZEOF_FLOAT128__)
-__extension__ typedef __float128 QuadBits;
+using QuadBits = __float128;
 #else
 using QuadBits = long double;  // IEEE quadruple where the compiler has no __float128 (64-bit ARM)
 #endif

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include "command/commands.hpp"
+#include "command/describe.hpp"
+#include "integrate/chain_system.hpp"
+#include "integrate/observables.hpp"
+
+namespace catena::command {
+namespace {
+
+/// Looks whether OpenMM can have these forces, without computing any.
+std::vector<std::string> openmm_lines(Scene const& scene, Communicator const& communicator) {
+    if (!scene.forces.openmm) return {};
+    return ChainSystem(scene, Axes::joint, communicator).openmm()->description();
+}
+
+Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
+    ForcesOnJoints const found = forces_on_joints(scene);
+    Vec3 const& g = scene.forces.gravity;
+    return {{"gravity", {g[0], g[1], g[2]}}, {"springs", found.springs}, {"dampers", found.dampers}, {"torques", found.torques}, {"wrenches", found.wrenches},
+            {"openmm", openmm}};
+}
+
+Json dynamics_json(Scene const& scene) {
+    DynamicsSpec const& d = scene.dynamics;
+    if (!d.given) return nullptr;
+    return {{"integrator", name_of(d.integrator)}, {"step", d.step},         {"steps", d.steps}, {"temperature", d.temperature},
+            {"friction", d.friction},              {"seed", d.seed},         {"constraint_tolerance", d.constraint_tolerance}};
+}
+
+Json handles_json(Scene const& scene) {
+    Directions const d = directions_of(scene);
+    Json handles{{"kind", name_of(scene.solver.handles)}};
+    if (d.beads > 0) handles["beads"] = d.beads;
+    if (d.bodies > 0) handles["bodies"] = d.bodies;
+    return handles;
+}
+
+Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory const& memory, int ranks) {
+    Directions const d = directions_of(scene);
+    Text text;
+    text.heading(title_of(scene));
+    text.entry("units", scene.si ? "si: numbers are taken as they are" : "md: nm, ps, amu, kJ/mol");
+    text.entry("chains", std::to_string(scene.chains.size()));
+    text.entry("bodies", std::to_string(scene.bodies()));
+    text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
+    text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");
+    text.add(chain_table(scene));
+    text.heading("solver");
+    text.entry("backend", name_of(scene.solver.backend));
+    if (d.beads > 0) text.entry("blocks of beads", block_text(true, d.beads, scene.solver.handles));
+    if (d.bodies > 0) text.entry("blocks of bodies", block_text(false, d.bodies, scene.solver.handles));
+    text.heading("forces");
+    text.entry("gravity", vector_text(scene.forces.gravity));
+    text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
+    for (std::size_t i = 0; i < openmm.size(); ++i) text.entry(i == 0 ? "OpenMM" : "", openmm[i]);
+    text.heading("dynamics");
+    text.entry("integrator", dynamics_text(scene));
+    text.heading("memory");
+    text.entry(ranks == 1 ? "estimate" : "estimate, each rank",
+               fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene), bytes_text(memory.state),
+                           bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
+    text.heading("The scene is valid.");
+    return text;
+}
+
+}  // namespace
+
+Outcome check_scene(Scene const& scene, Communicator const& communicator) {
+    choose_backend(scene, communicator);   // throws for those of later versions
+    std::vector<std::string> const openmm = openmm_lines(scene, communicator);
+    Memory const memory = memory_of(scene, communicator.size());
+    Outcome outcome;
+    outcome.text = text_of(scene, openmm, memory, communicator.size()).str();
+    outcome.json = {{"scene", scene.file},
+                    {"title", scene.title},
+                    {"units", scene.si ? "si" : "md"},
+                    {"chains", chains_json(scene)},
+                    {"bodies", scene.bodies()},
+                    {"dof", degrees_of_freedom(scene)},
+                    {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},
+                    {"backend", name_of(scene.solver.backend)},
+                    {"handles", handles_json(scene)},
+                    {"forces", forces_json(scene, openmm)},
+                    {"dynamics", dynamics_json(scene)},
+                    {"memory_bytes_per_rank", {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
+                    {"scene_hash", scene.hash},
+                    {"ranks", communicator.size()},
+                    {"valid", true}};
+    return outcome;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,247 @@
+#include "command/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "command/values.hpp"
+#include "command/version.hpp"
+#include "error.hpp"
+
+namespace catena::command {
+namespace {
+
+constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "error", "off"};
+constexpr std::string_view handle_names[] = {"projected", "full"};
+constexpr std::string_view joint_names[] = {"link", "spherical", "revolute"};
+constexpr std::string_view bench_names[] = {"list", "solve"};
+
+/// What the contract promises for later versions, by command.
+std::map<std::string, std::vector<std::string>> const later_options{
+    {"check", {}},
+    {"plan", {"--explain", "--ranks", "--hosts"}},
+    {"solve", {"--precision", "--refine"}},
+    {"run", {"--precision", "--refine"}},
+    {"report", {"--suite", "--quick", "--precision"}},
+    {"bench", {"--precision"}},
+};
+std::vector<std::string> const later_benches{"sweeps", "peers", "figures", "network"};
+
+/// Everything as it stands on the command line.
+struct Words {
+    CommonOptions common;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends;
+    std::vector<std::string> scenes;
+    bool overwrite = false;
+};
+
+void add_common(CLI::App& command, Words& words) {
+    CommonOptions& c = words.common;
+    command.add_option("--set", c.set, "override a key of the scene, as in --set chains[0].count=10 (may be repeated)")->type_name("KEY.PATH=VALUE")->allow_extra_args(false);
+    command.add_option("--handles", c.handles, "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3)")->type_name("KIND");
+    command.add_option("--threads", c.threads, "threads a rank for backend openmp (0: the host's cores over its ranks)")->type_name("N");
+    command.add_option("--gpu-levels", c.gpu_levels, "levels of the tree on the GPU: auto (others: not in this version)")->type_name("K");
+    command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")->type_name("FILE");
+    command.add_flag("--quiet", c.quiet, "print nothing but errors");
+    command.add_option("--log-level", c.log_level, "log lines on standard error: trace | debug | info | warn (default) | error | off")->type_name("LEVEL");
+}
+void add_backend(CLI::App& command, Words& words) {
+    command.add_option("--backend", words.common.backend, "auto (default) | serial | segments | openmp | cuda | cuda-levels (the last two: not in this version)")->type_name("NAME");
+}
+void add_scene(CLI::App& command, Words& words) { command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name(""); }
+void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
+    command.add_option("--repeat", words.repeat, std::string("timed evaluations of each kind (default ") + otherwise + ")")->type_name("R");
+}
+
+void add_commands(CLI::App& app, Words& words) {
+    CLI::App* command = app.add_subcommand("check", "validate a scene and print what it is");
+    add_scene(*command, words);
+    command->footer("Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
+
+    command = app.add_subcommand("plan", "print what will run and what is left out, and why");
+    add_scene(*command, words);
+    command->footer("Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments");
+
+    command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
+    add_scene(*command, words);
+    add_repeat(*command, words, "11");
+    command->add_option("--accelerations", words.accelerations, "write accelerations and joint forces of any number of bodies (HDF5)")->type_name("FILE");
+    command->footer(
+        "Examples:\n  catena solve inputs/arm.yaml --json arm.json\n"
+        "  catena solve inputs/random-revolute.yaml --set chains[0].generator.random.bodies=100000 --backend openmp --accelerations a.h5");
+
+    command = app.add_subcommand("run", "simulate and write a folder of results");
+    add_scene(*command, words);
+    command->add_option("--steps", words.steps, "last step, counted from the scene's start, in the place of dynamics.steps")->type_name("N");
+    command->add_option("--output", words.output, "folder (default: the scene's name with -run; with --restart the checkpoint's)")->type_name("DIR");
+    command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
+    command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
+    command->footer(
+        "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
+        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000");
+
+    command = app.add_subcommand("report", "solver error against run time, as tables, JSON and a picture");
+    command->add_option("SCENE", words.scenes, "scene files (default: generated chains of 16, 256 and 4096 bodies)")->type_name("");
+    command->add_option("--output", words.output, "folder for report.json and report.png (default catena-report)")->type_name("DIR");
+    add_repeat(*command, words, "11");
+    command->footer("Examples:\n  catena report\n  catena report inputs/arm.yaml inputs/random-link.yaml --repeat 51 --output errors");
+
+    command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
+    command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
+    command->add_option("--sizes", words.sizes, "bodies (default 1e3,1e4,1e5)")->type_name("N,...");
+    command->add_option("--joints", words.joints, "link, spherical, revolute (default: all)")->type_name("J,...");
+    add_repeat(*command, words, "21");
+    command->add_option("--backend", words.backends, "serial, segments, openmp (default: all in this build)")->type_name("B,...");
+    command->footer("Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json");
+
+    for (CLI::App* each : app.get_subcommands({})) {
+        if (each->get_name() != "bench") add_backend(*each, words);
+        add_common(*each, words);
+    }
+}
+
+std::vector<std::string_view> views(std::vector<std::string> const& texts) { return {texts.begin(), texts.end()}; }
+
+[[noreturn]] void refuse_command(CLI::App const& app, std::string const& word) {
+    std::vector<std::string> names;
+    for (CLI::App const* command : app.get_subcommands({})) names.push_back(command->get_name());
+    throw InputError("`" + word + "` is not a command", "command line", remedy_for(word, views(names)));
+}
+
+[[noreturn]] void refuse_option(CLI::App const& command, std::string const& word) {
+    std::string const option = word.substr(0, word.find('='));
+    auto const later = later_options.find(command.get_name());
+    std::vector<std::string> known;
+    for (CLI::Option const* each : command.get_options())
+        for (std::string const& name : each->get_lnames()) known.push_back("--" + name);
+    if (later != later_options.end()) {
+        if (std::find(later->second.begin(), later->second.end(), option) != later->second.end())
+            throw not_in_this_version(option + " of catena " + command.get_name());
+    }
+    std::string const see = "catena " + (command.get_parent() ? command.get_name() + " " : "") + "--help lists the options";
+    std::string const remedy = remedy_for(option, views(known));
+    throw InputError("`" + option + "` is not an option", "command line", remedy.starts_with("did") ? remedy : see);
+}
+
+/// What CLI11 could not place.
+void refuse_extras(CLI::App const& app, CLI::App const* command) {
+    std::vector<std::string> const left = app.remaining(true);
+    if (left.empty()) return;
+    auto const option = std::find_if(left.begin(), left.end(), [](std::string const& word) { return word.size() > 1 && word[0] == '-'; });
+    if (option != left.end()) refuse_option(command ? *command : app, *option);
+    if (!command) refuse_command(app, left.front());
+    throw InputError("`" + left.front() + "` is one argument too many", "command line", "see catena " + command->get_name() + " --help");
+}
+
+std::string one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    while (!text.empty() && text.back() == ' ') text.pop_back();
+    return text;
+}
+
+CommonOptions checked(CommonOptions c) {
+    if (!c.backend.empty()) backend_named("--backend", c.backend);
+    if (!c.handles.empty()) known_value("--handles", c.handles, handle_names);
+    if (!c.threads.empty()) c.threads = std::to_string(whole_number("--threads", c.threads, 0, 4096));
+    if (!c.gpu_levels.empty() && c.gpu_levels != "auto") throw not_in_this_version("--gpu-levels " + c.gpu_levels);
+    known_value("--log-level", c.log_level, log_levels);
+    return c;
+}
+
+int repeat_of(Words const& words, int otherwise) {
+    return words.repeat.empty() ? otherwise : static_cast<int>(whole_number("--repeat", words.repeat, 1, 1000000));
+}
+
+template <class R>
+R scene_request(Words const& words, std::string const& command) {
+    if (words.scene.empty()) throw InputError("no scene is named", "command line", "write catena " + command + " SCENE");
+    R request;
+    static_cast<CommonOptions&>(request) = checked(words.common);
+    request.scene = words.scene;
+    return request;
+}
+
+RunRequest run_request(Words const& words) {
+    auto request = scene_request<RunRequest>(words, "run");
+    if (!words.steps.empty()) request.steps = whole_number("--steps", words.steps, 0);
+    request.output = words.output;
+    request.restart = words.restart;
+    request.overwrite = words.overwrite;
+    if (request.overwrite && !request.restart.empty())
+        throw InputError("both --overwrite and --restart", "command line", "a restart goes on with what is there: leave --overwrite out");
+    return request;
+}
+
+ReportRequest report_request(Words const& words) {
+    ReportRequest request;
+    static_cast<CommonOptions&>(request) = checked(words.common);
+    request.scenes = words.scenes;
+    if (!words.output.empty()) request.output = words.output;
+    request.repeat = repeat_of(words, request.repeat);
+    return request;
+}
+
+BenchRequest bench_request(Words const& words) {
+    BenchRequest request;
+    static_cast<CommonOptions&>(request) = checked(words.common);
+    if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list, or catena bench solve");
+    if (std::find(later_benches.begin(), later_benches.end(), words.name) != later_benches.end()) throw not_in_this_version("catena bench " + words.name);
+    request.name = known_value("catena bench", words.name, bench_names);
+    if (!words.sizes.empty()) {
+        request.sizes.clear();
+        for (std::string const& size : comma_list("--sizes", words.sizes)) request.sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
+    }
+    if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
+    for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
+    if (!words.backends.empty())
+        for (std::string const& backend : comma_list("--backend", words.backends)) request.backends.push_back(backend_named("--backend", backend));
+    request.repeat = repeat_of(words, request.repeat);
+    return request;
+}
+
+Request request_of(std::string const& command, Words const& words) {
+    if (command == "check") return scene_request<CheckRequest>(words, command);
+    if (command == "plan") return scene_request<PlanRequest>(words, command);
+    if (command == "run") return run_request(words);
+    if (command == "report") return report_request(words);
+    if (command == "bench") return bench_request(words);
+    auto request = scene_request<SolveRequest>(words, "solve");
+    request.accelerations = words.accelerations;
+    request.repeat = repeat_of(words, request.repeat);
+    return request;
+}
+
+Answer answer(std::string text) {
+    Answer a;
+    a.text = std::move(text);
+    return a;
+}
+
+}  // namespace
+
+Request parse_command_line(int argc, char const* const* argv) {
+    CLI::App app{"Catena: motion of very long articulated chains by divide and conquer.", "catena"};
+    Words words;
+    for (int i = 0; i < argc; ++i) words.common.command_line += (i == 0 ? "" : " ") + std::string(argv[i]);
+    bool version_asked = false;
+    app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
+    app.footer("catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation failed or is INVALID; 2 the input is wrong.");
+    add_commands(app, words);
+    app.allow_extras();
+    for (CLI::App* each : app.get_subcommands({})) each->allow_extras();
+    try {
+        app.parse(argc, argv);
+    } catch (CLI::CallForHelp const&) {
+        return answer(app.help());
+    } catch (CLI::ParseError const& error) {
+        throw InputError(one_line(error.what()), "command line", "see catena --help");
+    }
+    auto const chosen = app.get_subcommands();
+    refuse_extras(app, chosen.empty() ? nullptr : chosen.front());
+    if (version_asked) return answer(version_text());
+    if (chosen.empty()) throw InputError("no command is named", "command line", "see catena --help");
+    if (chosen.size() > 1) throw InputError("two commands, " + chosen[0]->get_name() + " and " + chosen[1]->get_name(), "command line", "name one");
+    return request_of(chosen.front()->get_name(), words);
+}
+
+}  // namespace catena::command

@@ -1,0 +1,29 @@
+// The work of the commands. All are collective; what they return counts on rank 0.
+#pragma once
+
+#include "command/outcome.hpp"
+#include "command/requests.hpp"
+#include "mpi/communicator.hpp"
+#include "scene/scene.hpp"
+
+namespace catena::command {
+
+/// What the scene is: chains, bodies, degrees of freedom, handle kinds, forces, memory.
+Outcome check_scene(Scene const&, Communicator const&);
+
+/// What will run and what is left out, and why.
+Outcome plan_scene(Scene const&, Communicator const&);
+
+/// One evaluation, timed, with its residual.
+Outcome solve_scene(Scene const&, Communicator const&, SolveRequest const&);
+
+/// A simulation with its folder.
+Outcome run_scene(Scene const&, Communicator const&, RunRequest const&);
+
+/// Solver error against run time; writes report.json and, where Python can draw it, report.png.
+Outcome report_scenes(std::vector<Scene> const&, Communicator const&, ReportRequest const&);
+
+/// `solve`, or the list of benchmarks.
+Outcome run_bench(Communicator const&, BenchRequest const&);
+
+}  // namespace catena::command

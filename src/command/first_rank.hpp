@@ -1,0 +1,44 @@
+// What rank 0 does for all, and how its failure becomes everybody's.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "error.hpp"
+#include "mpi/communicator.hpp"
+
+namespace catena::command {
+
+/// A failure that every rank knows of: all of them end in good order, with status 1.
+class SharedError : public ComputationError {
+  public:
+    using ComputationError::ComputationError;
+};
+
+/// Runs `action` on rank 0. What it throws is thrown on every rank: InputError as such, anything else as SharedError. Collective.
+template <class Action>
+void on_first_rank(Communicator const& communicator, Action const& action) {
+    std::int64_t message[2] = {0, 0};   // status, length of the text
+    std::string text;
+    if (communicator.rank() == 0) {
+        try {
+            action();
+        } catch (InputError const& error) {
+            message[0] = 2;
+            text = error.what();
+        } catch (std::exception const& error) {
+            message[0] = 1;
+            text = error.what();
+        }
+        message[1] = static_cast<std::int64_t>(text.size());
+    }
+    communicator.broadcast(std::as_writable_bytes(std::span(message)));
+    if (message[0] == 0) return;
+    text.resize(static_cast<std::size_t>(message[1]));
+    communicator.broadcast(std::as_writable_bytes(std::span(text)));
+    if (message[0] == 2) throw InputError(text);
+    throw SharedError(text);
+}
+
+}  // namespace catena::command

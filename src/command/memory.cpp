@@ -1,0 +1,58 @@
+#include <algorithm>
+
+#include "command/describe.hpp"
+#include "dca/segment.hpp"
+#include "dca/tree.hpp"
+
+namespace catena::command {
+namespace {
+
+struct SolverSizes {
+    double segment, joint;
+};
+template <int K>
+SolverSizes sizes() {
+    return {static_cast<double>(sizeof(dca::SegmentMatrix<double, K>) + sizeof(dca::SegmentBias<double, K>)),
+            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>))};
+}
+SolverSizes sizes_for(int directions) {
+    switch (directions) {
+        case 1: return sizes<1>();
+        case 3: return sizes<3>();
+        case 5: return sizes<5>();
+        default: return sizes<6>();
+    }
+}
+
+// Doubles a body in the model's and the dynamics' arrays (chain/chain_group.hpp and integrate/), apart from those of the directions.
+constexpr double bead_numbers = 3 + 7 * 3, body_numbers = 45 + 3 * 4 + 16 * 3;
+constexpr double runge_kutta_numbers = 3 * 7 + 3;
+
+double scene_bytes(ChainSpec const& chain) {
+    BodyArrays const& b = chain.bodies;
+    double const bead = sizeof(double) * 8 + sizeof(std::string), body = sizeof(double) * (1 + 3 + 6 + 3 + 9 + 3 + 4 + 3) + 1;
+    double const loads = sizeof(double) * (3.0 * static_cast<double>(b.torque.size() + b.stiffness.size() + b.damping.size()) +
+                                           4.0 * static_cast<double>(b.rest.size()) + 6.0 * static_cast<double>(b.wrench.size()));
+    return bead * static_cast<double>(chain.beads.size()) + body * static_cast<double>(b.size()) + loads;
+}
+
+}  // namespace
+
+Memory memory_of(Scene const& scene, int ranks) {
+    Directions const directions = directions_of(scene);
+    bool const pairwise = scene.solver.backend == Backend::serial;
+    Memory m;
+    for (ChainSpec const& chain : scene.chains) {
+        int const k = chain.is_beads() ? directions.beads : directions.bodies;
+        auto const n = static_cast<double>(chain.size());
+        SolverSizes const size = sizes_for(k);
+        dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()), dca::run_length_for(static_cast<std::int64_t>(chain.size()), k, pairwise));
+        double const numbers = chain.is_beads() ? bead_numbers : body_numbers + (scene.dynamics.integrator == Integrator::rk4 ? runge_kutta_numbers : 0);
+        m.scene += scene_bytes(chain);
+        m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
+        m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
+    }
+    return m;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,198 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "command/commands.hpp"
+#include "command/describe.hpp"
+#include "dca/segment.hpp"
+#include "integrate/chain_system.hpp"
+
+namespace catena::command {
+namespace {
+
+Axes axes_for(Scene const& scene) {
+    return scene.dynamics.given && scene.dynamics.integrator != Integrator::rk4 ? Axes::world : Axes::joint;
+}
+
+std::string backend_reason(Scene const& scene, Communicator const& communicator) {
+    if (scene.solver.backend != Backend::automatic) return "asked for";
+    int const threads = choose_threads(scene, communicator);
+    if (threads == 1) return "auto: one thread a rank";
+    std::int64_t const share = scene.bodies() / communicator.size();
+    bool const many = choose_backend(scene, communicator) == Backend::openmp;
+    return fmt::format("auto: {} bodies a rank are {} to be worth {} threads", share, many ? "enough" : "too few", threads);
+}
+
+/// What one evaluation of a group costs in messages.
+struct Rounds {
+    bool shared = false;          // a chain is cut by a rank's end
+    int matrices = 0, biases = 0, kinematics = 0;   // collectives a sweep or pass
+};
+Rounds rounds_of(ChainGroup const& group) {
+    Rounds r;
+    for (int chain = 0; chain < group.partition.chains(); ++chain) r.shared = r.shared || group.partition.is_split(chain);
+    r.matrices = r.biases = r.shared ? 1 : 0;
+    r.kinematics = r.shared && !group.beads && group.axes == Axes::joint ? 1 : 0;
+    return r;
+}
+
+std::vector<std::int64_t> shares_of(ChainGroup const& group) {
+    std::vector<std::int64_t> shares;
+    for (std::size_t r = 0; r + 1 < group.first_of_rank().size(); ++r) shares.push_back(group.first_of_rank()[r + 1] - group.first_of_rank()[r]);
+    return shares;
+}
+
+std::string shares_text(std::vector<std::int64_t> const& shares) {
+    if (shares.size() <= 8) return fmt::format("{}", fmt::join(shares, ", "));
+    auto const [least, most] = std::minmax_element(shares.begin(), shares.end());
+    return fmt::format("{} to {} on {} ranks", *least, *most, shares.size());
+}
+
+dca::ChainTree const& longest_tree(ChainGroup const& group) {
+    return *std::max_element(group.partition.trees.begin(), group.partition.trees.end(), [](auto const& a, auto const& b) { return a.bodies < b.bodies; });
+}
+
+void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport const& report) {
+    dca::ChainTree const& tree = longest_tree(group);
+    Rounds const rounds = rounds_of(group);
+    std::vector<std::int64_t> const shares = shares_of(group);
+    text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"), group.beads ? "beads on links" : "bodies", group.kind()));
+    text.entry("blocks", block_text(group.beads, group.directions, group.handles));
+    text.entry("tree", fmt::format("{} bodies: runs of {}, {} of them, then {} levels of merges; depth {}; table version {}", tree.bodies, tree.run_length,
+                                   tree.runs, tree.levels(), tree.depth(), dca::tree_table_version));
+    text.entry("units", fmt::format("{} (whole ones go to ranks; the tree above them is every rank's own)", tree.units));
+    text.entry("bodies of the ranks", shares_text(shares));
+    text.entry("collectives", rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}", rounds.matrices, rounds.biases,
+                                                          rounds.kinematics > 0 ? "1" : "none")
+                                            : "none: no chain is shared by ranks");
+    text.entry("solver's memory", bytes_text(static_cast<double>(report.memory_bytes)) + " on this rank");
+    list.push_back({{"kind", group.kind()},
+                    {"chains", group.partition.chains()},
+                    {"bodies", group.partition.bodies()},
+                    {"directions", group.directions},
+                    {"run_length", tree.run_length},
+                    {"runs", tree.runs},
+                    {"levels", tree.levels()},
+                    {"depth", tree.depth()},
+                    {"units", tree.units},
+                    {"bodies_of_ranks", shares},
+                    {"collectives", {{"matrices", rounds.matrices}, {"biases", rounds.biases}, {"kinematics", rounds.kinematics}}},
+                    {"solver_memory_bytes", report.memory_bytes}});
+}
+
+/// What the scene does not need, and why it may be left out.
+std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system) {
+    std::vector<std::string> lines;
+    ForcesOnJoints const found = forces_on_joints(scene);
+    bool const full = scene.solver.handles == Handles::full;
+    for (auto const& group : system.groups()) {
+        if (group->beads) {
+            lines.emplace_back("kinematics of beads: their positions are the coordinates");
+            lines.emplace_back("rotations and inertias of beads: a bead is a point, both its handles are the bead itself");
+            continue;
+        }
+        if (group->axes == Axes::joint) {
+            lines.emplace_back("positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
+            lines.emplace_back("rotations at merges: both sides of a joint share its axes");
+        } else {
+            lines.emplace_back("kinematics along the chain: orientations and positions are the coordinates");
+            lines.emplace_back("rotations at merges: all handles are in ground axes");
+        }
+        if (!full && group->directions < 6) lines.push_back(fmt::format("{} of 6 directions a handle: the joints' forces along them are known", 6 - group->directions));
+        if (found.springs == 0) lines.emplace_back("joint springs: there are none");
+        if (found.dampers == 0) lines.emplace_back("joint dampers: there are none");
+        if (found.wrenches == 0) lines.emplace_back("external wrenches: there are none");
+    }
+    if (full) lines.emplace_back("projection on the restricted directions: handles are full, as in the founding chapter");
+    if (!scene.forces.openmm) lines.emplace_back("OpenMM: forces.openmm is not in the scene");
+    if (system.backend() != Backend::openmp) lines.emplace_back("threads: this backend has one a rank");
+    if (system.communicator().size() == 1) lines.emplace_back("messages: there is one rank");
+    lines.emplace_back("GPU: not in this version");
+    return lines;
+}
+
+struct StepPlan {
+    int matrix_sweeps = 0, bias_sweeps = 0, bias_sweeps_a_drift_sweep = 0;
+    std::string text;
+};
+StepPlan step_of(DynamicsSpec const& d) {
+    std::string const chosen = fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
+    switch (d.integrator) {
+        case Integrator::rk4: return {4, 4, 0, "4 evaluations: 4 matrix sweeps, 4 bias sweeps; joint coordinates need no projection"};
+        case Integrator::rattle:
+            return {1, 1, 1, "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half kicks in one), s of the drift; " + chosen};
+        case Integrator::g_baoab:
+            return {2, 2, 2, "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the thermostat, s for either half drift; " + chosen};
+    }
+    return {};
+}
+
+void add_dynamics(Text& text, Json& json, Scene const& scene) {
+    text.heading("dynamics");
+    text.entry("integrator", dynamics_text(scene));
+    json["dynamics"] = nullptr;
+    if (!scene.dynamics.given) return;
+    StepPlan const step = step_of(scene.dynamics);
+    text.entry("a step", step.text);
+    json["dynamics"] = {{"integrator", name_of(scene.dynamics.integrator)},
+                        {"matrix_sweeps_a_step", step.matrix_sweeps},
+                        {"bias_sweeps_a_step", {{"fixed", step.bias_sweeps}, {"each_drift_sweep", step.bias_sweeps_a_drift_sweep}}}};
+}
+
+void add_output(Text& text, Json& json, Scene const& scene) {
+    if (!scene.dynamics.given) return;
+    OutputSpec const& o = scene.output;
+    bool const bodies = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return !c.is_beads(); });
+    std::int64_t const frames = scene.dynamics.steps / o.every + 1;
+    double const numbers = 3 + (o.velocities ? 3 : 0) + (bodies ? 4 : 0) + (o.joint_forces ? 6 : 0);
+    double const size = 8.0 * numbers * static_cast<double>(scene.bodies()) * static_cast<double>(frames);
+    text.heading("output");
+    text.entry("every", fmt::format("{} steps: {} frames, trajectory about {}", o.every, frames, bytes_text(size)));
+    text.entry("checkpoints", o.checkpoint_every > 0 ? fmt::format("every {} steps and at the end", o.checkpoint_every) : "at the end");
+    json["output"] = {{"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
+}
+
+}  // namespace
+
+Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
+    ChainSystem const system(scene, axes_for(scene), communicator);
+    std::vector<SolverReport> const reports = system.solver_reports();
+    Outcome outcome;
+    Json& json = outcome.json;
+    std::string const reason = backend_reason(scene, communicator);
+    json = {{"scene", scene.file},
+            {"backend", name_of(system.backend())},
+            {"backend_reason", reason},
+            {"ranks", communicator.size()},
+            {"threads", system.executor().threads()},
+            {"handles", name_of(scene.solver.handles)},
+            {"gpu_levels", nullptr},
+            {"tree_table", dca::tree_table_version},
+            {"groups", Json::array()}};
+    Text text;
+    text.heading(title_of(scene));
+    text.entry("backend", fmt::format("{} ({})", name_of(system.backend()), reason));
+    text.entry("ranks", std::to_string(communicator.size()));
+    text.entry("threads a rank", std::to_string(system.executor().threads()));
+    for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);
+    text.heading("forces");
+    text.entry("gravity", vector_text(scene.forces.gravity));
+    text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
+    json["openmm"] = nullptr;
+    if (system.openmm()) {
+        json["openmm"] = system.openmm()->description();
+        for (std::size_t i = 0; i < json["openmm"].size(); ++i) text.entry(i == 0 ? "OpenMM" : "", json["openmm"][i].get<std::string>());
+        text.entry("", "on path host the matrix sweep runs while it computes: matrices do not wait for forces");
+    }
+    add_dynamics(text, json, scene);
+    add_output(text, json, scene);
+    text.heading("left out");
+    json["left_out"] = left_out(scene, system);
+    for (Json const& line : json["left_out"]) text.note(line.get<std::string>());
+    text.heading("no prediction of times in this version");
+    json["predicted_seconds"] = nullptr;
+    outcome.text = text.str();
+    return outcome;
+}
+
+}  // namespace catena::command

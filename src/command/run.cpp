@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "command/commands.hpp"
+#include "command/describe.hpp"
+#include "integrate/simulation.hpp"
+
+namespace catena::command {
+namespace {
+
+std::string output_folder(Scene const& scene, RunRequest const& request) {
+    if (!request.output.empty()) return request.output;
+    if (request.restart.empty()) return std::filesystem::path(scene.file).stem().string() + "-run";
+    std::filesystem::path const folder = std::filesystem::path(request.restart).parent_path();
+    return folder.empty() ? "." : folder.string();
+}
+
+double number(nlohmann::json const& object, char const* key) {
+    auto const found = object.find(key);
+    return found == object.end() || !found->is_number() ? NAN : found->get<double>();
+}
+
+std::string text_of(Scene const& scene, nlohmann::json const& s) {
+    Text text;
+    auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel"), &constraints = s.at("constraints");
+    text.heading(title_of(scene));
+    text.entry("steps", fmt::format("{} to {}, {:.6g} {} in all", run.at("first_step").get<std::int64_t>(), run.at("last_step").get<std::int64_t>(),
+                                    number(run, "time"), time_unit(scene)));
+    std::string rate = fmt::format("{}: {:.4g} steps/s", duration_text(number(speed, "seconds")), number(speed, "steps_per_second"));
+    if (speed.contains("ns_per_day")) rate += fmt::format(", {:.4g} ns/day", number(speed, "ns_per_day"));
+    text.entry("time", rate);
+    text.entry("solver", fmt::format("{}, {}, {} each", s.at("solver").at("backend").get<std::string>(),
+                                     counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"), counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
+    if (auto const forces = s.find("forces"); forces != s.end()) {
+        text.entry("OpenMM", fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
+        text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces", 100 * number(*forces, "matrix_sweep_hidden")));
+    }
+    text.entry("constraint error", fmt::format("{:.2e}, tolerance {:.0e}", number(constraints, "largest_error"), number(constraints, "tolerance")));
+    bool first = true;
+    if (auto const last = s.find("last_observables"); last != s.end())
+        for (auto const& [name, value] : last->items()) {
+            if (value.is_number()) text.entry(first ? "last observables" : "", fmt::format("{} {:.8g}", name, value.get<double>()));
+            first = false;
+        }
+    for (auto const& note : s.value("notes", nlohmann::json::array())) text.note(note.get<std::string>());
+    first = true;
+    for (auto const& [name, path] : s.at("files").items()) {
+        text.entry(first ? "files" : "", path.get<std::string>());
+        first = false;
+    }
+    text.heading(s.at("valid").get<bool>() ? "VALID" : "INVALID");
+    return text.str();
+}
+
+}  // namespace
+
+Outcome run_scene(Scene const& scene, Communicator const& communicator, RunRequest const& request) {
+    RunOptions options;
+    options.output = output_folder(scene, request);
+    options.steps = request.steps;
+    options.restart = request.restart;
+    options.overwrite = request.overwrite;
+    options.quiet = request.quiet || communicator.rank() != 0;
+    options.command_line = request.command_line;
+    nlohmann::json const summary = run_simulation(scene, communicator, options);
+    Outcome outcome;
+    outcome.valid = summary.at("valid").get<bool>();
+    if (communicator.rank() != 0) return outcome;
+    outcome.text = text_of(scene, summary);
+    outcome.json = summary;
+    return outcome;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,108 @@
+#include "command/session.hpp"
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <new>
+#include <thread>
+
+#include "command/command_line.hpp"
+#include "command/first_rank.hpp"
+#include "io/output.hpp"
+#include "mpi/launcher.hpp"
+
+namespace catena::command {
+namespace {
+
+void say_error(std::string line) {
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    std::fflush(stdout);
+    std::fprintf(stderr, "catena: %s\n", line.c_str());
+}
+
+/// With several ranks, an error that others may not know of ends all of them; rank 0, which may have met the same, has the first word.
+int fail(Communicator const& communicator, std::string const& line) {
+    bool const alone = communicator.size() == 1;
+    if (!alone && communicator.rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    say_error(line);
+    if (!alone) communicator.abort(1);
+    return 1;
+}
+
+int run_request(Communicator const& communicator, int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
+    bool const speaks = communicator.rank() == 0;
+    try {
+        return execute(communicator, parse_command_line(argc, argv));
+    } catch (InputError const& error) {
+        if (speaks) say_error(error.what());
+        return 2;
+    } catch (SharedError const& error) {
+        if (speaks) say_error(error.what());
+        return 1;
+    } catch (std::bad_alloc const&) {
+        return fail(communicator, "the computation does not fit into memory: run it on more ranks, or make fewer bodies");
+    } catch (std::exception const& error) {
+        return fail(communicator, error.what());
+    } catch (...) {
+        return fail(communicator, "unknown error");
+    }
+}
+
+}  // namespace
+
+Session::Session(Communicator const& communicator, CommonOptions const& options) : communicator_(communicator), options_(options) {
+    auto const logger = std::make_shared<spdlog::logger>("catena", std::make_shared<spdlog::sinks::stderr_sink_st>());
+    logger->set_pattern("catena: %l: %v");
+    logger->set_level(communicator.rank() != 0 ? spdlog::level::off : spdlog::level::from_str(options.log_level));
+    if (options.quiet && logger->level() < spdlog::level::err) logger->set_level(spdlog::level::err);
+    spdlog::set_default_logger(logger);
+    on_first_rank(communicator, [&] {
+        std::filesystem::path const file = options.json;
+        if (file.empty() || file == "-") return;
+        std::error_code ignored;
+        if (std::filesystem::is_directory(file, ignored)) throw InputError("a folder is no file for JSON", "--json " + file.string(), "name a file");
+        if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path(), ignored))
+            throw InputError("no such folder: " + file.parent_path().string(), "--json " + file.string(), "make it, or name another file");
+    });
+}
+
+Scene Session::load(std::string const& file) const {
+    auto const start = std::chrono::steady_clock::now();
+    Scene scene = load_scene(file, overrides_of(options_));
+    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                  scene.chains.size(), scene.bodies());
+    return scene;
+}
+
+int Session::conclude(Outcome const& outcome) const {
+    on_first_rank(communicator_, [&] {
+        if (options_.json == "-")
+            std::fputs(json_text(outcome.json).c_str(), stdout);
+        else if (!options_.quiet)
+            std::fputs(outcome.text.c_str(), stdout);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw ComputationError("cannot write to standard output");
+        if (options_.json.empty() || options_.json == "-" || outcome.json.is_null()) return;
+        write_text_file(options_.json, json_text(outcome.json));
+        spdlog::info("wrote {}", options_.json);
+    });
+    return communicator_.max(outcome.valid ? 0 : 1) == 0 ? 0 : 1;
+}
+
+int guarded(int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
+    try {
+        std::unique_ptr<Communicator> const world = world_communicator(&argc, &argv);
+        return run_request(*world, argc, argv, execute);
+    } catch (InputError const& error) {   // no ranks, no communicator: the launcher's numbers say who speaks
+        if (launch_environment().rank == 0) say_error(error.what());
+        return 2;
+    } catch (std::exception const& error) {
+        say_error(error.what());
+        return 1;
+    }
+}
+
+}  // namespace catena::command

@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "command/commands.hpp"
+#include "command/describe.hpp"
+#include "command/first_rank.hpp"
+#include "dca/oracle/oracle.hpp"
+#include "integrate/chain_system.hpp"
+#include "integrate/observables.hpp"
+#include "report/solution.hpp"
+#include "report/timing.hpp"
+
+namespace catena::command {
+namespace {
+
+constexpr std::int64_t most_bodies_in_json = 10000;
+
+/// The recursive Newton-Euler residual of the worst chain, where the oracle can have it: every body on this rank, not too many.
+Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
+    Scene const& scene = system.scene();
+    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json) return nullptr;
+    double worst = 0;
+    std::size_t body = 0, bead = 0;
+    for (ChainSpec const& chain : scene.chains) {
+        oracle::Loads loads{scene.forces.gravity, {}};
+        std::vector<Vec3> accelerations;
+        Vec3 base = Vec3::zero();
+        for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
+            Vec3 own = Vec3::zero();
+            auto const first = s.acceleration_offset[body];
+            for (std::int64_t i = 0; i < std::min<std::int64_t>(3, s.acceleration_offset[body + 1] - first); ++i) own[static_cast<int>(i)] = s.acceleration[first + i];
+            accelerations.push_back(own);
+            if (s.acceleration_offset[body + 1] - first == 6)
+                for (int i = 0; i < 3; ++i) base[i] = s.acceleration[first + 3 + i];
+        }
+        if (!s.bead_force.empty() && chain.is_beads()) loads.bead_forces.assign(s.bead_force.begin() + bead, s.bead_force.begin() + bead + chain.size());
+        bead += chain.beads.size();
+        worst = larger(worst, oracle::rnea_residual(chain, loads, accelerations, base));
+    }
+    return worst;
+}
+
+Json vectors_json(std::vector<Vec3> const& vectors) {
+    Json list = Json::array();
+    for (Vec3 const& v : vectors) list.push_back({v[0], v[1], v[2]});
+    return list;
+}
+
+void add_arrays(Json& json, Scene const& scene, Solution const& s) {
+    Json accelerations = Json::array(), forces = Json::array();
+    std::size_t body = 0;
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
+            double const* const a = s.acceleration.data() + s.acceleration_offset[body];
+            double const* const f = s.joint_force.data() + s.force_offset[body];
+            switch (s.acceleration_offset[body + 1] - s.acceleration_offset[body]) {
+                case 1: accelerations.push_back(a[0]); break;
+                case 3: accelerations.push_back({a[0], a[1], a[2]}); break;
+                default: accelerations.push_back({{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
+            }
+            if (chain.is_beads())
+                forces.push_back(f[0]);
+            else
+                forces.push_back({f[0], f[1], f[2], f[3], f[4], f[5]});
+        }
+    json["joint_accelerations"] = std::move(accelerations);
+    json["bead_accelerations"] = vectors_json(s.bead_acceleration);
+    json["bead_forces"] = vectors_json(s.bead_force);
+    json["joint_forces"] = std::move(forces);
+}
+
+bool finite(std::vector<double> const& values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+Json summary_json(ChainSystem const& system, Timing const& timing) {
+    Scene const& scene = system.scene();
+    Json phases = Json::object();
+    for (auto const& [name, seconds] : timing.phases) phases[name] = seconds;
+    return {{"scene", scene.file},
+            {"title", scene.title},
+            {"chains", chains_json(scene)},
+            {"bodies", scene.bodies()},
+            {"dof", degrees_of_freedom(scene)},
+            {"backend", name_of(system.backend())},
+            {"ranks", system.communicator().size()},
+            {"threads", system.executor().threads()},
+            {"gpu_levels", nullptr},
+            {"handles", name_of(scene.solver.handles)},
+            {"tree_table", dca::tree_table_version},
+            {"seconds",
+             {{"median", timing.evaluation.median}, {"min", timing.evaluation.min}, {"max", timing.evaluation.max}, {"repeat", timing.evaluation.count}}},
+            {"phases", phases},
+            {"sweeps", {{"matrix", timing.matrix_sweeps}, {"bias", timing.bias_sweeps}}}};
+}
+
+bool starts_thermal(Scene const& scene) {
+    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
+}
+
+std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing) {
+    Scene const& scene = system.scene();
+    Text text;
+    text.heading(title_of(scene));
+    text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(), counted(std::ssize(scene.chains), "chain", "chains"), degrees_of_freedom(scene)));
+    text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()), name_of(scene.solver.handles),
+                                     counted(system.communicator().size(), "rank", "ranks"), counted(system.executor().threads(), "thread", "threads")));
+    for (std::size_t i = 0; system.openmm() && i < system.openmm()->description().size(); ++i) text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
+    if (starts_thermal(scene)) text.entry("velocities", "zero (thermal ones are drawn by catena run)");
+    text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median), timing.evaluation.count,
+                                   duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
+                                   1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
+    for (auto const& [name, seconds] : timing.phases) text.entry("  " + name, duration_text(seconds));
+    for (auto const& [term, energy] : json["potential_energy"].items())
+        text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
+    Json const& inverse = json["rnea_residual"];
+    text.entry("inverse dynamics", inverse.is_null() ? "residual not computed (several ranks or many bodies)" : fmt::format("residual {:.2e}, as information", inverse.get<double>()));
+    text.entry("residual", fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(), json["residual_bound"].get<double>()));
+    text.heading(json["valid"].get<bool>() ? "VALID" : "INVALID");
+    return text.str();
+}
+
+void prepare_file(Communicator const& communicator, std::string const& file) {
+    on_first_rank(communicator, [&] {
+        if (file.empty()) return;
+        require_accelerations_writer(file);
+        std::filesystem::path const folder = std::filesystem::path(file).parent_path();
+        std::error_code ignored;
+        if (!folder.empty() && !std::filesystem::is_directory(folder, ignored))
+            throw InputError("no such folder: " + folder.string(), "--accelerations " + file, "make it, or name another file");
+    });
+}
+
+}  // namespace
+
+Outcome solve_scene(Scene const& scene, Communicator const& communicator, SolveRequest const& request) {
+    prepare_file(communicator, request.accelerations);
+    ChainSystem system(scene, Axes::joint, communicator);
+    Timing const timing = time_evaluations(system, request.repeat);
+    Outcome outcome;
+    Json& json = outcome.json = summary_json(system, timing);
+    double const residual = system.residual(), bound = system.residual_bound();
+    std::vector<EnergyTerm> const energies = system.potential_energy();
+    Solution const solution = solution_of(system);
+    outcome.valid = communicator.max(residual <= bound && finite(solution.acceleration) && finite(solution.joint_force) ? 0 : 1) == 0;
+    on_first_rank(communicator, [&] {
+        json["residual"] = residual;
+        json["residual_bound"] = bound;
+        json["residual_bound_formula"] = "32 depth(tree) 2^-53";
+        json["rnea_residual"] = inverse_dynamics_residual(system, solution);
+        json["valid"] = outcome.valid;
+        json["potential_energy"] = Json::object();
+        for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
+        json["velocities"] = starts_thermal(scene) ? "zero in the place of thermal ones" : "as given";
+        if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
+        outcome.text = text_of(system, json, timing);
+        if (request.accelerations.empty()) return;
+        write_accelerations(request.accelerations, solution);
+        spdlog::info("wrote {}", request.accelerations);
+    });
+    return outcome;
+}
+
+}  // namespace catena::command

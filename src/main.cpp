@@ -1,0 +1,46 @@
+// The command line: catena check | plan | solve | run | report | bench. What each does is in command/.
+#include "command/commands.hpp"
+#include "command/generated.hpp"
+#include "command/session.hpp"
+
+namespace {
+
+using namespace catena;
+using namespace catena::command;
+
+int execute(Session const& session, Answer const& answer) { return session.conclude({answer.text, nullptr, true}); }
+
+int execute(Session const& session, CheckRequest const& request) {
+    return session.conclude(check_scene(session.load(request.scene), session.communicator()));
+}
+
+int execute(Session const& session, PlanRequest const& request) {
+    return session.conclude(plan_scene(session.load(request.scene), session.communicator()));
+}
+
+int execute(Session const& session, SolveRequest const& request) {
+    return session.conclude(solve_scene(session.load(request.scene), session.communicator(), request));
+}
+
+int execute(Session const& session, RunRequest const& request) {
+    return session.conclude(run_scene(session.load(request.scene), session.communicator(), request));
+}
+
+int execute(Session const& session, ReportRequest const& request) {
+    std::vector<Scene> scenes;
+    for (std::string const& file : request.scenes) scenes.push_back(session.load(file));
+    if (request.scenes.empty())
+        for (char const* const joint : {"link", "spherical", "revolute"})
+            for (int const bodies : {16, 256, 4096}) scenes.push_back(random_scene(joint, bodies, overrides_of(request)));
+    return session.conclude(report_scenes(scenes, session.communicator(), request));
+}
+
+int execute(Session const& session, BenchRequest const& request) { return session.conclude(run_bench(session.communicator(), request)); }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    return guarded(argc, argv, [](Communicator const& ranks, Request const& asked) {
+        return std::visit([&](auto const& request) { return execute(Session(ranks, request), request); }, asked);
+    });
+}
