@@ -92,7 +92,7 @@ finish() {
 }
 
 say "Packages"
-need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev libbenchmark-dev ccache git
+need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev ccache git
 need_science
 tools=yes
 need_python "$root/tests/requirements.txt" || tools=no

@@ -16,7 +16,7 @@ foreach(folder IN ITEMS src mpi)
     else()
         set(destination "${CMAKE_INSTALL_INCLUDEDIR}/catena/${folder}")
     endif()
-    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}/" DESTINATION "${destination}" FILES_MATCHING PATTERN "*.hpp" PATTERN cmake EXCLUDE)
+    install(DIRECTORY "${PROJECT_SOURCE_DIR}/${folder}/" DESTINATION "${destination}" FILES_MATCHING PATTERN "*.hpp" PATTERN cmake EXCLUDE PATTERN command EXCLUDE)
 endforeach()
 
 if(OpenMM_LIBRARY)

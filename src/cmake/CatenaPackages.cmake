@@ -121,20 +121,12 @@ if(catena_wanted)
 endif()
 catena_settle(OPENMP IN "OpenMP ${OpenMP_CXX_VERSION}" DEBIAN "part of g++, for clang libomp-dev" LEFT_OUT "no backend openmp, one thread a rank")
 
-# Google Test and Google Benchmark: for the project's own tests.
 catena_switch(TESTS "The tests (GoogleTest)")
 if(catena_wanted AND PROJECT_IS_TOP_LEVEL)
     find_package(GTest QUIET)
     set(CATENA_HAVE_TESTS ${GTest_FOUND})
 endif()
 catena_settle(TESTS IN "GoogleTest ${GTest_VERSION}" DEBIAN libgtest-dev LEFT_OUT "no tests are built")
-
-catena_switch(BENCHMARK "Micro-benchmarks (Google Benchmark)")
-if(catena_wanted)
-    find_package(benchmark QUIET)
-    set(CATENA_HAVE_BENCHMARK ${benchmark_FOUND})
-endif()
-catena_settle(BENCHMARK IN "${benchmark_VERSION}" DEBIAN libbenchmark-dev LEFT_OUT "no micro-benchmarks")
 
 # Architectures are named, never `native`: that needs a GPU where the build runs.
 set(CATENA_CUDA_ARCHITECTURES 90 CACHE STRING "GPU architectures to compile for, as for CMAKE_CUDA_ARCHITECTURES")

@@ -227,6 +227,7 @@ Request parse_command_line(int argc, char const* const* argv) {
     app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
     app.footer("catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation failed or is INVALID; 2 the input is wrong.");
     add_commands(app, words);
+    app.require_subcommand(0, 1);   // so that "catena bench solve" is no second command
     app.allow_extras();
     for (CLI::App* each : app.get_subcommands({})) each->allow_extras();
     try {
@@ -240,7 +241,6 @@ Request parse_command_line(int argc, char const* const* argv) {
     refuse_extras(app, chosen.empty() ? nullptr : chosen.front());
     if (version_asked) return answer(version_text());
     if (chosen.empty()) throw InputError("no command is named", "command line", "see catena --help");
-    if (chosen.size() > 1) throw InputError("two commands, " + chosen[0]->get_name() + " and " + chosen[1]->get_name(), "command line", "name one");
     return request_of(chosen.front()->get_name(), words);
 }
 

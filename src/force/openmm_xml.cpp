@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string_view>
 #include <typeinfo>
 
 #include "error.hpp"
@@ -26,6 +27,13 @@ std::string root_attribute(std::string const& xml, std::string const& name) {
     if (at == std::string::npos) return "";
     auto const from = at + name.size() + 3;
     return element.substr(from, element.find('"', from) - from);
+}
+
+/// OpenMM's reader runs past the end of a text that lacks its last element.
+bool is_complete(std::string const& xml) {
+    std::string_view text = xml;
+    auto const end = text.find_last_not_of(" \t\r\n");
+    return end != std::string_view::npos && text.substr(0, end + 1).ends_with("</System>");
 }
 
 std::string one_line(std::string text) {
@@ -57,6 +65,7 @@ std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std:
     std::string const xml = read_text(file, where);
     if (root_attribute(xml, "type") != "System")
         throw InputError(fmt::format("{} is no serialised System", file), where, "write it with OpenMM's XmlSerializer.serialize(system)");
+    if (!is_complete(xml)) throw InputError(fmt::format("{} is cut short", file), where, "write the System again");
     try {
         std::istringstream in(xml);
         return std::unique_ptr<OpenMM::System>(OpenMM::XmlSerializer::deserialize<OpenMM::System>(in));

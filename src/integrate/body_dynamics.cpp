@@ -108,9 +108,12 @@ class BodyDynamics final : public AbsoluteDynamics {
                 omega_.set(k, omega_[k] + alpha_[k]);
             });
         }
-        std::swap(position_, trial_position_);
-        std::swap(orientation_, trial_orientation_);
-        std::swap(omega_, trial_omega_);
+        // Copied, not swapped: the solver keeps a view of the orientation it was assembled at.
+        executor_.for_each(group_.size, [&](std::int64_t k) {
+            position_.set(k, trial_position_[k]);
+            orientation_.set(k, trial_orientation_[k]);
+            omega_.set(k, trial_omega_[k]);
+        });
     }
 
     void thermostat(double c, double kt, std::uint64_t seed, std::uint64_t step) override {

@@ -1,6 +1,7 @@
 // `catena solve --accelerations FILE`: what the JSON holds, for any number of bodies.
 #include <array>
 #include <cstdio>
+#include <filesystem>
 
 #include "error.hpp"
 #include "io/hdf5_data.hpp"
@@ -32,9 +33,14 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
 
 }  // namespace
 
-void require_accelerations_writer(std::string const&) {}
+void require_accelerations_writer(std::string const& file) {
+    auto const kind = std::filesystem::status(file).type();
+    if (kind != std::filesystem::file_type::not_found && kind != std::filesystem::file_type::regular)
+        throw InputError("not a regular file", "--accelerations " + file, "name a file that HDF5 can write to");
+}
 
 void write_accelerations(std::string const& file, Solution const& solution) {
+    require_accelerations_writer(file);
     Quiet const quiet;
     std::string const draft = file + ".part";
     try {

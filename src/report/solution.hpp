@@ -30,7 +30,8 @@ Solution solution_of(ChainSystem&);
 char const* kind_of(ChainSpec const&);
 
 /// Writes /accelerations, /joint_forces (both flat) and /offsets ([bodies + 1][2]: where a body's numbers begin in the one and the other).
-/// Throws ComputationError naming file and cause; "built without HDF5" where it is absent, which the first of the two tells beforehand.
+/// Throws ComputationError naming file and cause. The first of the two tells beforehand, by InputError, what is no regular file, and "built without
+/// HDF5" where it is absent.
 void require_accelerations_writer(std::string const& file);
 void write_accelerations(std::string const& file, Solution const&);
 

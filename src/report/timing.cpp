@@ -60,8 +60,7 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
         for (int i = 0; i < repeat; ++i) values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
         return values;
     };
-    auto const mean = [&](auto const& quantity) { return communicator.max((quantity(after.back()) - quantity(before.front())) / repeat); };
-    auto const sum_of_waits = [](Clocks const& c) { return c.matrix + c.bias + c.waiting; };
+    auto const median = [&](auto const& quantity) { return spread_of(samples(quantity)).median; };
 
     Timing t;
     t.evaluation = spread_of(samples([](Clocks const& c) { return c.moment; }));
@@ -69,16 +68,14 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
     t.bias_sweeps = static_cast<int>(after.front().bias_sweeps - before.front().bias_sweeps);
     t.matrix_sweep = spread_of(samples([&](Clocks const& c) { return c.matrix / std::max(t.matrix_sweeps, 1); }));
     t.bias_sweep = spread_of(samples([&](Clocks const& c) { return c.bias / std::max(t.bias_sweeps, 1); }));
-    t.phases = {{"matrix sweep", mean([](Clocks const& c) { return c.matrix; })},
-                {"bias sweep", mean([](Clocks const& c) { return c.bias; })},
-                {"exchange of units", mean([](Clocks const& c) { return c.exchange; })}};
+    t.phases = {{"matrix sweep", median([](Clocks const& c) { return c.matrix; })},
+                {"bias sweep", median([](Clocks const& c) { return c.bias; })},
+                {"exchange of units", median([](Clocks const& c) { return c.exchange; })}};
     if (system.openmm()) {
-        t.phases.emplace_back("forces", mean([](Clocks const& c) { return c.forces; }));
-        t.phases.emplace_back("waiting for forces", mean([](Clocks const& c) { return c.waiting; }));
+        t.phases.emplace_back("forces", median([](Clocks const& c) { return c.forces; }));
+        t.phases.emplace_back("waiting for forces", median([](Clocks const& c) { return c.waiting; }));
     }
-    double between = 0;   // the barriers and the reading of clocks are no part of an evaluation
-    for (int i = 0; i < repeat; ++i) between += (after[i].moment - before[i].moment) - (sum_of_waits(after[i]) - sum_of_waits(before[i]));
-    t.phases.emplace_back("other", communicator.max(std::max(between, 0.0) / repeat));
+    t.phases.emplace_back("other", median([](Clocks const& c) { return c.moment - c.matrix - c.bias - c.waiting; }));
     return t;
 }
 

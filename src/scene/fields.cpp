@@ -75,8 +75,9 @@ NumberFault parse_number(std::string_view text, double& value) {
     }
     if (digits == ".nan" || digits == ".NaN" || digits == ".NAN" || digits == ".inf" || digits == ".Inf" || digits == ".INF")
         return NumberFault::not_finite;
-    char const* const end = digits.data() + digits.size();
-    auto const result = std::from_chars(digits.data(), end, value);
+    char const* const begin = &digits.front();
+    char const* const end = begin + digits.size();
+    auto const result = std::from_chars(begin, end, value);
     if (result.ec == std::errc::invalid_argument || result.ptr != end) return NumberFault::not_a_number;
     if (result.ec != std::errc()) return NumberFault::out_of_range;
     if (text[0] == '-') value = -value;

@@ -75,7 +75,7 @@ PdbAtom atom_of(std::string const& line, std::string const& path, int n) {
     if (line.size() < 54) refuse_line("the atom's line is cut short", path, n, "give coordinates in columns 31 to 54");
     PdbAtom atom{trimmed(line.substr(12, 4)), trimmed(line.substr(17, 3)), line.substr(21, 1), line.substr(21, 6), Vec3::zero()};
     for (int i = 0; i < 3; ++i)
-        atom.position[i] = 0.1 * cell_number(trimmed(line.substr(static_cast<std::size_t>(30 + 8 * i), 8)), path, n);
+        atom.position[i] = 0.1 * cell_number(trimmed(line.substr(30 + 8 * static_cast<std::size_t>(i), 8)), path, n);
     return atom;
 }
 

@@ -31,7 +31,7 @@ class Override {
         Node* at = &root;
         for (std::size_t i = 0; i < steps_.size(); ++i) {
             bool const last = i + 1 == steps_.size();
-            if (last && value.kind == Node::Kind::null && steps_[i].key.size()) return remove(*at, steps_[i].key);
+            if (last && value.kind == Node::Kind::null && !steps_[i].key.empty()) return remove(*at, steps_[i].key);
             at = steps_[i].key.empty() ? &entry(*at, steps_[i].index) : &member(*at, steps_[i].key);
         }
         value.key = at->key;

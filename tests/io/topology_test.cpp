@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 
 #include "io/output.hpp"
@@ -25,7 +26,8 @@ Topology rows_of_beads(std::int64_t chains, std::int64_t count, Frame& frame) {
     topology.mass.assign(static_cast<std::size_t>(chains * count), 100);
     topology.residue.assign(topology.mass.size(), "GLY");
     for (std::int64_t k = 0; k < chains * count; ++k)
-        frame.positions.push_back({{static_cast<double>(k % count) - 0.5, static_cast<double>(k / count), -1.25}});
+        frame.positions.push_back(
+            {{static_cast<double>(k % count) - 0.5, std::floor(static_cast<double>(k) / static_cast<double>(count)), -1.25}});
     return topology;
 }
 

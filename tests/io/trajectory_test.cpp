@@ -131,7 +131,7 @@ TEST(Trajectory, UnitsAreTheScenes) {
             EXPECT_GT(H5Tis_variable_str(type.get()), 0) << "MDAnalysis refuses units of fixed length";
             EXPECT_EQ(H5Tget_cset(type.get()), H5T_CSET_UTF8);
             char* text = nullptr;
-            H5Aread(attribute.get(), type.get(), &text);
+            H5Aread(attribute.get(), type.get(), static_cast<void*>(&text));
             std::string const copy = text;
             H5free_memory(text);
             return copy;

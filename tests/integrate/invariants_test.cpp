@@ -1,0 +1,164 @@
+// Momentum, angular momentum, energy and closed joints under the integrators, and their order.
+#include <gtest/gtest.h>
+
+#include "integrate/constrained_integrator.hpp"
+#include "integrate/observables.hpp"
+#include "integrate/rk4.hpp"
+
+namespace catena::test {
+namespace {
+
+/// A constrained run without output.
+class Constrained {
+  public:
+    Constrained(std::string const& text, double step, Integrator kind = Integrator::rattle, double friction = 0, double kt = 0)
+        : scene_(quiet(parse_scene(text, "scene.yaml"))), system_(scene_, Axes::world, *communicator_), integrator_({kind, step, friction, kt, 1, 1e-12}, system_.absolute()) {
+        for (AbsoluteDynamics* group : system_.absolute()) {
+            group->update_configuration();
+            group->assemble_matrices();
+            group->draw_velocities(scene_.boltzmann() * 300, 7, std::vector<bool>(scene_.chains.size(), true));
+        }
+        system_.forces_and_matrices(nullptr);
+        integrator_.choose_sweeps();
+    }
+    void run(std::int64_t steps) {
+        for (std::int64_t i = 0; i < steps; ++i) {
+            integrator_.step(done_++);
+            system_.forces_and_matrices(nullptr);
+        }
+    }
+    ChainSystem::Snapshot snapshot() {
+        integrator_.observe();
+        return system_.snapshot();
+    }
+    double energy() {
+        ChainSystem::Snapshot const s = snapshot();
+        double e = kinetic_energy(scene_, s);
+        for (EnergyTerm const& term : system_.potential_energy()) e += term.value;
+        return e;
+    }
+    double constraint_error() {
+        double worst = 0;
+        for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
+        return worst;
+    }
+    Scene const& scene() const { return scene_; }
+
+  private:
+    /// Without the generator's torques and wrenches, so that energy and momentum are kept.
+    static Scene quiet(Scene scene) {
+        for (ChainSpec& chain : scene.chains) {
+            chain.bodies.torque.clear();
+            chain.bodies.wrench.clear();
+        }
+        return scene;
+    }
+    std::unique_ptr<Communicator> communicator_ = serial_communicator();
+    Scene scene_;
+    ChainSystem system_;
+    ConstrainedIntegrator integrator_;
+    std::int64_t done_ = 0;
+};
+
+std::string const bodies = "chains: [{name: a, base: free, generator: {random: {bodies: 12, joint: spherical, seed: 1}}}]\n";
+std::string const beads = "chains: [{name: a, generator: {freely_jointed: {beads: 30, length: 0.38}}}]\n";
+std::string const hanging =
+    "chains: [{name: a, base: fixed, generator: {random: {bodies: 8, joint: spherical, seed: 4}}}]\nforces: {gravity: [0, 0, -5]}\n";
+
+struct Momenta {
+    Vec3 linear = Vec3::zero(), angular = Vec3::zero();
+    double size = 0;
+};
+Momenta momenta(Scene const& scene, ChainSystem::Snapshot const& s) {
+    Momenta m;
+    std::size_t i = 0;
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.size(); ++k, ++i) {
+            double const mass = chain.is_beads() ? chain.beads.mass[k] : chain.bodies.mass[k];
+            Vec3 const p = mass * s.velocity[i];
+            m.linear = m.linear + p;
+            m.angular = m.angular + cross(s.position[i], p);
+            if (!chain.is_beads()) m.angular = m.angular + to_matrix(s.orientation[i]) * (chain.bodies.inertia[k] * s.omega[i]);
+            m.size += norm(p) * (1 + norm(s.position[i]));
+        }
+    return m;
+}
+
+// Impulses act equal and opposite at one point, up to the joints' closing: eps a step from rounding and the constraint error from
+// the point's two places.
+TEST(Rattle, FreeChainsKeepTheirMomenta) {
+    for (std::string const& text : {bodies, beads}) {
+        Constrained run(text, 0.004);
+        Momenta const before = momenta(run.scene(), run.snapshot());
+        run.run(2000);
+        Momenta const after = momenta(run.scene(), run.snapshot());
+        double const bound = 2000 * 64 * 0x1p-53 * before.size + 2000 * 1e-14 * before.size;
+        EXPECT_LE(norm(after.linear - before.linear), bound);
+        EXPECT_LE(norm(after.angular - before.angular), bound);
+        EXPECT_LE(run.constraint_error(), 1e-11);
+    }
+}
+
+TEST(Rattle, EnergyErrorFallsByFourWhenTheStepIsHalved) {
+    for (std::string const& text : {bodies, beads, hanging}) {
+        double rms[2];
+        for (int half = 0; half < 2; ++half) {
+            double const step = half ? 0.002 : 0.004;
+            Constrained run(text, step);
+            std::vector<double> energies;
+            for (int i = 0; i < 200; ++i) {
+                run.run(half ? 2 : 1);
+                energies.push_back(run.energy());
+            }
+            double mean = 0, square = 0;
+            for (double const e : energies) mean += e / static_cast<double>(energies.size());
+            for (double const e : energies) square += (e - mean) * (e - mean) / static_cast<double>(energies.size());
+            rms[half] = std::sqrt(square);
+        }
+        EXPECT_NEAR(rms[0] / rms[1], 4.0, 0.5) << text;
+    }
+}
+
+TEST(Langevin, HeatsAColdChainToItsTemperature) {
+    for (std::string const& text : {bodies, beads}) {
+        Constrained run(text, 0.004, Integrator::g_baoab, 5.0, 0.00831446261815324 * 150);
+        run.run(500);
+        double mean = 0;
+        int const samples = 400;
+        for (int i = 0; i < samples; ++i) {
+            run.run(10);
+            mean += 2 * kinetic_energy(run.scene(), run.snapshot()) / (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) / samples;
+        }
+        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 and 61 squares.
+        double const error = 150 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom(run.scene())) / 100);
+        EXPECT_NEAR(mean, 150, 4 * error) << text;
+        EXPECT_LE(run.constraint_error(), 1e-10);
+    }
+}
+
+TEST(RungeKutta, IsOfFourthOrder) {
+    auto const communicator = serial_communicator();
+    for (char const* joint : {"revolute", "spherical"})
+        for (char const* base : {"free", "fixed"}) {
+            Scene const scene = parse_scene(std::string("chains: [{name: a, base: ") + base + ", generator: {random: {bodies: 5, joint: " + joint +
+                                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2]}\n",
+                                            "scene.yaml");
+            auto const end_of = [&](int steps) {
+                ChainSystem system(scene, Axes::joint, *communicator);
+                RungeKutta4 rk4(*system.joint().front());
+                for (int i = 0; i < steps; ++i) rk4.step(system.joint_state(0), 0.2 / steps);
+                return system.snapshot().position;
+            };
+            auto const exact = end_of(640);
+            auto const error_of = [&](int steps) {
+                auto const x = end_of(steps);
+                double worst = 0;
+                for (std::size_t i = 0; i < x.size(); ++i) worst = std::max(worst, norm(x[i] - exact[i]));
+                return worst;
+            };
+            EXPECT_NEAR(std::log2(error_of(20) / error_of(40)), 4.0, 0.4) << joint << " " << base;
+        }
+}
+
+}  // namespace
+}  // namespace catena::test

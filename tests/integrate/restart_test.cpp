@@ -1,0 +1,81 @@
+// A run that is stopped and restarted is the undisturbed run, bit for bit: state, trajectory and table.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "error.hpp"
+#include "integrate/simulation.hpp"
+#include "io/output.hpp"
+#include "tests/integrate/scenes.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+std::string text_of(std::string const& file) {
+    std::ifstream in(file);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+class Restart : public testing::TestWithParam<RunScene> {
+  protected:
+    nlohmann::json run(std::string const& output, std::int64_t steps, std::string const& restart = "") {
+        RunOptions options;
+        options.output = folder_ / output;
+        options.steps = steps;
+        options.restart = restart;
+        options.quiet = true;
+        return run_simulation(parse_scene(GetParam().text, "scene.yaml"), *communicator_, options);
+    }
+    TemporaryFolder folder_;
+    std::unique_ptr<Communicator> communicator_ = serial_communicator();
+};
+
+TEST_P(Restart, IsTheUndisturbedRun) {
+    EXPECT_TRUE(run("whole", 40)["valid"].get<bool>());
+    run("parts", 20);
+    EXPECT_TRUE(run("parts", 40, folder_ / "parts/checkpoint.h5")["valid"].get<bool>());
+    Checkpoint const whole = read_checkpoint(folder_ / "whole/checkpoint.h5"), parts = read_checkpoint(folder_ / "parts/checkpoint.h5");
+    EXPECT_EQ(whole.step, 40);
+    EXPECT_EQ(parts.step, 40);
+    EXPECT_EQ(whole.integers, parts.integers);
+    ASSERT_FALSE(whole.arrays.empty());
+    EXPECT_EQ(whole.arrays, parts.arrays);   // doubles compared by value: equal means equal bits but for zeros' signs
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+    EXPECT_EQ(text_of(folder_ / "whole/trajectory.h5md").size(), text_of(folder_ / "parts/trajectory.h5md").size());
+}
+
+TEST_P(Restart, FromTheCheckpointBefore) {
+    run("whole", 40);
+    run("parts", 20);   // leaves checkpoints at 20 and, before it, 10
+    run("parts", 40, folder_ / "parts/checkpoint.previous.h5");
+    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+}
+
+TEST_P(Restart, RefusesAnotherScene) {
+    run("parts", 5);
+    RunOptions options;
+    options.output = folder_ / "parts";
+    options.restart = folder_ / "parts/checkpoint.h5";
+    options.quiet = true;
+    Scene const other = parse_scene(GetParam().text, "scene.yaml", {"dynamics.step=0.0005"});
+    std::string const message = message_of([&] { run_simulation(other, *communicator_, options); });
+    EXPECT_NE(message.find("belongs to another scene"), std::string::npos) << message;
+}
+
+TEST_P(Restart, RefusesAnExistingFolder) {
+    run("parts", 5);
+    std::string const message = message_of([&] { run("parts", 5); });
+    EXPECT_NE(message.find("the output folder exists"), std::string::npos) << message;
+    EXPECT_NE(message.find("--overwrite"), std::string::npos) << message;
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Restart, testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace catena::test
