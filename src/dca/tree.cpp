@@ -37,7 +37,7 @@ Partition::Partition(std::vector<std::int64_t> const& lengths, int directions, b
         for (std::int64_t unit = 0; unit < trees[chain].units; ++unit) {
             std::int64_t const begin = first_of_chain[chain] + trees[chain].first_body_of_unit(unit);
             std::int64_t const end = first_of_chain[chain] + trees[chain].first_body_of_unit(unit + 1);
-            int const rank = static_cast<int>((static_cast<__int128>(begin + end) * ranks) / (2 * static_cast<__int128>(bodies())));
+            int const rank = static_cast<int>((begin + end) * ranks / (2 * bodies()));
             while (next_rank <= rank) first_of_rank[next_rank++] = begin;
         }
 }

@@ -218,6 +218,7 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
         gather_to_scene(communicator_, group->group(), 3, flat(group->results().acceleration), joint);
         if (group.get() != beads_ || !openmm_) continue;
         Field<3> own(group->group().size);
+        openmm_->begin(beads_->bead_positions());
         openmm_->finish(own.view());
         gather_to_scene(communicator_, group->group(), 3, to_array<3>("", std::as_const(own).view()).values, bead_force);
     }

@@ -25,12 +25,13 @@ double positive_or(Fields const& fields, char const* key, double otherwise) {
 
 GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node) : request_(request), entry_(single_entry(node)) {
     if (entry_.key == "random") {
-        Fields const random(entry_, {"bodies", "joint", "seed"});
+        Fields const random(entry_, {"bodies", "joint", "seed", "loads"});
         size_ = whole(random.need("bodies", "bodies: 100"), 1);
         joint_ = choice<JointType>(random.need("joint", "joint: revolute"),
                                    {{"link", JointType::link}, {"revolute", JointType::revolute}, {"spherical", JointType::spherical}},
                                    {"planar", "universal", "weld", "prismatic", "helical"});
         beads_ = joint_ == JointType::link;
+        if (Node const* const loads = random.find("loads")) loads_ = truth(*loads);
         velocities_ = true;
         request.allow("generator `random`", beads_ ? Names{"anchor"} : Names{});
     } else if (entry_.key == "pendulum") {
@@ -68,6 +69,7 @@ void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
         chain.beads = random_beads(size_, request_.base, request_.anchor(), seed(copy));
     } else {
         chain.bodies = random_bodies(size_, joint_, request_.base, seed(copy));
+        if (!loads_) chain.bodies.torque.clear(), chain.bodies.wrench.clear();
     }
 }
 

@@ -25,7 +25,7 @@ class GeneratorEntry {
     std::int64_t size_ = 0;
     JointType joint_ = JointType::link;
     double mass_ = 1, length_ = 1, radius_ = 0.05;
-    bool beads_ = false, velocities_ = false;
+    bool beads_ = false, velocities_ = false, loads_ = true;
 };
 
 }  // namespace catena::scene

@@ -69,6 +69,26 @@ TEST_F(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
     compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1, false);
 }
 
+/// Nobody has moved but one chain, from far away to the other: its beads were no ghosts.
+TEST_F(Ranks, AChainThatComesFromAfar) {
+    BeadSystem const all_beads = proteins({random_sequence(30, 23), random_sequence(30, 24)});
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(all_beads, communicator.size());
+        auto const serial = serial_communicator();
+        auto const force = make_openmm_force(on_reference(), beads, communicator);
+        auto const whole = make_openmm_force(on_reference(), split(all_beads, 1), *serial);
+        auto positions = wound(beads, 3);
+        for (std::int64_t k = 30; k < 60; ++k) positions[k][2] += 12;
+        for (double const step : {0.0, -0.2, -9.0, -2.8, 6.0}) {
+            for (std::int64_t k = 30; k < 60; ++k) positions[k][2] += step;
+            auto const expected = evaluate(*whole, positions);
+            auto const own = evaluate(*force, beads, communicator.rank(), positions);
+            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected))
+                << "step " << step << " on " << communicator.size() << " ranks";
+        }
+    });
+}
+
 TEST_F(Ranks, OnAWorkerThread) {
     OpenMmSpec spec = on_reference();
     spec.path = "host";
