@@ -18,8 +18,10 @@ class Communicator {
     virtual int size() const = 0;
     virtual int ranks_on_host() const = 0;
 
-    /// Every rank gets the blocks of all ranks, one after the other in rank order. `bytes_of_rank[r]`: length of rank r's block, known to all.
-    virtual void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) const = 0;
+    /// Every rank gets the blocks of all ranks, one after the other in rank order. `bytes_of_rank[r]`: length of rank r's block, known to
+    /// all.
+    virtual void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
+                            std::vector<std::int64_t> const& bytes_of_rank) const = 0;
     /// As all_gather, on rank 0 alone (`all` may be empty elsewhere).
     virtual void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) const = 0;
     /// Rank 0's bytes to every rank.

@@ -20,10 +20,14 @@ Mat3 joint_axes(JointType type, Vec3 const& axis) {
 
 int restricted_directions(JointType type) {
     switch (type) {
-        case JointType::free: return 0;
-        case JointType::link: return 1;
-        case JointType::spherical: return 3;
-        case JointType::revolute: return 5;
+        case JointType::free:
+            return 0;
+        case JointType::link:
+            return 1;
+        case JointType::spherical:
+            return 3;
+        case JointType::revolute:
+            return 5;
     }
     return 0;
 }
@@ -114,10 +118,11 @@ void fill(ChainGroup& group, Scene const& scene) {
 void fill_restricted(ChainGroup& group, Scene const& scene) {
     dca::Schedule const& s = group.schedule;
     group.restricted_of_joint.assign(static_cast<std::size_t>(s.joints), 0);
-    for (std::int64_t k = 0; k < group.size; ++k) group.restricted_of_joint[k] = static_cast<std::uint8_t>(restricted_directions(group.joint[k]));
+    for (std::int64_t k = 0; k < group.size; ++k)
+        group.restricted_of_joint[k] = static_cast<std::uint8_t>(restricted_directions(group.joint[k]));
     for (std::size_t i = 0; i < s.top_chain_of_joint.size(); ++i)
-        group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] =
-            static_cast<std::uint8_t>(restricted_directions(joint_type(scene.chains[group.chain[s.top_chain_of_joint[i]]], s.top_body_of_joint[i])));
+        group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] = static_cast<std::uint8_t>(
+            restricted_directions(joint_type(scene.chains[group.chain[s.top_chain_of_joint[i]]], s.top_body_of_joint[i])));
     for (dca::TopCopy const& copy : s.top_copies) group.restricted_of_joint[copy.to] = 0;
 }
 
@@ -129,7 +134,8 @@ void find_neighbours(ChainGroup& group, int rank) {
     if (!group.pieces.back().ends) group.neighbour_outboard = p.owner(end);
 }
 
-ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, bool beads, Axes axes, Handles handles, bool pairwise, Communicator const& communicator) {
+ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, bool beads, Axes axes, Handles handles, bool pairwise,
+                      Communicator const& communicator) {
     ChainGroup group;
     group.beads = beads;
     group.axes = beads ? Axes::world : axes;
@@ -163,17 +169,20 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, bool b
 char const* ChainGroup::kind() const { return beads ? "link" : has_revolute ? "revolute" : "spherical"; }
 
 std::int64_t ChainGroup::scene_index(std::int64_t k) const {
-    auto const piece = std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1;
+    auto const piece =
+        std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1;
     return first_in_scene[piece->chain] + piece->body + (k - piece->local);
 }
 
-std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise, Communicator const& communicator) {
+std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,
+                                                     Communicator const& communicator) {
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (bool const beads : {true, false}) {
         std::vector<int> chains;
         for (std::size_t i = 0; i < scene.chains.size(); ++i)
             if (scene.chains[i].is_beads() == beads) chains.push_back(static_cast<int>(i));
-        if (!chains.empty()) groups.push_back(std::make_unique<ChainGroup>(make_group(scene, chains, beads, axes, handles, pairwise, communicator)));
+        if (!chains.empty())
+            groups.push_back(std::make_unique<ChainGroup>(make_group(scene, chains, beads, axes, handles, pairwise, communicator)));
     }
     return groups;
 }

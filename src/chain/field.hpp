@@ -14,8 +14,8 @@ namespace catena {
 /// Free view: body k in [-1, size] (the ends are the halo).
 template <class Real, int D>
 struct FieldView {
-    Real* origin = nullptr;        // component 0 of body 0
-    std::int64_t pitch = 0;        // from one component to the next
+    Real* origin = nullptr;  // component 0 of body 0
+    std::int64_t pitch = 0;  // from one component to the next
     std::int64_t size = 0;
 
     CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * pitch + k]; }

@@ -58,8 +58,7 @@ JointKinematics::JointKinematics(ChainGroup const& group, Executor const& execut
 Motion JointKinematics::joint_motion(JointState const& state, std::size_t piece, std::int64_t k) const {
     Vec3 const qd = state.qd.view().load(k);
     Quat const turn = turn_of(group_, state, k);
-    if (group_.joint[k] == JointType::free)
-        return {turn, qd, state.base_position[piece], rotate_back(turn, state.base_velocity[piece])};
+    if (group_.joint[k] == JointType::free) return {turn, qd, state.base_position[piece], rotate_back(turn, state.base_velocity[piece])};
     Motion m{as_quaternion(group_.joint_rotation.view().load(k)) * turn, qd, group_.joint_translation.view().load(k), Vec3::zero()};
     if (group_.joint[k] == JointType::revolute) {
         ConstView<9> const axes = group_.axes1.view();

@@ -14,27 +14,27 @@ namespace catena {
 struct JointState {
     Field<4> q;
     Field<3> qd;
-    std::vector<Vec3> base_position, base_velocity;   // one a piece; counts where the piece starts on a free base: origin of body 1, W
+    std::vector<Vec3> base_position, base_velocity;  // one a piece; counts where the piece starts on a free base: origin of body 1, W
 };
 JointState make_joint_state(ChainGroup const&, Scene const&);
 
 /// The motion of a frame B against a frame A.
 struct Motion {
-    Quat rotation;      // Q_AB
-    Vec3 omega;         // of B against A, B
-    Vec3 translation;   // of B's origin from A's, A
-    Vec3 velocity;      // of B's origin against A, B
+    Quat rotation;     // Q_AB
+    Vec3 omega;        // of B against A, B
+    Vec3 translation;  // of B's origin from A's, A
+    Vec3 velocity;     // of B's origin against A, B
 };
 /// Motion of C against A from those of B against A and C against B.
 Motion compose(Motion const& ab, Motion const& bc);
 
 /// What a pass over the chain fills. Poses and velocities are left out where nobody asks for them.
 struct BodyMotion {
-    Field<4> joint_turn;     // X: quaternion of B in J
-    Field<4> orientation;    // of B in W
-    Field<3> omega;          // of B, B
-    Field<3> origin;         // of B, W
-    Field<3> velocity;       // of B's origin, B
+    Field<4> joint_turn;   // X: quaternion of B in J
+    Field<4> orientation;  // of B in W
+    Field<3> omega;        // of B, B
+    Field<3> origin;       // of B, W
+    Field<3> velocity;     // of B's origin, B
 };
 
 class JointKinematics {
@@ -46,8 +46,8 @@ class JointKinematics {
   private:
     struct Unit {
         std::size_t piece;
-        std::int64_t begin, count;   // local bodies
-        std::int64_t index;          // within its chain
+        std::int64_t begin, count;  // local bodies
+        std::int64_t index;         // within its chain
     };
     Motion joint_motion(JointState const&, std::size_t piece, std::int64_t k) const;
     Motion unit_motion(JointState const&, Unit const&) const;
@@ -58,7 +58,7 @@ class JointKinematics {
     Executor const& executor_;
     Communicator const& communicator_;
     std::vector<Unit> units_;
-    bool composites_needed_ = false;   // a local chain has more than one unit
+    bool composites_needed_ = false;  // a local chain has more than one unit
 };
 
 }  // namespace catena

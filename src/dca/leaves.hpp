@@ -34,7 +34,8 @@ class BeadLeaf {
     void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force, Vector<double, K> const& outboard_force,
                     AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
-        Vec3 const f = plus_scaled(plus_scaled(load_or_zero(loads.force, k), inboard_force[0], direction_.load(k)), -outboard_force[0], outboard(k));
+        Vec3 const f =
+            plus_scaled(plus_scaled(load_or_zero(loads.force, k), inboard_force[0], direction_.load(k)), -outboard_force[0], outboard(k));
         out.acceleration.store(k, group_->inverse_mass.view().at(k, 0) * f);
     }
 
@@ -88,7 +89,7 @@ class BodyLeaf {
   private:
     struct Handles {
         Handle<double, K> h1, h2;
-        Mat3 to_force_axes;   // from B to the axes of forces
+        Mat3 to_force_axes;  // from B to the axes of forces
     };
     Symmetric<double, 3> inverse_inertia(std::int64_t k) const {
         Vector<double, 6> const v = inverse_inertia_.load(k);

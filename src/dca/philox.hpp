@@ -33,12 +33,12 @@ CATENA_HD Vector<double, 3> normal3(std::uint64_t seed, std::uint64_t step, std:
     double u[4];
     for (std::uint32_t half = 0; half < 2; ++half) {
         std::uint32_t const tag = (static_cast<std::uint32_t>(stage) << 1) | half;
-        Philox4 const r = philox({{static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(body >> 32) | (tag << 16), static_cast<std::uint32_t>(step),
-                                   static_cast<std::uint32_t>(step >> 32)}},
+        Philox4 const r = philox({{static_cast<std::uint32_t>(body), static_cast<std::uint32_t>(body >> 32) | (tag << 16),
+                                   static_cast<std::uint32_t>(step), static_cast<std::uint32_t>(step >> 32)}},
                                  static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32));
         for (int i = 0; i < 2; ++i) {
             std::uint64_t const bits = ((static_cast<std::uint64_t>(r.word[2 * i]) << 32) | r.word[2 * i + 1]) >> 11;
-            u[2 * half + i] = (static_cast<double>(bits) + 0.5) * 0x1p-53;   // in (0, 1)
+            u[2 * half + i] = (static_cast<double>(bits) + 0.5) * 0x1p-53;  // in (0, 1)
         }
     }
     double const two_pi = 6.283185307179586476925;

@@ -37,7 +37,8 @@ template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q) {
     Real const s = Real(2) / squared_norm(q);
     Real const xs = q.x * s, ys = q.y * s, zs = q.z * s;
-    Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, xy = q.x * ys, xz = q.x * zs, yy = q.y * ys, yz = q.y * zs, zz = q.z * zs;
+    Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, xy = q.x * ys, xz = q.x * zs, yy = q.y * ys, yz = q.y * zs,
+               zz = q.z * zs;
     return {{Real(1) - (yy + zz), xy - wz, xz + wy, xy + wz, Real(1) - (xx + zz), yz - wx, xz - wy, yz + wx, Real(1) - (xx + yy)}};
 }
 /// Rotation by `angle` about the unit vector `axis` (right-hand rule).
@@ -72,7 +73,8 @@ CATENA_HD Vector<Real, 3> rotation_vector(Quaternion<Real> q) {
 template <class Real>
 CATENA_HD Quaternion<Real> to_quaternion(Matrix<Real, 3, 3> const& r) {
     Real const t = r(0, 0) + r(1, 1) + r(2, 2);
-    if (t >= r(0, 0) && t >= r(1, 1) && t >= r(2, 2)) return normalized(Quaternion<Real>{Real(1) + t, r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)});
+    if (t >= r(0, 0) && t >= r(1, 1) && t >= r(2, 2))
+        return normalized(Quaternion<Real>{Real(1) + t, r(2, 1) - r(1, 2), r(0, 2) - r(2, 0), r(1, 0) - r(0, 1)});
     if (r(0, 0) >= r(1, 1) && r(0, 0) >= r(2, 2))
         return normalized(Quaternion<Real>{r(2, 1) - r(1, 2), Real(1) + r(0, 0) - r(1, 1) - r(2, 2), r(0, 1) + r(1, 0), r(0, 2) + r(2, 0)});
     if (r(1, 1) >= r(2, 2))

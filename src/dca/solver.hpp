@@ -46,22 +46,22 @@ class DirectionsField {
 
 /// What the matrices depend on.
 struct ConfigurationView {
-    ConstView<3> direction;   // beads: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
-    ConstView<4> rotation;    // bodies: quaternion w x y z: Axes::joint: of B in J of its inboard joint; Axes::world: of B in W
+    ConstView<3> direction;  // beads: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
+    ConstView<4> rotation;   // bodies: quaternion w x y z: Axes::joint: of B in J of its inboard joint; Axes::world: of B in W
 };
 
 /// What the biases depend on. A view without origin means zero.
 struct LoadsView {
-    ConstView<3> torque;      // on each body about its centre of mass, B, joint torques and -omega x J omega included
-    ConstView<3> force;       // on each body: Axes::joint: B; Axes::world and beads: W
-    ConstView<3> omega;       // angular velocity, B: for the centripetal terms at the handles
-    ConstDirectionsView bias; // subtracted velocity terms of joint k along its directions: the solver makes D^T (A_1^B - A_2^A) = -bias
+    ConstView<3> torque;       // on each body about its centre of mass, B, joint torques and -omega x J omega included
+    ConstView<3> force;        // on each body: Axes::joint: B; Axes::world and beads: W
+    ConstView<3> omega;        // angular velocity, B: for the centripetal terms at the handles
+    ConstDirectionsView bias;  // subtracted velocity terms of joint k along its directions: the solver makes D^T (A_1^B - A_2^A) = -bias
 };
 
 struct AccelerationsView {
-    View<3> alpha;            // angular, B; may be absent
-    View<3> acceleration;     // of the centre of mass (bead), axes of LoadsView::force; may be absent
-    DirectionsView joint_force;   // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
+    View<3> alpha;               // angular, B; may be absent
+    View<3> acceleration;        // of the centre of mass (bead), axes of LoadsView::force; may be absent
+    DirectionsView joint_force;  // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
 };
 
 struct SolverReport {

@@ -41,9 +41,9 @@ class Partition {
     /// `lengths` of the chains; every rank gets a run of units of about equal numbers of bodies. Ranks may be left without any.
     Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks);
 
-    std::vector<ChainTree> trees;                // one a chain
-    std::vector<std::int64_t> first_of_chain;    // chains + 1
-    std::vector<std::int64_t> first_of_rank;     // ranks + 1
+    std::vector<ChainTree> trees;              // one a chain
+    std::vector<std::int64_t> first_of_chain;  // chains + 1
+    std::vector<std::int64_t> first_of_rank;   // ranks + 1
 
     std::int64_t bodies() const { return first_of_chain.back(); }
     int chains() const { return static_cast<int>(trees.size()); }
@@ -57,7 +57,7 @@ struct Piece {
     int chain = 0;
     std::int64_t local = 0, body = 0, count = 0;
     std::int64_t first_unit = 0, units = 0;
-    bool starts = false, ends = false;      // holds the chain's first, last body
+    bool starts = false, ends = false;  // holds the chain's first, last body
     bool whole() const { return starts && ends; }
 };
 std::vector<Piece> pieces_of(Partition const&, int rank);
@@ -65,8 +65,8 @@ std::vector<Piece> pieces_of(Partition const&, int rank);
 /// What a driver iterates over: plain lists, level by level. Joint forces live in one storage, indexed by `joint`, `first`, `next`
 /// (see JointStorage); segments in another, indexed by slots.
 struct Run {
-    std::int64_t body = 0, count = 0, slot = 0;   // local bodies [body, body + count)
-    std::int64_t next = 0;                        // storage index of the joint that follows the run
+    std::int64_t body = 0, count = 0, slot = 0;  // local bodies [body, body + count)
+    std::int64_t next = 0;                       // storage index of the joint that follows the run
 };
 struct Merge {
     std::int64_t inboard = 0, outboard = 0, slot = 0;
@@ -79,9 +79,9 @@ struct Root {
 };
 /// A unit of a chain that several ranks share.
 struct SharedUnit {
-    std::int64_t slot = 0;       // where its segment lies after the gather
+    std::int64_t slot = 0;  // where its segment lies after the gather
     int owner = 0;
-    std::int64_t source = 0;     // on the owner: the slot it comes from
+    std::int64_t source = 0;  // on the owner: the slot it comes from
 };
 /// The storage index of a joint force at the top of a shared chain goes to a local one (own joints and the halo at the end).
 struct TopCopy {
@@ -89,17 +89,17 @@ struct TopCopy {
 };
 
 struct Schedule {
-    std::int64_t bodies = 0;            // own; storage [0, bodies): own joints; `halo`: the joint after the last body; `none`: always 0
+    std::int64_t bodies = 0;  // own; storage [0, bodies): own joints; `halo`: the joint after the last body; `none`: always 0
     std::int64_t halo = 0, none = 0, joints = 0;
     std::int64_t slots = 0;
     std::vector<Run> runs;
-    std::vector<std::vector<Merge>> levels;       // below the roots of whole chains and below shared units
-    std::vector<Root> roots;                      // of whole chains
-    std::vector<SharedUnit> shared;               // of all shared chains, in order; the same list on every rank (but for source)
-    std::vector<std::vector<Merge>> top_levels;   // of the shared chains this rank takes part in
+    std::vector<std::vector<Merge>> levels;      // below the roots of whole chains and below shared units
+    std::vector<Root> roots;                     // of whole chains
+    std::vector<SharedUnit> shared;              // of all shared chains, in order; the same list on every rank (but for source)
+    std::vector<std::vector<Merge>> top_levels;  // of the shared chains this rank takes part in
     std::vector<Root> top_roots;
     std::vector<TopCopy> top_copies;
-    std::vector<int> top_chain_of_joint;          // for storage indices > none: the chain and body of that joint
+    std::vector<int> top_chain_of_joint;  // for storage indices > none: the chain and body of that joint
     std::vector<std::int64_t> top_body_of_joint;
     std::int64_t first_top_joint() const { return none + 1; }
 };

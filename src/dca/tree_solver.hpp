@@ -82,12 +82,14 @@ class TreeSolver final : public ChainSolver {
 
     void assemble_run(Run const& run) {
         Matrices segment = leaf_.matrix(run.body);
-        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k) segment = assemble(segment, leaf_.matrix(k), restricted(k), joints_[k]);
+        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)
+            segment = assemble(segment, leaf_.matrix(k), restricted(k), joints_[k]);
         matrices_[run.slot] = segment;
     }
     void assemble_run_bias(Run const& run, LoadsView const& loads) {
         Biases segment = leaf_.bias(loads, run.body);
-        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k) segment = assemble(segment, leaf_.bias(loads, k), joints_[k], offsets_[k]);
+        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)
+            segment = assemble(segment, leaf_.bias(loads, k), joints_[k], offsets_[k]);
         biases_[run.slot] = segment;
     }
     void disassemble_run(Run const& run, LoadsView const& loads, AccelerationsView const& out) {
@@ -159,8 +161,8 @@ class TreeSolver final : public ChainSolver {
             chain = schedule_.top_chain_of_joint[joint - schedule_.first_top_joint()];
             body = schedule_.top_body_of_joint[joint - schedule_.first_top_joint()];
         }
-        throw ComputationError("the matrix of a joint is not positive definite (chain " + group_.name[chain] + ", body " + std::to_string(body + 1) +
-                               "): masses, inertias or positions there are extreme or not finite");
+        throw ComputationError("the matrix of a joint is not positive definite (chain " + group_.name[chain] + ", body " +
+                               std::to_string(body + 1) + "): masses, inertias or positions there are extreme or not finite");
     }
 
     ChainGroup const& group_;

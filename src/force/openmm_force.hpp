@@ -15,22 +15,25 @@ namespace catena {
 
 /// All beads of a scene (the bead chains, one after the other), known to every rank, and the run of them that this rank owns.
 struct BeadSystem {
-    struct Link { std::int64_t inboard, outboard; double length; };
+    struct Link {
+        std::int64_t inboard, outboard;
+        double length;
+    };
     std::vector<double> mass;
     std::vector<std::string> residue;
-    std::vector<std::string> chain_name;           // one a chain
-    std::vector<std::int64_t> chain_offset;        // first bead of each chain, then the number of beads
-    std::vector<Link> links;                       // between beads (a link to ground is not among them)
-    std::vector<std::int64_t> first_of_rank;       // size ranks + 1: rank r owns beads [first_of_rank[r], first_of_rank[r + 1])
+    std::vector<std::string> chain_name;      // one a chain
+    std::vector<std::int64_t> chain_offset;   // first bead of each chain, then the number of beads
+    std::vector<Link> links;                  // between beads (a link to ground is not among them)
+    std::vector<std::int64_t> first_of_rank;  // size ranks + 1: rank r owns beads [first_of_rank[r], first_of_rank[r + 1])
     std::optional<Vec3> box;
-    std::string scene_file;                        // for messages
+    std::string scene_file;  // for messages
 
     std::int64_t size() const { return static_cast<std::int64_t>(mass.size()); }
 };
 
 struct EnergyTerm {
     std::string name;
-    double value;   // kJ/mol
+    double value;  // kJ/mol
 };
 
 /// When the force computation ran, in seconds of std::chrono::steady_clock.
@@ -45,11 +48,13 @@ class OpenMmForce {
     virtual void begin(ConstView<3> positions) = 0;
     /// Waits for it and adds the forces (kJ/mol/nm) to `forces` (own beads). Throws ComputationError if OpenMM failed.
     virtual void finish(View<3> forces) = 0;
-    /// Potential energy of all beads, term by term in a fixed order, at the positions given last; the same on every rank. Collective, after finish().
+    /// Potential energy of all beads, term by term in a fixed order, at the positions given last; the same on every rank. Collective, after
+    /// finish().
     virtual std::vector<EnergyTerm> energies() = 0;
     /// When the last evaluation ran.
     virtual Interval last_evaluation() const = 0;
-    /// Lines for `check`, `plan` and the summary: platform and version, terms, threads, path, bonds left out because links replace them (with the number of them).
+    /// Lines for `check`, `plan` and the summary: platform and version, terms, threads, path, bonds left out because links replace them
+    /// (with the number of them).
     virtual std::vector<std::string> description() const = 0;
     virtual std::string platform() const = 0;
     /// The path that runs: "host" or "inline".
@@ -59,8 +64,8 @@ class OpenMmForce {
     virtual std::int64_t rebuilds() const = 0;
 };
 
-/// Throws InputError when the scene's terms cannot be had (unknown residue, missing platform, unreadable XML, a force that cannot be split over
-/// ranks, ...) and "built without OpenMM" where the build lacks it.
+/// Throws InputError when the scene's terms cannot be had (unknown residue, missing platform, unreadable XML, a force that cannot be split
+/// over ranks, ...) and "built without OpenMM" where the build lacks it.
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const&, Communicator const&);
 
 /// "OpenMM 8.6.1" or "none".

@@ -73,7 +73,7 @@ std::vector<std::int64_t> RankForces::ghost_beads(std::span<Vec3 const> all) con
         return ghosts;
     }
     if (reach_ == 0) return partners_;
-    auto const near = ghosts_of(all, first_, last_, reach_ - 0.2, box_);
+    auto const near = ghosts_of(all, first_, last_, reach_ + skin_, box_);
     std::vector<std::int64_t> ghosts;
     std::set_union(near.begin(), near.end(), partners_.begin(), partners_.end(), std::back_inserter(ghosts));
     return ghosts;

@@ -15,9 +15,9 @@ namespace catena {
 
 /// Accelerations and forces body by body, ground axes, for output and checks.
 struct BodyResults {
-    std::vector<Vec3> alpha;                      // angular; empty for beads
-    std::vector<Vec3> acceleration;               // of the centre of mass
-    std::vector<Vector<double, 6>> joint_force;   // constraint [torque, force] on body k at its inboard joint
+    std::vector<Vec3> alpha;                     // angular; empty for beads
+    std::vector<Vec3> acceleration;              // of the centre of mass
+    std::vector<Vector<double, 6>> joint_force;  // constraint [torque, force] on body k at its inboard joint
 };
 
 /// Body by body, this rank's.
@@ -32,7 +32,7 @@ inline double larger(double a, double b) { return b > a || b != b ? b : a; }
 struct StateArray {
     std::string name;
     int width = 0;
-    std::vector<double> values;   // this rank's bodies, one after the other
+    std::vector<double> values;  // this rank's bodies, one after the other
 };
 
 class AbsoluteDynamics {
@@ -70,7 +70,8 @@ class AbsoluteDynamics {
     virtual void set_state(std::vector<StateArray> const&) = 0;
     /// Velocities of the last observe(): `velocity` (W) and for bodies `omega` (B).
     virtual std::vector<StateArray> observed_state() const = 0;
-    /// Accelerations and joint forces at the configuration, matrices and forces of now and the velocities observed last: one bias sweep. Collective.
+    /// Accelerations and joint forces at the configuration, matrices and forces of now and the velocities observed last: one bias sweep.
+    /// Collective.
     virtual void evaluate() = 0;
     /// Of the last evaluate(), ground axes.
     virtual BodyResults results() const = 0;
@@ -83,8 +84,10 @@ class AbsoluteDynamics {
     virtual ChainSolver const& solver() const = 0;
 };
 
-std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
-std::unique_ptr<AbsoluteDynamics> make_body_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                                                     std::unique_ptr<ChainSolver>);
+std::unique_ptr<AbsoluteDynamics> make_body_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                                                     std::unique_ptr<ChainSolver>);
 
 /// One array of the given name; throws ComputationError if it is not there.
 StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);

@@ -16,7 +16,8 @@ namespace {
 
 class BeadDynamics final : public AbsoluteDynamics {
   public:
-    BeadDynamics(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator, std::unique_ptr<ChainSolver> solver)
+    BeadDynamics(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
+                 std::unique_ptr<ChainSolver> solver)
         : group_(group),
           executor_(executor),
           communicator_(communicator),
@@ -129,7 +130,7 @@ class BeadDynamics final : public AbsoluteDynamics {
         return r;
     }
     double residual() override {
-        Field<4> terms(group_.size);   // acceleration and the size of what each force adds to it
+        Field<4> terms(group_.size);  // acceleration and the size of what each force adds to it
         double worst = 0;
         for (std::int64_t k = 0; k < group_.size; ++k) {
             Vec3 const ma = group_.mass.view().at(k, 0) * change_[k], f = force_[k];
@@ -166,7 +167,7 @@ class BeadDynamics final : public AbsoluteDynamics {
         return position_.view().load(k) - anchor_[group_.partition.chain_of(group_.first_of_rank()[communicator_.rank()] + k)];
     }
     void set_bias(std::int64_t k, double value) {
-        bias_.view().origin[k] = value;   // the link's direction comes first; full handles' other directions stay 0
+        bias_.view().origin[k] = value;  // the link's direction comes first; full handles' other directions stay 0
     }
     /// How far link k is too long along its direction at the step's start: the s with |d - s u| = length.
     double excess(std::int64_t k) const {
@@ -183,9 +184,8 @@ class BeadDynamics final : public AbsoluteDynamics {
     }
     /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
     void project(double h, View<3> out) {
-        executor_.for_each(group_.size, [&](std::int64_t k) {
-            momentum_.set(k, plus_scaled(group_.mass.view().at(k, 0) * velocity_[k], h, force_[k]));
-        });
+        executor_.for_each(
+            group_.size, [&](std::int64_t k) { momentum_.set(k, plus_scaled(group_.mass.view().at(k, 0) * velocity_[k], h, force_[k])); });
         solver_->solve({{}, momentum_.view(), {}, {}}, {{}, out, {}});
     }
 
@@ -201,8 +201,8 @@ class BeadDynamics final : public AbsoluteDynamics {
 
 }  // namespace
 
-std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
-                                                     std::unique_ptr<ChainSolver> solver) {
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
+                                                     Communicator const& communicator, std::unique_ptr<ChainSolver> solver) {
     return std::make_unique<BeadDynamics>(group, scene, executor, communicator, std::move(solver));
 }
 

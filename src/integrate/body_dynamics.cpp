@@ -30,7 +30,8 @@ PrincipalFrame principal_frame(Sym3 const& inertia) {
 /// Bodies on spherical joints. Handle 1 of body k lies at x + R r1, handle 2 at x + R r2 (x: centre of mass).
 class BodyDynamics final : public AbsoluteDynamics {
   public:
-    BodyDynamics(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator, std::unique_ptr<ChainSolver> solver)
+    BodyDynamics(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
+                 std::unique_ptr<ChainSolver> solver)
         : group_(group),
           executor_(executor),
           communicator_(communicator),
@@ -69,7 +70,7 @@ class BodyDynamics final : public AbsoluteDynamics {
     void set_simple_forces() override {
         if (given_.joint_loads) set_joint_torques();
         executor_.for_each(group_.size, [&](std::int64_t k) {
-            Vec3 force = group_.mass.view().at(k, 0) * given_.gravity, torque = Vec3::zero();   // torque: W
+            Vec3 force = group_.mass.view().at(k, 0) * given_.gravity, torque = Vec3::zero();  // torque: W
             if (given_.joint_loads) {
                 torque = joint_torque_[k];
                 if (!group_.is_last[k]) torque = torque - joint_torque_.view().load(k + 1);
@@ -118,7 +119,9 @@ class BodyDynamics final : public AbsoluteDynamics {
 
     void thermostat(double c, double kt, std::uint64_t seed, std::uint64_t step) override {
         double const spread = std::sqrt((1.0 - c * c) * kt);
-        executor_.for_each(group_.size, [&](std::int64_t k) { add_noise(k, c, spread, seed, step, NoiseStage::thermostat, NoiseStage::thermostat_angular); });
+        executor_.for_each(group_.size, [&](std::int64_t k) {
+            add_noise(k, c, spread, seed, step, NoiseStage::thermostat, NoiseStage::thermostat_angular);
+        });
         kick(0.0);
     }
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
@@ -136,8 +139,8 @@ class BodyDynamics final : public AbsoluteDynamics {
     }
 
     std::vector<StateArray> state() const override {
-        return {to_array<3>("position", position_.view()), to_array<3>("velocity", velocity_.view()), to_array<4>("orientation", orientation_.view()),
-                to_array<3>("omega", omega_.view())};
+        return {to_array<3>("position", position_.view()), to_array<3>("velocity", velocity_.view()),
+                to_array<4>("orientation", orientation_.view()), to_array<3>("omega", omega_.view())};
     }
     void set_state(std::vector<StateArray> const& arrays) override {
         from_array<3>(array_named(arrays, "position"), position_.view());
@@ -156,7 +159,8 @@ class BodyDynamics final : public AbsoluteDynamics {
             momentum_.set(k, torque_[k] - cross(w, as_symmetric(group_.inertia[k]) * w));
             set_bias(k, Vec3::zero());
         });
-        solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view()}, {alpha_.view(), acceleration_.view(), joint_force_.view()});
+        solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view()},
+                       {alpha_.view(), acceleration_.view(), joint_force_.view()});
     }
     BodyResults results() const override {
         BodyResults r;
@@ -169,7 +173,7 @@ class BodyDynamics final : public AbsoluteDynamics {
         return r;
     }
     double residual() override {
-        Field<4> point(group_.size);   // acceleration of handle 2, W, and the size of its terms
+        Field<4> point(group_.size);  // acceleration of handle 2, W, and the size of its terms
         for (std::int64_t k = 0; k < group_.size; ++k) {
             HandleAcceleration const a = handle_acceleration(k, group_.r2[k]);
             point.set(k, {{a.value[0], a.value[1], a.value[2], a.terms}});
@@ -211,7 +215,8 @@ class BodyDynamics final : public AbsoluteDynamics {
     static Mat3 turn(Field<4> const& orientation, std::int64_t k) { return to_matrix(as_quaternion(orientation.view().load(k))); }
 
     void start_from_joint_coordinates(Scene const& scene) {
-        BodyMotion motion{Field<4>(group_.size), Field<4>(group_.size), Field<3>(group_.size), Field<3>(group_.size), Field<3>(group_.size)};
+        BodyMotion motion{Field<4>(group_.size), Field<4>(group_.size), Field<3>(group_.size), Field<3>(group_.size),
+                          Field<3>(group_.size)};
         JointKinematics(group_, executor_, communicator_).evaluate(make_joint_state(group_, scene), true, motion);
         for (std::int64_t k = 0; k < group_.size; ++k) {
             Mat3 const r = turn(motion.orientation, k);
@@ -232,14 +237,16 @@ class BodyDynamics final : public AbsoluteDynamics {
             Vec3 torque = Vec3::zero();
             if (group_.joint[k] == JointType::spherical) {
                 torque = given_.torque[k];
-                if (given_.springs) torque = torque + spherical_spring_torque(given_.stiffness[k], as_quaternion(given_.rest[k]), joint_turn(k));
+                if (given_.springs)
+                    torque = torque + spherical_spring_torque(given_.stiffness[k], as_quaternion(given_.rest[k]), joint_turn(k));
             }
             joint_torque_.set(k, turn(orientation_, k) * torque);
         });
         exchange_from_outboard(communicator_, group_, joint_torque_.view());
     }
     void set_outboard_points() {
-        executor_.for_each(group_.size, [&](std::int64_t k) { outboard_point_.set(k, position_[k] + turn(orientation_, k) * group_.r2[k]); });
+        executor_.for_each(group_.size,
+                           [&](std::int64_t k) { outboard_point_.set(k, position_[k] + turn(orientation_, k) * group_.r2[k]); });
         exchange_from_inboard(communicator_, group_, outboard_point_.view());
     }
     /// Handle 1 of body k from handle 2 of its inboard neighbour, W.
@@ -253,7 +260,8 @@ class BodyDynamics final : public AbsoluteDynamics {
     }
     void add_noise(std::int64_t k, double c, double spread, std::uint64_t seed, std::uint64_t step, NoiseStage linear, NoiseStage angular) {
         auto const body = static_cast<std::uint64_t>(group_.scene_index(k));
-        velocity_.set(k, plus_scaled(c * velocity_[k], spread * std::sqrt(group_.inverse_mass.view().at(k, 0)), normal3(seed, step, body, linear)));
+        velocity_.set(
+            k, plus_scaled(c * velocity_[k], spread * std::sqrt(group_.inverse_mass.view().at(k, 0)), normal3(seed, step, body, linear)));
         Vec3 noise = normal3(seed, step, body, angular);
         for (int i = 0; i < 3; ++i) noise[i] *= spread / std::sqrt(principal_[k].moments[i]);
         omega_.set(k, c * omega_[k] + to_matrix(principal_[k].rotation) * noise);
@@ -272,7 +280,8 @@ class BodyDynamics final : public AbsoluteDynamics {
         Vec3 const w = observed_omega_[k], centripetal = cross(w, cross(w, r));
         Vec3 const f1 = joint_force_.view().load<3>(k), f2 = group_.is_last[k] ? Vec3::zero() : joint_force_.view().load<3>(k + 1);
         double terms = norm(centripetal) + group_.inverse_mass.view().at(k, 0) * (norm(force_[k]) + norm(f1) + norm(f2));
-        for (Vec3 const& moment : {momentum_[k], cross(group_.r1[k], transposed_times(to_ground, f1)), cross(group_.r2[k], transposed_times(to_ground, f2))})
+        for (Vec3 const& moment :
+             {momentum_[k], cross(group_.r1[k], transposed_times(to_ground, f1)), cross(group_.r2[k], transposed_times(to_ground, f2))})
             terms += norm(cross(as_symmetric(group_.inverse_inertia[k]) * moment, r));
         return {acceleration_[k] + to_ground * (cross(alpha_[k], r) + centripetal), terms};
     }
@@ -284,7 +293,8 @@ class BodyDynamics final : public AbsoluteDynamics {
         Vec3 const w = observed_omega_[k], j_alpha = as_symmetric(group_.inertia[k]) * alpha_[k];
         Vec3 const gyroscopic = cross(w, as_symmetric(group_.inertia[k]) * w);
         Vec3 const t1 = cross(group_.r1[k], transposed_times(r, f1)), t2 = cross(group_.r2[k], transposed_times(r, f2));
-        double const euler = relative(norm(j_alpha + gyroscopic - torque_[k] - t1 + t2), norm(j_alpha) + norm(gyroscopic) + norm(torque_[k]) + norm(t1) + norm(t2));
+        double const euler = relative(norm(j_alpha + gyroscopic - torque_[k] - t1 + t2),
+                                      norm(j_alpha) + norm(gyroscopic) + norm(torque_[k]) + norm(t1) + norm(t2));
         return larger(newton, euler);
     }
 
@@ -294,7 +304,7 @@ class BodyDynamics final : public AbsoluteDynamics {
     std::unique_ptr<ChainSolver> solver_;
     BodyLoads given_;
     std::vector<PrincipalFrame> principal_;
-    double reach_ = 0;   // longest distance of a joint from its bodies' centres
+    double reach_ = 0;  // longest distance of a joint from its bodies' centres
     Field<3> position_, velocity_, omega_;
     Field<4> orientation_;
     Field<3> observed_velocity_, observed_omega_, force_, torque_, joint_torque_, momentum_, angular_momentum_, acceleration_, alpha_;
@@ -306,8 +316,8 @@ class BodyDynamics final : public AbsoluteDynamics {
 
 }  // namespace
 
-std::unique_ptr<AbsoluteDynamics> make_body_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
-                                                     std::unique_ptr<ChainSolver> solver) {
+std::unique_ptr<AbsoluteDynamics> make_body_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
+                                                     Communicator const& communicator, std::unique_ptr<ChainSolver> solver) {
     return std::make_unique<BodyDynamics>(group, scene, executor, communicator, std::move(solver));
 }
 

@@ -15,7 +15,8 @@ template <int D, class Get>
 Field<D> field_of(ChainGroup const& group, Scene const& scene, Get const& get) {
     Field<D> field(group.size);
     for (dca::Piece const& piece : group.pieces)
-        for (std::int64_t i = 0; i < piece.count; ++i) field.set(piece.local + i, get(scene.chains[group.chain[piece.chain]].bodies, piece.body + i));
+        for (std::int64_t i = 0; i < piece.count; ++i)
+            field.set(piece.local + i, get(scene.chains[group.chain[piece.chain]].bodies, piece.body + i));
     return field;
 }
 
@@ -31,9 +32,8 @@ BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
         loads.springs = loads.springs || any(b.stiffness);
         loads.dampers = loads.dampers || any(b.damping);
         loads.joint_loads = loads.joint_loads || any(b.torque);
-        loads.wrenches = loads.wrenches || std::any_of(b.wrench.begin(), b.wrench.end(), [](auto const& w) {
-            return any(std::vector<Vec3>{w.first, w.second});
-        });
+        loads.wrenches = loads.wrenches || std::any_of(b.wrench.begin(), b.wrench.end(),
+                                                       [](auto const& w) { return any(std::vector<Vec3>{w.first, w.second}); });
     }
     loads.joint_loads = loads.joint_loads || loads.springs || loads.dampers;
     if (loads.joint_loads) loads.torque = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return entry(b.torque, i); });
@@ -46,8 +46,10 @@ BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
     }
     if (loads.dampers) loads.damping = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return entry(b.damping, i); });
     if (loads.wrenches) {
-        loads.wrench_torque = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return b.wrench.empty() ? Vec3::zero() : b.wrench[i].first; });
-        loads.wrench_force = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return b.wrench.empty() ? Vec3::zero() : b.wrench[i].second; });
+        loads.wrench_torque = field_of<3>(
+            group, scene, [](BodyArrays const& b, std::int64_t i) { return b.wrench.empty() ? Vec3::zero() : b.wrench[i].first; });
+        loads.wrench_force = field_of<3>(
+            group, scene, [](BodyArrays const& b, std::int64_t i) { return b.wrench.empty() ? Vec3::zero() : b.wrench[i].second; });
     }
     return loads;
 }

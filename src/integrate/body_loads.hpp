@@ -7,8 +7,8 @@ namespace catena {
 
 /// Joint torques, springs, dampers and wrenches of a group's bodies, and gravity. Fields are empty where no body has any.
 struct BodyLoads {
-    Vec3 gravity = Vec3::zero();           // W
-    Field<3> torque, stiffness, damping;   // rules of BodyArrays
+    Vec3 gravity = Vec3::zero();          // W
+    Field<3> torque, stiffness, damping;  // rules of BodyArrays
     Field<4> rest;
     Field<3> wrench_torque, wrench_force;  // W, at the centre of mass
     bool joint_loads = false, springs = false, dampers = false, wrenches = false;
@@ -16,7 +16,8 @@ struct BodyLoads {
 BodyLoads make_body_loads(ChainGroup const&, Scene const&);
 
 /// Torque of the spring (and damper) of a spherical joint on the outboard body, B. The energy is 1/2 sum k_i theta_i^2, theta the
-/// rotation vector of B from `rest`; its gradient turns with the inverse right Jacobian of SO(3) (Sola et al., "A micro Lie theory", 2018, eq 144).
+/// rotation vector of B from `rest`; its gradient turns with the inverse right Jacobian of SO(3) (Sola et al., "A micro Lie theory", 2018,
+/// eq 144).
 Vec3 spherical_spring_torque(Vec3 const& stiffness, Quat const& rest, Quat const& turn);
 /// 1/2 sum k_i theta_i^2.
 double spherical_spring_energy(Vec3 const& stiffness, Quat const& rest, Quat const& turn);

@@ -26,11 +26,13 @@ std::vector<Vec3> triples(std::vector<double> const& values) {
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (asked == Backend::cuda || asked == Backend::cuda_levels) throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments or openmp)");
+    if (asked == Backend::cuda || asked == Backend::cuda_levels)
+        throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments or openmp)");
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
-    return choose_threads(scene, communicator) > 1 && scene.bodies() / communicator.size() >= worth_threads ? Backend::openmp : Backend::segments;
+    return choose_threads(scene, communicator) > 1 && scene.bodies() / communicator.size() >= worth_threads ? Backend::openmp
+                                                                                                            : Backend::segments;
 }
 
 int choose_threads(Scene const& scene, Communicator const& communicator) {
@@ -59,7 +61,9 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
 }
 
 void ChainSystem::make_openmm() {
-    if (!beads_) throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm", "add a bead chain or remove forces.openmm");
+    if (!beads_)
+        throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
+                         "add a bead chain or remove forces.openmm");
     BeadSystem system;
     system.chain_offset.push_back(0);
     for (int const index : beads_->group().chain) {
@@ -67,7 +71,8 @@ void ChainSystem::make_openmm() {
         std::int64_t const first = system.size();
         system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
         system.residue.insert(system.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
-        for (std::int64_t k = 1; k < static_cast<std::int64_t>(chain.size()); ++k) system.links.push_back({first + k - 1, first + k, chain.beads.length[k]});
+        for (std::int64_t k = 1; k < static_cast<std::int64_t>(chain.size()); ++k)
+            system.links.push_back({first + k - 1, first + k, chain.beads.length[k]});
         system.chain_name.push_back(chain.name);
         system.chain_offset.push_back(system.size());
     }
@@ -182,7 +187,8 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
         gather_to_scene(communicator_, group, 3, to_array<3>("", motion.omega.view()).values, omega);
     }
     Snapshot s{triples(position), triples(velocity), triples(omega), {}};
-    for (std::size_t i = 0; i < n; ++i) s.orientation.push_back({orientation[4 * i], orientation[4 * i + 1], orientation[4 * i + 2], orientation[4 * i + 3]});
+    for (std::size_t i = 0; i < n; ++i)
+        s.orientation.push_back({orientation[4 * i], orientation[4 * i + 1], orientation[4 * i + 2], orientation[4 * i + 3]});
     return s;
 }
 
@@ -194,7 +200,8 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
         gather_to_scene(communicator_, group, 1, e.springs, springs);
     };
     for (auto const& group : absolute_) add(group->group(), group->potential());
-    for (std::size_t i = 0; i < joint_.size(); ++i) add(joint_[i]->group(), joint_[i]->potential(joint_states_[i], joint_[i]->motion(joint_states_[i])));
+    for (std::size_t i = 0; i < joint_.size(); ++i)
+        add(joint_[i]->group(), joint_[i]->potential(joint_states_[i], joint_[i]->motion(joint_states_[i])));
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
     for (double const e : gravity) terms[0].value += e;
     for (double const e : springs) terms[1].value += e;
@@ -271,7 +278,8 @@ void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& ar
     auto const own = [&](ChainGroup const& group, std::string const& name, int width) {
         auto const found = arrays.find(name);
         if (found == arrays.end() || found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
-            throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart", "take a checkpoint of this scene and integrator");
+            throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart",
+                             "take a checkpoint of this scene and integrator");
         return take_from_scene(group, width, found->second);
     };
     for (auto const& group : absolute_) {

@@ -35,17 +35,18 @@ class ChainSystem {
 
     /// Bodies of the scene in scene order, on rank 0. Collective.
     struct Snapshot {
-        std::vector<Vec3> position, velocity, omega;   // centre of mass or bead, W; omega: B
-        std::vector<Quat> orientation;                 // identity for beads
+        std::vector<Vec3> position, velocity, omega;  // centre of mass or bead, W; omega: B
+        std::vector<Quat> orientation;                // identity for beads
     };
     Snapshot snapshot();
-    /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, then OpenMM's. Collective.
+    /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, then OpenMM's.
+    /// Collective.
     std::vector<EnergyTerm> potential_energy();
     /// Accelerations and joint forces of the last evaluate() in scene order on rank 0; for bodies in joint coordinates `joint_acceleration`
     /// holds qdd (revolute: first entry) and `base_acceleration` a free base's. Collective.
     struct Accelerations {
         std::vector<Vec3> joint_acceleration, acceleration, bead_force;
-        std::vector<Vec3> base_acceleration;           // one a body; counts for the first body of a free base
+        std::vector<Vec3> base_acceleration;  // one a body; counts for the first body of a free base
         std::vector<Vector<double, 6>> joint_force;
     };
     Accelerations accelerations();

@@ -9,11 +9,10 @@
 
 namespace catena {
 
-ConstrainedIntegrator::ConstrainedIntegrator(ConstrainedScheme const& scheme, std::vector<AbsoluteDynamics*> const& groups) : scheme_(scheme), groups_(groups) {}
+ConstrainedIntegrator::ConstrainedIntegrator(ConstrainedScheme const& scheme, std::vector<AbsoluteDynamics*> const& groups)
+    : scheme_(scheme), groups_(groups) {}
 
-int ConstrainedIntegrator::bias_sweeps_a_step() const {
-    return scheme_.kind == Integrator::rattle ? 1 + sweeps_ : 2 + 2 * sweeps_;
-}
+int ConstrainedIntegrator::bias_sweeps_a_step() const { return scheme_.kind == Integrator::rattle ? 1 + sweeps_ : 2 + 2 * sweeps_; }
 
 void ConstrainedIntegrator::step(std::int64_t n) {
     double const h = scheme_.step;
@@ -65,8 +64,8 @@ void ConstrainedIntegrator::choose_sweeps() {
         before = error;
     }
     std::ostringstream line;
-    line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance << " within " << most << " sweeps of a step of " << scheme_.step
-         << " (error " << before << "): choose a smaller dynamics.step";
+    line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance << " within " << most
+         << " sweeps of a step of " << scheme_.step << " (error " << before << "): choose a smaller dynamics.step";
     throw ComputationError(line.str());
 }
 

@@ -57,15 +57,20 @@ void JointDynamics::joint_torques(JointState const& state) {
         if (given_.springs) {
             Vec3 const stiffness = given_.stiffness.view().load(k);
             Vector<double, 4> const rest = given_.rest.view().load(k);
-            if (revolute) torque[0] -= stiffness[0] * (q[0] - rest[0]);
-            else if (group_.joint[k] == JointType::spherical) torque = torque + spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
+            if (revolute)
+                torque[0] -= stiffness[0] * (q[0] - rest[0]);
+            else if (group_.joint[k] == JointType::spherical)
+                torque = torque + spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
         }
         if (given_.dampers) {
             Vec3 const damping = given_.damping.view().load(k);
             for (int i = 0; i < 3; ++i) torque[i] -= damping[i] * qd[i];
         }
-        if (revolute) torque = {{0, 0, torque[0]}};
-        else torque = transposed_times(as_matrix(group_.axes1.view().load(k)), to_matrix(as_quaternion(motion_.joint_turn.view().load(k))) * torque);
+        if (revolute)
+            torque = {{0, 0, torque[0]}};
+        else
+            torque = transposed_times(as_matrix(group_.axes1.view().load(k)),
+                                      to_matrix(as_quaternion(motion_.joint_turn.view().load(k))) * torque);
         joint_torque_.set(k, torque);
     });
     exchange_from_outboard(communicator_, group_, joint_torque_.view());
@@ -88,10 +93,10 @@ void JointDynamics::loads(JointState const& state) {
             force_.set(k, transposed_times(orientation, given_.wrench_force.view().load(k)));
         }
         torque_.set(k, torque);
-        Vector<double, 6> b = Vector<double, 6>::zero();   // -c along the joint's directions
+        Vector<double, 6> b = Vector<double, 6>::zero();  // -c along the joint's directions
         if (group_.is_first[k] && group_.joint[k] != JointType::free) {
             Mat3 const to_ground = to_matrix(as_quaternion(group_.joint_rotation.view().load(k)));
-            Vec3 const g = transposed_times(axes1, transposed_times(to_ground, given_.gravity));   // ground accelerates by -g
+            Vec3 const g = transposed_times(axes1, transposed_times(to_ground, given_.gravity));  // ground accelerates by -g
             for (int i = 0; i < 3; ++i) b[i] = g[i];
         }
         if (group_.joint[k] == JointType::revolute) {
@@ -139,7 +144,8 @@ BodyResults JointDynamics::results() const {
         Vec3 force = Vec3::zero(), torque = Vec3::zero();
         for (int i = 0; i < 3; ++i) force[i] = origin[i * pitch + k];
         for (int i = 3; i < group_.directions; ++i) torque[i - 3] = origin[i * pitch + k];
-        Mat3 const to_ground = orientation * transposed_times(to_matrix(as_quaternion(motion_.joint_turn.view().load(k))), as_matrix(group_.axes1.view().load(k)));
+        Mat3 const to_ground = orientation * transposed_times(to_matrix(as_quaternion(motion_.joint_turn.view().load(k))),
+                                                              as_matrix(group_.axes1.view().load(k)));
         Vec3 const t = to_ground * torque, f = to_ground * force;
         r.joint_force.push_back({{t[0], t[1], t[2], f[0], f[1], f[2]}});
     }
@@ -156,7 +162,8 @@ PotentialEnergy JointDynamics::potential(JointState const& state, BodyMotion con
         Vec3 const stiffness = given_.stiffness[k];
         Vector<double, 4> const rest = given_.rest[k], q = state.q[k];
         if (group_.joint[k] == JointType::revolute) e.springs.back() = 0.5 * stiffness[0] * (q[0] - rest[0]) * (q[0] - rest[0]);
-        if (group_.joint[k] == JointType::spherical) e.springs.back() = spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(q));
+        if (group_.joint[k] == JointType::spherical)
+            e.springs.back() = spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(q));
     }
     return e;
 }

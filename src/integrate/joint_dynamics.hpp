@@ -13,8 +13,8 @@ namespace catena {
 
 /// Time derivatives of JointState's velocities.
 struct JointRates {
-    Field<3> qdd;                          // revolute {qdd, 0, 0}; spherical, free: derivative of the components of qd, B
-    std::vector<Vec3> base_acceleration;   // one a piece: of a free base's origin, W
+    Field<3> qdd;                         // revolute {qdd, 0, 0}; spherical, free: derivative of the components of qd, B
+    std::vector<Vec3> base_acceleration;  // one a piece: of a free base's origin, W
 };
 
 class JointDynamics {
@@ -47,10 +47,10 @@ class JointDynamics {
     JointKinematics kinematics_;
     BodyLoads given_;
     BodyMotion motion_;
-    Field<3> joint_torque_;     // known torque of joint k on body k, joint axes; halo from outboard
+    Field<3> joint_torque_;  // known torque of joint k on body k, joint axes; halo from outboard
     Field<3> torque_, force_;
     Field<3> alpha_, acceleration_;
-    Field<3> alpha_outboard_;   // of body k along the axes of its outboard joint; halo from inboard
+    Field<3> alpha_outboard_;  // of body k along the axes of its outboard joint; halo from inboard
     DirectionsField bias_, joint_force_;
 };
 

@@ -40,7 +40,7 @@ double JointDynamics::residual() {
     auto const inboard_axes = [&](std::int64_t k) {
         return transposed_times(to_matrix(as_quaternion(motion_.joint_turn[k])), as_matrix(group_.axes1[k]));
     };
-    auto const wrench_at = [&](std::int64_t k) {   // of joint k: force and torque along its axes
+    auto const wrench_at = [&](std::int64_t k) {  // of joint k: force and torque along its axes
         std::pair<Vec3, Vec3> w{Vec3::zero(), Vec3::zero()};
         auto const [origin, pitch] = joint_force_.view();
         for (int i = 0; i < group_.directions; ++i) (i < 3 ? w.first[i] : w.second[i - 3]) = origin[i * pitch + k];
@@ -65,7 +65,8 @@ double JointDynamics::residual() {
             angular += norm(part);
             linear += norm(cross(part, r));
         }
-        return HandleAcceleration{transposed_times(axes, acceleration_[k] + cross(alpha_[k], r) + centripetal), transposed_times(axes, alpha_[k]), linear, angular};
+        return HandleAcceleration{transposed_times(axes, acceleration_[k] + cross(alpha_[k], r) + centripetal),
+                                  transposed_times(axes, alpha_[k]), linear, angular};
     };
     auto const radius_of_gyration = [&](std::int64_t k) {
         Vector<double, 6> const j = group_.inertia[k];
@@ -74,11 +75,12 @@ double JointDynamics::residual() {
     Field<8> outboard(group_.size);
     for (std::int64_t k = 0; k < group_.size; ++k) {
         HandleAcceleration const h = at_handle(k, group_.r2[k], as_matrix(group_.axes2[k]));
-        outboard.set(k, {{h.linear[0], h.linear[1], h.linear[2], h.angular[0], h.angular[1], h.angular[2], h.linear_terms, h.angular_terms}});
+        outboard.set(k,
+                     {{h.linear[0], h.linear[1], h.linear[2], h.angular[0], h.angular[1], h.angular[2], h.linear_terms, h.angular_terms}});
     }
     exchange_from_inboard(communicator_, group_, outboard.view());
 
-    auto const [bias, pitch] = bias_.view();   // -c, with g at a chain's first joint
+    auto const [bias, pitch] = bias_.view();  // -c, with g at a chain's first joint
     auto const closing = [&, origin = bias, pitch = pitch](std::int64_t k) {
         HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
         Vector<double, 8> const before = group_.is_first[k] ? Vector<double, 8>::zero() : outboard.view().load(k - 1);
@@ -90,7 +92,8 @@ double JointDynamics::residual() {
         }
         // One spatial equation: angles count by the body's size, so that the measure does not depend on the unit of length.
         double const size = norm(group_.r1[k]) + radius_of_gyration(k);
-        return relative(linear + size * angular, mine.linear_terms + before[6] + norm(linear_bias) + size * (mine.angular_terms + before[7] + angular_bias));
+        return relative(linear + size * angular,
+                        mine.linear_terms + before[6] + norm(linear_bias) + size * (mine.angular_terms + before[7] + angular_bias));
     };
 
     double worst = 0;

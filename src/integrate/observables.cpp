@@ -56,10 +56,12 @@ Observables::Observables(Scene const& scene, std::vector<EnergyTerm> const& term
     if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
     for (char const* const shape : {"radius_of_gyration", "end_to_end_distance"}) {
         if (!wants(shape)) continue;
-        if (scene.chains.size() == 1) columns_.push_back(shape + length);
+        if (scene.chains.size() == 1)
+            columns_.push_back(shape + length);
         else if (scene.chains.size() <= most_single_chains_)
             for (ChainSpec const& chain : scene.chains) columns_.push_back(shape + ("_" + chain.name) + length);
-        else columns_.push_back("mean_" + std::string(shape) + length);
+        else
+            columns_.push_back("mean_" + std::string(shape) + length);
     }
 }
 
@@ -68,7 +70,8 @@ bool Observables::wants(std::string const& name) const {
     return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
 }
 
-std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std::vector<EnergyTerm> const& terms, double constraint_error) const {
+std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std::vector<EnergyTerm> const& terms,
+                                     double constraint_error) const {
     std::vector<double> row;
     double const kinetic = kinetic_energy(scene_, snapshot);
     if (wants("energy")) {

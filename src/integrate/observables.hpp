@@ -18,7 +18,8 @@ double radius_of_gyration(std::vector<double> const& mass, std::vector<Vec3> con
 
 class Observables {
   public:
-    /// `terms`: names of the potential energy terms. The scene's output.observables choose the groups of columns; empty: all that it can have.
+    /// `terms`: names of the potential energy terms. The scene's output.observables choose the groups of columns; empty: all that it can
+    /// have.
     Observables(Scene const&, std::vector<EnergyTerm> const& terms);
     /// Names with units, e.g. "total_energy [kJ/mol]".
     std::vector<std::string> const& columns() const { return columns_; }
@@ -30,7 +31,7 @@ class Observables {
     std::vector<double> mass_;
     std::int64_t dof_;
     std::vector<std::string> columns_;
-    static constexpr std::size_t most_single_chains_ = 10;   // beyond, shapes are averaged over chains
+    static constexpr std::size_t most_single_chains_ = 10;  // beyond, shapes are averaged over chains
 };
 
 }  // namespace catena

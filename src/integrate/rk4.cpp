@@ -25,7 +25,7 @@ void RungeKutta4::advance(JointState const& start, JointState const& at, JointRa
 
 void RungeKutta4::step(JointState& state, double h) {
     start_ = state;
-    sum_ = state;   // start + h/6 (k1 + 2 k2 + 2 k3 + k4)
+    sum_ = state;  // start + h/6 (k1 + 2 k2 + 2 k3 + k4)
     stage_ = state;
     double const weight[4] = {h / 6, h / 3, h / 3, h / 6}, next[3] = {h / 2, h / 2, h};
     for (int i = 0; i < 4; ++i) {

@@ -14,8 +14,8 @@ struct PrincipalFrame {
 };
 
 struct RotorState {
-    Quat orientation;   // of B in W
-    Vec3 omega;         // B
+    Quat orientation;  // of B in W
+    Vec3 omega;        // B
 };
 
 CATENA_HD void turn_about(int axis, double h, Vec3 const& moments, Quat& q, Vec3& momentum) {

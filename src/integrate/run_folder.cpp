@@ -13,8 +13,8 @@ bool same_folder(fs::path const& a, fs::path const& b) {
     return fs::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, ignored);
 }
 
-char const* const files_of_a_run[] = {"trajectory.h5md", "topology.pdb", "topology.cif", "observables.csv", "checkpoint.h5", "checkpoint.previous.h5", "summary.json",
-                                      "timeline.json",   "report.html"};
+char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", "topology.cif",  "observables.csv", "checkpoint.h5",
+                                      "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
 
 }  // namespace
 
@@ -25,7 +25,9 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_)) throw InputError("the output is not a folder", folder_, "name another with --output");
         if (exists && !appends_ && !options.overwrite && !fs::is_empty(folder_))
-            throw InputError("the output folder exists", folder_, "name another with --output, go on with --restart " + folder_ + "/checkpoint.h5, or replace it with --overwrite");
+            throw InputError(
+                "the output folder exists", folder_,
+                "name another with --output, go on with --restart " + folder_ + "/checkpoint.h5, or replace it with --overwrite");
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name);
         std::error_code error;
@@ -51,7 +53,7 @@ void RunFolder::write(Frame const& frame, std::vector<double> const& observables
 
 void RunFolder::write_checkpoint(Checkpoint const& checkpoint) {
     if (!root_) return;
-    trajectory_->flush();   // a restart finds every frame up to the checkpoint's step
+    trajectory_->flush();  // a restart finds every frame up to the checkpoint's step
     observables_->flush();
     catena::write_checkpoint(path("checkpoint.h5"), checkpoint);
 }

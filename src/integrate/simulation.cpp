@@ -5,9 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
-#include "integrate/constrained_integrator.hpp"
-#include "integrate/rk4.hpp"
 #include "integrate/run_folder.hpp"
+#include "integrate/stepper.hpp"
 
 namespace catena {
 namespace {
@@ -17,112 +16,6 @@ using nlohmann::json;
 /// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
 constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
-
-/// One way to take a step. Between steps the state is that of a whole step.
-class Stepper {
-  public:
-    virtual ~Stepper() = default;
-    /// Forces, matrices and whatever else is needed at the present step. Collective.
-    virtual void prepare(StepTimeline*) = 0;
-    /// Velocities as an observer sees them; after prepare(). Collective.
-    virtual void observe(bool joint_forces) = 0;
-    virtual void step(std::int64_t n, StepTimeline*) = 0;
-    virtual double constraint_error() = 0;
-    /// One more projection sweep from now on; false where there is none to add.
-    virtual bool add_sweep() = 0;
-    virtual void save(Checkpoint&) const = 0;
-    virtual void restore(Checkpoint const&) = 0;
-    virtual json describe() const = 0;
-};
-
-class JointStepper final : public Stepper {
-  public:
-    JointStepper(ChainSystem& system, double h) : system_(system), h_(h) {
-        for (JointDynamics* dynamics : system.joint()) rk4_.emplace_back(*dynamics);
-    }
-    void prepare(StepTimeline*) override {}
-    void observe(bool joint_forces) override {
-        if (joint_forces) system_.evaluate();
-    }
-    void step(std::int64_t, StepTimeline* timeline) override {
-        double const start = seconds_now();
-        for (std::size_t i = 0; i < rk4_.size(); ++i) rk4_[i].step(system_.joint_state(i), h_);
-        if (timeline) timeline->phases.push_back({"four evaluations", "catena", 0.0, seconds_now() - start});
-    }
-    double constraint_error() override { return 0.0; }   // joint coordinates cannot drift apart
-    bool add_sweep() override { return false; }
-    void save(Checkpoint&) const override {}
-    void restore(Checkpoint const&) override {}
-    json describe() const override { return {{"matrix_sweeps_a_step", 4}, {"bias_sweeps_a_step", 4}}; }
-
-  private:
-    ChainSystem& system_;
-    double h_;
-    std::vector<RungeKutta4> rk4_;
-};
-
-class ConstrainedStepper final : public Stepper {
-  public:
-    ConstrainedStepper(ChainSystem& system, DynamicsSpec const& d)
-        : system_(system),
-          integrator_({d.integrator, d.step, d.friction, system.scene().boltzmann() * d.temperature, d.seed, d.constraint_tolerance}, system.absolute()) {
-        for (AbsoluteDynamics* group : system.absolute()) group->update_configuration();
-        draw_velocities(d);
-    }
-    void prepare(StepTimeline* timeline) override {
-        double const begin = seconds_now();
-        system_.forces_and_matrices(timeline);
-        offset_ = seconds_now() - begin;
-        if (integrator_.sweeps() == 0) integrator_.choose_sweeps();
-    }
-    void observe(bool joint_forces) override {
-        integrator_.observe();
-        if (!joint_forces) return;
-        for (AbsoluteDynamics* group : system_.absolute()) group->evaluate();
-    }
-    void step(std::int64_t n, StepTimeline* timeline) override {
-        double const start = seconds_now();
-        integrator_.step(n);
-        if (timeline) timeline->phases.push_back({"projections and drift", "catena", offset_, offset_ + seconds_now() - start});
-    }
-    double constraint_error() override {
-        double worst = 0;
-        for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
-        return worst;
-    }
-    bool add_sweep() override {
-        integrator_.set_sweeps(integrator_.sweeps() + 1);
-        return true;
-    }
-    void save(Checkpoint& c) const override {
-        c.integers["sweeps_a_drift"] = integrator_.sweeps();
-        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
-    }
-    void restore(Checkpoint const& c) override {
-        integrator_.set_sweeps(static_cast<int>(c.integers.at("sweeps_a_drift")));
-        integrator_.set_pending(0.5 * static_cast<double>(c.integers.at("pending_half_kicks")));
-        for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
-    }
-    json describe() const override {
-        return {{"matrix_sweeps_a_step", integrator_.matrix_sweeps_a_step()},
-                {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
-                {"sweeps_a_drift", integrator_.sweeps()}};
-    }
-
-  private:
-    void draw_velocities(DynamicsSpec const& d) {
-        for (AbsoluteDynamics* group : system_.absolute()) {
-            std::vector<bool> thermal;
-            for (int const chain : group->group().chain) thermal.push_back(system_.scene().chains[chain].velocities == StartVelocities::thermal);
-            if (std::find(thermal.begin(), thermal.end(), true) == thermal.end()) continue;
-            group->assemble_matrices();
-            group->draw_velocities(system_.scene().boltzmann() * d.temperature, d.seed, thermal);
-        }
-    }
-    ChainSystem& system_;
-    ConstrainedIntegrator integrator_;
-    double offset_ = 0;
-};
 
 Topology topology_of(Scene const& scene) {
     Topology t;
@@ -157,14 +50,16 @@ std::vector<std::string> gather_texts(Communicator const& communicator, std::str
     auto const ranks = static_cast<std::size_t>(communicator.size());
     std::int64_t const length = static_cast<std::int64_t>(own.size());
     std::vector<std::int64_t> lengths(ranks);
-    communicator.all_gather(std::as_bytes(std::span(&length, 1)), std::as_writable_bytes(std::span(lengths)), std::vector<std::int64_t>(ranks, sizeof(length)));
+    communicator.all_gather(std::as_bytes(std::span(&length, 1)), std::as_writable_bytes(std::span(lengths)),
+                            std::vector<std::int64_t>(ranks, sizeof(length)));
     std::int64_t total = 0;
     for (std::int64_t const l : lengths) total += l;
     std::string all(communicator.rank() == 0 ? static_cast<std::size_t>(total) : 0, ' ');
     communicator.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), lengths);
     std::vector<std::string> texts;
     std::size_t at = 0;
-    for (std::size_t r = 0; communicator.rank() == 0 && r < ranks; at += static_cast<std::size_t>(lengths[r++])) texts.push_back(all.substr(at, static_cast<std::size_t>(lengths[r])));
+    for (std::size_t r = 0; communicator.rank() == 0 && r < ranks; at += static_cast<std::size_t>(lengths[r++]))
+        texts.push_back(all.substr(at, static_cast<std::size_t>(lengths[r])));
     return texts;
 }
 
@@ -177,15 +72,15 @@ class Run {
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene.dynamics.steps)),
           system_(scene, scene.dynamics.integrator == Integrator::rk4 ? Axes::joint : Axes::world, communicator) {
-        if (scene.dynamics.integrator == Integrator::rk4) stepper_ = std::make_unique<JointStepper>(system_, scene.dynamics.step);
-        else stepper_ = std::make_unique<ConstrainedStepper>(system_, scene.dynamics);
+        stepper_ = make_stepper(system_, scene.dynamics);
     }
 
     json run() {
         std::int64_t const first = options_.restart.empty() ? 0 : restore();
         if (last_ < first)
-            throw InputError("the checkpoint stands at step " + std::to_string(first) + " and the run ends at step " + std::to_string(last_), options_.restart,
-                             "ask for more with --steps");
+            throw InputError(
+                "the checkpoint stands at step " + std::to_string(first) + " and the run ends at step " + std::to_string(last_),
+                options_.restart, "ask for more with --steps");
         folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, first);
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
@@ -252,11 +147,14 @@ class Run {
     /// The same decision on every rank: the error is the largest over ranks, and rank 0's look at the state is shared.
     void check(std::int64_t n, double error, ChainSystem::Snapshot const& snapshot) {
         double finite = 0;
-        for (std::size_t i = 0; i < snapshot.position.size(); ++i) finite = larger(finite, 0.0 * (norm(snapshot.position[i]) + norm(snapshot.velocity[i])));
+        for (std::size_t i = 0; i < snapshot.position.size(); ++i)
+            finite = larger(finite, 0.0 * (norm(snapshot.position[i]) + norm(snapshot.velocity[i])));
         if (std::isnan(communicator_.max(finite)) || std::isnan(error))
-            throw ComputationError("the state is not finite at step " + std::to_string(n) + ": choose a smaller dynamics.step, or look at the start");
+            throw ComputationError("the state is not finite at step " + std::to_string(n) +
+                                   ": choose a smaller dynamics.step, or look at the start");
         worst_error_ = std::max(worst_error_, error);
-        if (error > scene_.dynamics.constraint_tolerance && stepper_->add_sweep()) notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
+        if (error > scene_.dynamics.constraint_tolerance && stepper_->add_sweep())
+            notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
     }
 
     void checkpoint(std::int64_t n) {
@@ -276,9 +174,11 @@ class Run {
         on_root(communicator_, [&] {
             c = read_checkpoint(options_.restart);
             if (c.scene_hash != scene_.hash)
-                throw InputError("the checkpoint belongs to another scene", options_.restart, "restart with the scene that made it (solver, output and steps may differ)");
+                throw InputError("the checkpoint belongs to another scene", options_.restart,
+                                 "restart with the scene that made it (solver, output and steps may differ)");
             if (c.notes["tree_table"] != std::to_string(dca::tree_table_version))
-                throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " + std::to_string(dca::tree_table_version),
+                throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " +
+                                     std::to_string(dca::tree_table_version),
                                  options_.restart, "go on with the version that made it");
         });
         share(c);
@@ -316,40 +216,63 @@ class Run {
         std::vector<std::string> const texts = gather_texts(communicator_, timeline_json(timelines_).dump());
         json const summary = summarise(first, valid);
         json timeline{{"ranks", json::array()}};
-        for (std::size_t rank = 0; rank < texts.size(); ++rank) timeline["ranks"].push_back({{"rank", rank}, {"steps", json::parse(texts[rank])}});
+        for (std::size_t rank = 0; rank < texts.size(); ++rank)
+            timeline["ranks"].push_back({{"rank", rank}, {"steps", json::parse(texts[rank])}});
         folder_->finish(summary.dump(2) + "\n", timeline.dump() + "\n");
         return root_ ? summary : json{{"valid", valid}};
     }
 
     json summarise(std::int64_t first, bool valid) {
         double const steps = static_cast<double>(last_ - first);
-        json s{{"title", scene_.title}, {"scene", scene_.file}, {"scene_hash", scene_.hash}, {"command", options_.command_line}, {"valid", valid}};
-        s["run"] = {{"first_step", first}, {"last_step", last_}, {"time", time(last_)}, {"integrator", name_of(scene_.dynamics.integrator)},
-                    {"step", scene_.dynamics.step}, {"bodies", scene_.bodies()}, {"dof", degrees_of_freedom(scene_)}};
+        json s{{"title", scene_.title},
+               {"scene", scene_.file},
+               {"scene_hash", scene_.hash},
+               {"command", options_.command_line},
+               {"valid", valid}};
+        s["run"] = {{"first_step", first},
+                    {"last_step", last_},
+                    {"time", time(last_)},
+                    {"integrator", name_of(scene_.dynamics.integrator)},
+                    {"step", scene_.dynamics.step},
+                    {"bodies", scene_.bodies()},
+                    {"dof", degrees_of_freedom(scene_)}};
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
         if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
-        s["parallel"] = {{"ranks", communicator_.size()}, {"threads", system_.executor().threads()}, {"message_passing", message_passing_library()},
+        s["parallel"] = {{"ranks", communicator_.size()},
+                         {"threads", system_.executor().threads()},
+                         {"message_passing", message_passing_library()},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         json solvers = json::array();
         for (std::size_t i = 0; i < system_.groups().size(); ++i) {
             ChainGroup const& g = *system_.groups()[i];
             SolverReport const r = system_.solver_reports()[i];
-            solvers.push_back({{"handle_kind", g.kind()}, {"handles", r.handles}, {"directions", r.directions}, {"chains", g.partition.chains()},
-                               {"bodies", g.partition.bodies()}, {"run_length", r.run_length}, {"depth", r.depth}});
+            solvers.push_back({{"handle_kind", g.kind()},
+                               {"handles", r.handles},
+                               {"directions", r.directions},
+                               {"chains", g.partition.chains()},
+                               {"bodies", g.partition.bodies()},
+                               {"run_length", r.run_length},
+                               {"depth", r.depth}});
         }
         s["solver"] = {{"backend", name_of(system_.backend())}, {"tree_table", dca::tree_table_version}, {"groups", solvers}};
         s["solver"].update(stepper_->describe());
         s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (OpenMmForce const* openmm = system_.openmm()) {
             double const matrix = system_.matrix_seconds();
-            s["forces"] = {{"openmm", openmm_version()}, {"platform", openmm->platform()}, {"path", openmm->path()}, {"description", openmm->description()},
-                           {"matrix_sweep_seconds", matrix}, {"matrix_sweep_hidden", matrix > 0 ? system_.hidden_seconds() / matrix : 0.0},
-                           {"largest_context", openmm->largest_context()}, {"rebuilds", openmm->rebuilds()}};
+            s["forces"] = {{"openmm", openmm_version()},
+                           {"platform", openmm->platform()},
+                           {"path", openmm->path()},
+                           {"description", openmm->description()},
+                           {"matrix_sweep_seconds", matrix},
+                           {"matrix_sweep_hidden", matrix > 0 ? system_.hidden_seconds() / matrix : 0.0},
+                           {"largest_context", openmm->largest_context()},
+                           {"rebuilds", openmm->rebuilds()}};
         }
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;
         for (std::size_t i = 0; i < last_row_.size(); ++i) s["last_observables"][observables_->columns()[i]] = last_row_[i];
-        for (char const* name : {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
+        for (char const* name :
+             {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
             s["files"][name] = folder_->path(name);
         return s;
     }
@@ -373,7 +296,8 @@ class Run {
 }  // namespace
 
 json run_simulation(Scene const& scene, Communicator const& communicator, RunOptions const& options) {
-    if (!scene.dynamics.given) throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
+    if (!scene.dynamics.given)
+        throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
     return Run(scene, communicator, options).run();
 }
 

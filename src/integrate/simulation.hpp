@@ -12,12 +12,12 @@
 namespace catena {
 
 struct RunOptions {
-    std::string output = "catena-run";     // folder
-    std::optional<std::int64_t> steps;     // instead of dynamics.steps: total, counted from the scene's start
-    std::string restart;                   // checkpoint to go on from
+    std::string output = "catena-run";  // folder
+    std::optional<std::int64_t> steps;  // instead of dynamics.steps: total, counted from the scene's start
+    std::string restart;                // checkpoint to go on from
     bool overwrite = false;
     bool quiet = false;
-    std::string command_line;              // for the summary
+    std::string command_line;  // for the summary
 };
 
 /// Runs the scene and writes its folder: trajectory.h5md, topology.pdb, observables.csv, checkpoint.h5, summary.json, timeline.json,

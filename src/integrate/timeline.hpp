@@ -10,7 +10,7 @@ namespace catena {
 
 struct Phase {
     std::string name, lane;
-    double begin = 0, end = 0;   // seconds from the start of the step
+    double begin = 0, end = 0;  // seconds from the start of the step
 };
 struct StepTimeline {
     std::int64_t step = 0;

@@ -23,20 +23,20 @@ enum class StartVelocities { given, zero, thermal };
 /// The last five arrays may be empty, which means zero.
 struct BodyArrays {
     std::vector<double> mass;
-    std::vector<Vec3> com;            // from the origin, B
-    std::vector<Sym3> inertia;        // about com, B
-    std::vector<JointType> joint;     // entry 0 of a free base: JointType::free
-    std::vector<Vec3> axis;           // revolute: unit axis, B (and J: the same components)
-    std::vector<Mat3> rotation;       // R of the joint frame in the inboard body's axes (entry 0: ground)
-    std::vector<Vec3> translation;    // origin of the joint frame from the inboard body's origin, inboard body's axes
-    std::vector<std::array<double, 4>> q;   // revolute: {angle, 0, 0, 0}; spherical and free: unit quaternion w x y z of B in J (free: in W)
-    std::vector<Vec3> qd;             // revolute: {rate, 0, 0}; spherical and free: angular velocity relative to the inboard body, B
-    Vec3 free_position = Vec3::zero();      // free base: origin of body 1, W
-    Vec3 free_velocity = Vec3::zero();      // free base: its velocity, W
-    std::vector<Vec3> torque;         // joint torque on body k + 1: revolute {t, 0, 0}; spherical: components in B
-    std::vector<Vec3> stiffness;      // revolute {k, 0, 0}; spherical: on the components of the rotation vector from `rest`
-    std::vector<Vec3> damping;        // on qd, as stiffness
-    std::vector<std::array<double, 4>> rest;   // as q
+    std::vector<Vec3> com;                 // from the origin, B
+    std::vector<Sym3> inertia;             // about com, B
+    std::vector<JointType> joint;          // entry 0 of a free base: JointType::free
+    std::vector<Vec3> axis;                // revolute: unit axis, B (and J: the same components)
+    std::vector<Mat3> rotation;            // R of the joint frame in the inboard body's axes (entry 0: ground)
+    std::vector<Vec3> translation;         // origin of the joint frame from the inboard body's origin, inboard body's axes
+    std::vector<std::array<double, 4>> q;  // revolute: {angle, 0, 0, 0}; spherical and free: unit quaternion w x y z of B in J (free: in W)
+    std::vector<Vec3> qd;                  // revolute: {rate, 0, 0}; spherical and free: angular velocity relative to the inboard body, B
+    Vec3 free_position = Vec3::zero();     // free base: origin of body 1, W
+    Vec3 free_velocity = Vec3::zero();     // free base: its velocity, W
+    std::vector<Vec3> torque;              // joint torque on body k + 1: revolute {t, 0, 0}; spherical: components in B
+    std::vector<Vec3> stiffness;           // revolute {k, 0, 0}; spherical: on the components of the rotation vector from `rest`
+    std::vector<Vec3> damping;             // on qd, as stiffness
+    std::vector<std::array<double, 4>> rest;    // as q
     std::vector<std::pair<Vec3, Vec3>> wrench;  // external {torque, force} at com, W
 
     std::size_t size() const { return mass.size(); }
@@ -68,32 +68,33 @@ struct ChainSpec {
 };
 
 struct OpenMmSpec {
-    std::string builder;        // "calvados2", or empty when `system` is given
-    std::string system;         // serialised System XML, path resolved against the scene's folder
-    std::string topology;       // PDB
-    std::vector<std::pair<std::string, std::pair<std::int64_t, std::int64_t>>> map;   // chain name -> first and last particle; empty: the topology's chains in order
-    double temperature = 300;        // K
-    double ionic_strength = 0.15;    // mol/l
-    std::optional<double> ph;        // charge of histidine: 1 / (1 + 10^(pH - 6)); not given: neutral
-    double switch_width = 0;         // nm before each cutoff over which the pair terms are switched off; 0: cut as published
-    std::string platform;            // empty: CPU where present, else Reference
-    std::string precision;           // GPU platforms
-    int threads = 0;                 // per rank; 0: cores / ranks
+    std::string builder;   // "calvados2", or empty when `system` is given
+    std::string system;    // serialised System XML, path resolved against the scene's folder
+    std::string topology;  // PDB
+    std::vector<std::pair<std::string, std::pair<std::int64_t, std::int64_t>>>
+        map;                       // chain name -> first and last particle; empty: the topology's chains in order
+    double temperature = 300;      // K
+    double ionic_strength = 0.15;  // mol/l
+    std::optional<double> ph;      // charge of histidine: 1 / (1 + 10^(pH - 6)); not given: neutral
+    double switch_width = 0;       // nm before each cutoff over which the pair terms are switched off; 0: cut as published
+    std::string platform;          // empty: CPU where present, else Reference
+    std::string precision;         // GPU platforms
+    int threads = 0;               // per rank; 0: cores / ranks
     int device = -1;
-    std::string path = "auto";       // auto | host (worker thread) | inline; device: not in this version
+    std::string path = "auto";  // auto | host (worker thread) | inline; device: not in this version
     bool replicate = false;
-    std::vector<int> force_groups;   // empty: all
+    std::vector<int> force_groups;  // empty: all
 };
 
 struct ForceSpec {
-    Vec3 gravity = Vec3::zero();    // W
+    Vec3 gravity = Vec3::zero();  // W
     std::optional<OpenMmSpec> openmm;
 };
 
 enum class Integrator { rk4, rattle, g_baoab };
 
 struct DynamicsSpec {
-    bool given = false;             // the scene has a `dynamics` section
+    bool given = false;  // the scene has a `dynamics` section
     Integrator integrator = Integrator::rattle;
     double step = 0;
     std::int64_t steps = 0;
@@ -109,29 +110,29 @@ enum class Handles { projected, full };
 struct SolverSpec {
     Backend backend = Backend::automatic;
     Handles handles = Handles::projected;
-    int threads = 0;            // 0: cores / ranks on this host
+    int threads = 0;  // 0: cores / ranks on this host
     std::string gpu_levels = "auto";
 };
 
 struct OutputSpec {
-    std::int64_t every = 100;               // steps between frames and observables
-    std::int64_t checkpoint_every = 0;      // 0: only at the end
-    std::vector<std::string> observables;   // columns, in order; empty: the default set
-    bool joint_forces = false;              // constraint forces in the trajectory
-    bool velocities = false;                // velocities in the trajectory
+    std::int64_t every = 100;              // steps between frames and observables
+    std::int64_t checkpoint_every = 0;     // 0: only at the end
+    std::vector<std::string> observables;  // columns, in order; empty: the default set
+    bool joint_forces = false;             // constraint forces in the trajectory
+    bool velocities = false;               // velocities in the trajectory
 };
 
 struct Scene {
     std::string title;
-    bool si = false;                        // units: si
+    bool si = false;  // units: si
     std::vector<ChainSpec> chains;
-    std::optional<Vec3> box;                // edges of the periodic box
+    std::optional<Vec3> box;  // edges of the periodic box
     ForceSpec forces;
     DynamicsSpec dynamics;
     SolverSpec solver;
     OutputSpec output;
-    std::string file;                       // as the user named it
-    std::string hash;                       // of what decides the motion (not of solver, output and dynamics.steps): guards restarts
+    std::string file;  // as the user named it
+    std::string hash;  // of what decides the motion (not of solver, output and dynamics.steps): guards restarts
 
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;

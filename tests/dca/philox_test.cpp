@@ -42,9 +42,10 @@ TEST(Philox, NormalNumbersAreStandardAndIndependent) {
 
 TEST(Philox, EveryKeyPartMatters) {
     Vec3 const v = normal3(1, 2, 3, NoiseStage::thermostat);
-    for (Vec3 const& other : {normal3(2, 2, 3, NoiseStage::thermostat), normal3(1, 3, 3, NoiseStage::thermostat), normal3(1, 2, 4, NoiseStage::thermostat),
-                              normal3(1, 2, 3, NoiseStage::start), normal3(1, 2, 3 + (std::uint64_t{1} << 32), NoiseStage::thermostat),
-                              normal3(1 + (std::uint64_t{1} << 32), 2, 3, NoiseStage::thermostat)})
+    for (Vec3 const& other :
+         {normal3(2, 2, 3, NoiseStage::thermostat), normal3(1, 3, 3, NoiseStage::thermostat), normal3(1, 2, 4, NoiseStage::thermostat),
+          normal3(1, 2, 3, NoiseStage::start), normal3(1, 2, 3 + (std::uint64_t{1} << 32), NoiseStage::thermostat),
+          normal3(1 + (std::uint64_t{1} << 32), 2, 3, NoiseStage::thermostat)})
         EXPECT_NE(v[0], other[0]);
 }
 

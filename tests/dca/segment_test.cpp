@@ -42,7 +42,8 @@ template <int K>
 void check(int restricted, std::uint64_t seed) {
     test::Random random(seed);
     auto const a = Random<K>::segment(random), b = Random<K>::segment(random);
-    SegmentBias<double, K> const ba{Random<K>::vector(random), Random<K>::vector(random)}, bb{Random<K>::vector(random), Random<K>::vector(random)};
+    SegmentBias<double, K> const ba{Random<K>::vector(random), Random<K>::vector(random)},
+        bb{Random<K>::vector(random), Random<K>::vector(random)};
     JointMatrix<double, K> joint;
     Vector<double, K> offset;
     auto const s = assemble(a, b, restricted, joint);
@@ -50,7 +51,7 @@ void check(int restricted, std::uint64_t seed) {
     Vector<double, K> const first = Random<K>::vector(random), next = Random<K>::vector(random), f2 = -next;
     Vector<double, K> const force = disassemble(joint, offset, first, next);
 
-    double const tolerance = 100 * K * K * 0x1p-53 / 0.3;   // rounding of K^2 products over the smallest eigenvalue
+    double const tolerance = 100 * K * K * 0x1p-53 / 0.3;  // rounding of K^2 products over the smallest eigenvalue
     Vector<double, K> const a1 = full(a.z11) * first - a.z12 * force + ba.b1;
     Vector<double, K> const inner_a = transposed_times(a.z12, first) - full(a.z22) * force + ba.b2;
     Vector<double, K> const inner_b = full(b.z11) * force + b.z12 * f2 + bb.b1;
@@ -58,8 +59,10 @@ void check(int restricted, std::uint64_t seed) {
     Vector<double, K> const joined1 = full(s.z11) * first + s.z12 * f2 + bias.b1;
     Vector<double, K> const joined2 = transposed_times(s.z12, first) + full(s.z22) * f2 + bias.b2;
     for (int i = 0; i < K; ++i) {
-        if (i < restricted) EXPECT_NEAR(inner_a[i], inner_b[i], tolerance * 10);
-        else EXPECT_EQ(force[i], 0.0);
+        if (i < restricted)
+            EXPECT_NEAR(inner_a[i], inner_b[i], tolerance * 10);
+        else
+            EXPECT_EQ(force[i], 0.0);
         EXPECT_NEAR(joined1[i], a1[i], tolerance * 10);
         EXPECT_NEAR(joined2[i], a2[i], tolerance * 10);
     }

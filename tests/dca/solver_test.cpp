@@ -76,7 +76,8 @@ TEST_P(Solver, RandomChainsAgreeWithTheArticulatedBodyAlgorithm) {
         ASSERT_LE(error, bound) << "seed " << seed << ", " << n << " bodies";
         ASSERT_LE(system.residual(), system.residual_bound()) << "seed " << seed;
         Vector<long double, 3> const base{{a.base_acceleration[0][0], a.base_acceleration[0][1], a.base_acceleration[0][2]}};
-        ASSERT_LE(static_cast<double>(norm(base - oracle.base_acceleration)), bound * (1 + static_cast<double>(norm(oracle.base_acceleration))) * 4);
+        ASSERT_LE(static_cast<double>(norm(base - oracle.base_acceleration)),
+                  bound * (1 + static_cast<double>(norm(oracle.base_acceleration))) * 4);
         std::vector<Vec3> torque, force;
         std::vector<Vector<long double, 3>> torque_expected, force_expected;
         for (std::size_t k = 0; k < chain.size(); ++k) {
@@ -87,7 +88,7 @@ TEST_P(Solver, RandomChainsAgreeWithTheArticulatedBodyAlgorithm) {
             force_expected.push_back(oracle.constraint_force[k].force);
         }
         ASSERT_LE(static_cast<double>(relative_difference(converted<long double>(force), force_expected)), 8 * bound) << "seed " << seed;
-        if (options.joints == RandomJoints::spherical) continue;   // these transmit no torque
+        if (options.joints == RandomJoints::spherical) continue;  // these transmit no torque
         ASSERT_LE(static_cast<double>(relative_difference(converted<long double>(torque), torque_expected)), 8 * bound) << "seed " << seed;
     }
     RecordProperty("worst_error_over_bound", std::to_string(worst));
@@ -104,7 +105,8 @@ TEST_P(Solver, BeadChainsAgreeWithTheOracle) {
         auto const oracle = oracle::aba<long double>(chain, loads);
         auto const a = system.accelerations();
         double const bound = 64 * static_cast<double>(n + 8) * eps;
-        ASSERT_LE(static_cast<double>(relative_difference(converted<long double>(a.acceleration), oracle.com_acceleration)), bound) << "seed " << seed << ", " << n << " beads";
+        ASSERT_LE(static_cast<double>(relative_difference(converted<long double>(a.acceleration), oracle.com_acceleration)), bound)
+            << "seed " << seed << ", " << n << " beads";
         ASSERT_LE(system.residual(), system.residual_bound()) << "seed " << seed;
     }
 }
@@ -116,18 +118,19 @@ TEST_P(Solver, ThirdPartyChains) {
         system.evaluate();
         auto const a = system.accelerations();
         double const error = relative_difference(a.joint_acceleration, reference.qdd);
-        EXPECT_LE(error, 1e-14) << reference.name;   // the digits of Simbody; the contract asks for 1e-12
+        EXPECT_LE(error, 1e-14) << reference.name;  // the digits of Simbody; the contract asks for 1e-12
         EXPECT_LE(system.residual(), system.residual_bound()) << reference.name;
         for (std::size_t k = 0; k < reference.pin_force.size(); ++k)
             for (int i = 0; i < 3; ++i)
-                EXPECT_NEAR(a.joint_force[k][3 + i], reference.pin_force[k][i], 1e-12 * norm(reference.pin_force.front()) * 4) << reference.name << ", rod " << k + 1;
+                EXPECT_NEAR(a.joint_force[k][3 + i], reference.pin_force[k][i], 1e-12 * norm(reference.pin_force.front()) * 4)
+                    << reference.name << ", rod " << k + 1;
     }
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, Solver,
-                         testing::Values(Variant{Backend::serial, Handles::projected}, Variant{Backend::serial, Handles::full}, Variant{Backend::segments, Handles::projected},
-                                         Variant{Backend::segments, Handles::full}, Variant{Backend::openmp, Handles::projected},
-                                         Variant{Backend::openmp, Handles::full}),
+                         testing::Values(Variant{Backend::serial, Handles::projected}, Variant{Backend::serial, Handles::full},
+                                         Variant{Backend::segments, Handles::projected}, Variant{Backend::segments, Handles::full},
+                                         Variant{Backend::openmp, Handles::projected}, Variant{Backend::openmp, Handles::full}),
                          name_of_variant);
 
 }  // namespace

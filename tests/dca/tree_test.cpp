@@ -8,7 +8,8 @@
 namespace catena::dca {
 namespace {
 
-std::vector<std::vector<std::int64_t>> const scenes{{1}, {2}, {3}, {5}, {140}, {255}, {256}, {257}, {10000}, {1, 1, 1}, {7, 300, 2, 1000}, {140, 140, 140, 140, 140}, {100001}};
+std::vector<std::vector<std::int64_t>> const scenes{
+    {1}, {2}, {3}, {5}, {140}, {255}, {256}, {257}, {10000}, {1, 1, 1}, {7, 300, 2, 1000}, {140, 140, 140, 140, 140}, {100001}};
 
 TEST(Partition, EveryBodyHasOneRankAndUnitsStayWhole) {
     for (auto const& lengths : scenes)
@@ -34,7 +35,8 @@ TEST(Partition, EveryBodyHasOneRankAndUnitsStayWhole) {
 TEST(Partition, SharesAreEqualWithinAUnit) {
     Partition const p({1000000}, 3, false, 6);
     std::int64_t const unit = p.trees[0].first_body_of_unit(1);
-    for (int rank = 0; rank < 6; ++rank) EXPECT_NEAR(static_cast<double>(p.first_of_rank[rank + 1] - p.first_of_rank[rank]), 1e6 / 6, static_cast<double>(unit));
+    for (int rank = 0; rank < 6; ++rank)
+        EXPECT_NEAR(static_cast<double>(p.first_of_rank[rank + 1] - p.first_of_rank[rank]), 1e6 / 6, static_cast<double>(unit));
 }
 
 /// Every joint between two bodies of a chain is eliminated exactly once, in a run or by a merge, on the ranks that hold it.
@@ -42,7 +44,7 @@ TEST(Schedule, EveryJointIsEliminatedOnce) {
     for (auto const& lengths : scenes)
         for (int const ranks : {1, 2, 3, 6}) {
             Partition const p(lengths, 1, false, ranks);
-            std::multiset<std::int64_t> eliminated;   // scene-wide body index of the joint
+            std::multiset<std::int64_t> eliminated;  // scene-wide body index of the joint
             std::set<std::int64_t> at_top;
             for (int rank = 0; rank < ranks; ++rank) {
                 Schedule const s = make_schedule(p, rank);
@@ -57,11 +59,12 @@ TEST(Schedule, EveryJointIsEliminatedOnce) {
                         at_top.insert(p.first_of_chain[s.top_chain_of_joint[i]] + s.top_body_of_joint[i]);
                     }
             }
-            eliminated.insert(at_top.begin(), at_top.end());   // several ranks do the top, redundantly
+            eliminated.insert(at_top.begin(), at_top.end());  // several ranks do the top, redundantly
             std::vector<std::int64_t> expected;
             for (int chain = 0; chain < p.chains(); ++chain)
                 for (std::int64_t k = p.first_of_chain[chain] + 1; k < p.first_of_chain[chain + 1]; ++k) expected.push_back(k);
-            ASSERT_TRUE(std::equal(eliminated.begin(), eliminated.end(), expected.begin(), expected.end())) << lengths.size() << " chains on " << ranks << " ranks";
+            ASSERT_TRUE(std::equal(eliminated.begin(), eliminated.end(), expected.begin(), expected.end()))
+                << lengths.size() << " chains on " << ranks << " ranks";
         }
 }
 

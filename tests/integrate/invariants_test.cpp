@@ -12,7 +12,9 @@ namespace {
 class Constrained {
   public:
     Constrained(std::string const& text, double step, Integrator kind = Integrator::rattle, double friction = 0, double kt = 0)
-        : scene_(quiet(parse_scene(text, "scene.yaml"))), system_(scene_, Axes::world, *communicator_), integrator_({kind, step, friction, kt, 1, 1e-12}, system_.absolute()) {
+        : scene_(quiet(parse_scene(text, "scene.yaml"))),
+          system_(scene_, Axes::world, *communicator_),
+          integrator_({kind, step, friction, kt, 1, 1e-12}, system_.absolute()) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             group->update_configuration();
             group->assemble_matrices();
@@ -127,7 +129,8 @@ TEST(Langevin, HeatsAColdChainToItsTemperature) {
         int const samples = 400;
         for (int i = 0; i < samples; ++i) {
             run.run(10);
-            mean += 2 * kinetic_energy(run.scene(), run.snapshot()) / (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) / samples;
+            mean += 2 * kinetic_energy(run.scene(), run.snapshot()) /
+                    (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) / samples;
         }
         // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 and 61 squares.
         double const error = 150 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom(run.scene())) / 100);
@@ -140,9 +143,10 @@ TEST(RungeKutta, IsOfFourthOrder) {
     auto const communicator = serial_communicator();
     for (char const* joint : {"revolute", "spherical"})
         for (char const* base : {"free", "fixed"}) {
-            Scene const scene = parse_scene(std::string("chains: [{name: a, base: ") + base + ", generator: {random: {bodies: 5, joint: " + joint +
-                                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2]}\n",
-                                            "scene.yaml");
+            Scene const scene =
+                parse_scene(std::string("chains: [{name: a, base: ") + base + ", generator: {random: {bodies: 5, joint: " + joint +
+                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2]}\n",
+                            "scene.yaml");
             auto const end_of = [&](int steps) {
                 ChainSystem system(scene, Axes::joint, *communicator);
                 RungeKutta4 rk4(*system.joint().front());

@@ -44,14 +44,14 @@ TEST_P(Restart, IsTheUndisturbedRun) {
     EXPECT_EQ(parts.step, 40);
     EXPECT_EQ(whole.integers, parts.integers);
     ASSERT_FALSE(whole.arrays.empty());
-    EXPECT_EQ(whole.arrays, parts.arrays);   // doubles compared by value: equal means equal bits but for zeros' signs
+    EXPECT_EQ(whole.arrays, parts.arrays);  // doubles compared by value: equal means equal bits but for zeros' signs
     EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
     EXPECT_EQ(text_of(folder_ / "whole/trajectory.h5md").size(), text_of(folder_ / "parts/trajectory.h5md").size());
 }
 
 TEST_P(Restart, FromTheCheckpointBefore) {
     run("whole", 40);
-    run("parts", 20);   // leaves checkpoints at 20 and, before it, 10
+    run("parts", 20);  // leaves checkpoints at 20 and, before it, 10
     run("parts", 40, folder_ / "parts/checkpoint.previous.h5");
     EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
     EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));

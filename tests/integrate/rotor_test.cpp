@@ -42,7 +42,8 @@ TEST(Rotor, IsOfSecondOrderAndKeepsEnergyOverLongTimes) {
     PrincipalFrame const frame = frame_of(random);
     RotorState const start{random.orientation(), {{1.0, 2.0, -0.5}}};
     RotorState const exact = turned(frame, start, 1.0, 20000);
-    double const coarse = norm(turned(frame, start, 1.0, 50).omega - exact.omega), fine = norm(turned(frame, start, 1.0, 100).omega - exact.omega);
+    double const coarse = norm(turned(frame, start, 1.0, 50).omega - exact.omega),
+                 fine = norm(turned(frame, start, 1.0, 100).omega - exact.omega);
     EXPECT_NEAR(coarse / fine, 4.0, 0.3);
     double worst = 0;
     RotorState state = start;
@@ -50,7 +51,7 @@ TEST(Rotor, IsOfSecondOrderAndKeepsEnergyOverLongTimes) {
         state = free_rotor(frame, state, 0.02);
         worst = std::max(worst, std::abs(energy(frame, state) / energy(frame, start) - 1));
     }
-    EXPECT_LT(worst, 1e-3);   // a bounded wobble of second order, no drift
+    EXPECT_LT(worst, 1e-3);  // a bounded wobble of second order, no drift
 }
 
 TEST(Rotor, TurnsAboutAPrincipalAxisExactly) {

@@ -12,7 +12,8 @@ struct RunScene {
 
 inline RunScene const run_scenes[] = {
     {"rattle_beads",
-     "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 150, length: 0.38}}}, {name: b, base: fixed, velocities: thermal, "
+     "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 150, length: 0.38}}}, {name: b, base: fixed, velocities: "
+     "thermal, "
      "generator: {random: {bodies: 20, joint: link, seed: 2}}}]\n"
      "forces: {gravity: [0, 0, -1]}\n"
      "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
@@ -20,14 +21,17 @@ inline RunScene const run_scenes[] = {
      "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 150, length: 0.38}}}]\n"
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"rattle_bodies",
-     "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 60, joint: spherical, seed: 1}}}, {name: b, base: fixed, velocities: thermal, "
+     "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 60, joint: spherical, seed: 1}}}, {name: b, base: "
+     "fixed, velocities: thermal, "
      "generator: {random: {bodies: 9, joint: spherical, seed: 2}}}]\n"
-     "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10, joint_forces: true}\n"},
+     "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10, "
+     "joint_forces: true}\n"},
     {"langevin_bodies",
      "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 60, joint: spherical, seed: 1}}}]\n"
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"rk4_revolute",
-     "chains: [{name: a, base: fixed, generator: {random: {bodies: 60, joint: revolute, seed: 1}}}, {name: b, base: free, generator: {random: {bodies: 13, joint: "
+     "chains: [{name: a, base: fixed, generator: {random: {bodies: 60, joint: revolute, seed: 1}}}, {name: b, base: free, generator: "
+     "{random: {bodies: 13, joint: "
      "revolute, seed: 2}}}]\n"
      "forces: {gravity: [0, 0, -1]}\n"
      "dynamics: {integrator: rk4, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},

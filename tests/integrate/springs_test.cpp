@@ -20,7 +20,7 @@ TEST(Springs, TorqueIsTheGradientOfTheEnergy) {
             step[i] = h;
             double const up = spherical_spring_energy(stiffness, rest, turn * from_rotation_vector(step));
             double const down = spherical_spring_energy(stiffness, rest, turn * from_rotation_vector(-step));
-            EXPECT_NEAR(torque[i], -(up - down) / (2 * h), 1e-6);   // truncation h^2, rounding eps / h, both times some tens
+            EXPECT_NEAR(torque[i], -(up - down) / (2 * h), 1e-6);  // truncation h^2, rounding eps / h, both times some tens
         }
     }
 }

@@ -54,7 +54,8 @@ TEST_P(Trajectory, IsTheSameOnOneRankAndOnAll) {
     }
     world.barrier();
     run(world, "one-then-all", 40, "half/checkpoint.h5");
-    if (world.rank() == 0) EXPECT_EQ(read_checkpoint(folder_ + "/one-then-all/checkpoint.h5").arrays, read_checkpoint(folder_ + "/one/checkpoint.h5").arrays);
+    if (world.rank() == 0)
+        EXPECT_EQ(read_checkpoint(folder_ + "/one-then-all/checkpoint.h5").arrays, read_checkpoint(folder_ + "/one/checkpoint.h5").arrays);
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Trajectory, ::testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });

@@ -1,0 +1,112 @@
+#include "integrate/stepper.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "integrate/constrained_integrator.hpp"
+#include "integrate/rk4.hpp"
+
+namespace catena {
+namespace {
+
+using nlohmann::json;
+
+class JointStepper final : public Stepper {
+  public:
+    JointStepper(ChainSystem& system, double h) : system_(system), h_(h) {
+        for (JointDynamics* dynamics : system.joint()) rk4_.emplace_back(*dynamics);
+    }
+    void prepare(StepTimeline*) override {}
+    void observe(bool joint_forces) override {
+        if (joint_forces) system_.evaluate();
+    }
+    void step(std::int64_t, StepTimeline* timeline) override {
+        double const start = seconds_now();
+        for (std::size_t i = 0; i < rk4_.size(); ++i) rk4_[i].step(system_.joint_state(i), h_);
+        if (timeline) timeline->phases.push_back({"four evaluations", "catena", 0.0, seconds_now() - start});
+    }
+    double constraint_error() override { return 0.0; }  // joint coordinates cannot drift apart
+    bool add_sweep() override { return false; }
+    void save(Checkpoint&) const override {}
+    void restore(Checkpoint const&) override {}
+    json describe() const override { return {{"matrix_sweeps_a_step", 4}, {"bias_sweeps_a_step", 4}}; }
+
+  private:
+    ChainSystem& system_;
+    double h_;
+    std::vector<RungeKutta4> rk4_;
+};
+
+class ConstrainedStepper final : public Stepper {
+  public:
+    ConstrainedStepper(ChainSystem& system, DynamicsSpec const& d)
+        : system_(system),
+          integrator_({d.integrator, d.step, d.friction, system.scene().boltzmann() * d.temperature, d.seed, d.constraint_tolerance},
+                      system.absolute()) {
+        for (AbsoluteDynamics* group : system.absolute()) group->update_configuration();
+        draw_velocities(d);
+    }
+    void prepare(StepTimeline* timeline) override {
+        double const begin = seconds_now();
+        system_.forces_and_matrices(timeline);
+        offset_ = seconds_now() - begin;
+        if (integrator_.sweeps() == 0) integrator_.choose_sweeps();
+    }
+    void observe(bool joint_forces) override {
+        integrator_.observe();
+        if (!joint_forces) return;
+        for (AbsoluteDynamics* group : system_.absolute()) group->evaluate();
+    }
+    void step(std::int64_t n, StepTimeline* timeline) override {
+        double const start = seconds_now();
+        integrator_.step(n);
+        if (timeline) timeline->phases.push_back({"projections and drift", "catena", offset_, offset_ + seconds_now() - start});
+    }
+    double constraint_error() override {
+        double worst = 0;
+        for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
+        return worst;
+    }
+    bool add_sweep() override {
+        integrator_.set_sweeps(integrator_.sweeps() + 1);
+        return true;
+    }
+    void save(Checkpoint& c) const override {
+        c.integers["sweeps_a_drift"] = integrator_.sweeps();
+        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
+    }
+    void restore(Checkpoint const& c) override {
+        integrator_.set_sweeps(static_cast<int>(c.integers.at("sweeps_a_drift")));
+        integrator_.set_pending(0.5 * static_cast<double>(c.integers.at("pending_half_kicks")));
+        for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
+    }
+    json describe() const override {
+        return {{"matrix_sweeps_a_step", integrator_.matrix_sweeps_a_step()},
+                {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
+                {"sweeps_a_drift", integrator_.sweeps()}};
+    }
+
+  private:
+    void draw_velocities(DynamicsSpec const& d) {
+        for (AbsoluteDynamics* group : system_.absolute()) {
+            std::vector<bool> thermal;
+            for (int const chain : group->group().chain)
+                thermal.push_back(system_.scene().chains[chain].velocities == StartVelocities::thermal);
+            if (std::find(thermal.begin(), thermal.end(), true) == thermal.end()) continue;
+            group->assemble_matrices();
+            group->draw_velocities(system_.scene().boltzmann() * d.temperature, d.seed, thermal);
+        }
+    }
+    ChainSystem& system_;
+    ConstrainedIntegrator integrator_;
+    double offset_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> make_stepper(ChainSystem& system, DynamicsSpec const& dynamics) {
+    if (dynamics.integrator == Integrator::rk4) return std::make_unique<JointStepper>(system, dynamics.step);
+    return std::make_unique<ConstrainedStepper>(system, dynamics);
+}
+
+}  // namespace catena

@@ -1,0 +1,31 @@
+// One step of a scene's integrator over everything in the scene.
+#pragma once
+
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+
+#include "integrate/chain_system.hpp"
+#include "io/output.hpp"
+
+namespace catena {
+
+/// One way to take a step. Between steps the state is that of a whole step.
+class Stepper {
+  public:
+    virtual ~Stepper() = default;
+    /// Forces, matrices and whatever else is needed at the present step. Collective.
+    virtual void prepare(StepTimeline*) = 0;
+    /// Velocities as an observer sees them; after prepare(). Collective.
+    virtual void observe(bool joint_forces) = 0;
+    virtual void step(std::int64_t n, StepTimeline*) = 0;
+    virtual double constraint_error() = 0;
+    /// One more projection sweep from now on; false where there is none to add.
+    virtual bool add_sweep() = 0;
+    virtual void save(Checkpoint&) const = 0;
+    virtual void restore(Checkpoint const&) = 0;
+    virtual nlohmann::json describe() const = 0;
+};
+
+std::unique_ptr<Stepper> make_stepper(ChainSystem&, DynamicsSpec const&);
+
+}  // namespace catena

@@ -1,0 +1,69 @@
+// --accelerations: the numbers of the JSON, flat, with offsets.
+#include <hdf5.h>
+
+#include <fstream>
+
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+using Json = nlohmann::json;
+
+template <class T>
+std::vector<T> dataset(hid_t file, char const* name, hid_t type) {
+    hid_t const data = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(data);
+    std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
+    EXPECT_GE(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    H5Sclose(space);
+    H5Dclose(data);
+    return values;
+}
+
+void flatten(Json const& value, std::vector<double>& list) {
+    if (value.is_number()) return list.push_back(value.get<double>());
+    if (value.is_array()) {
+        for (Json const& entry : value) flatten(entry, list);
+        return;
+    }
+    flatten(value.at("alpha"), list);
+    flatten(value.at("acceleration"), list);
+}
+
+TEST(Accelerations, HoldTheNumbersOfTheJson) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "mixed.yaml") << "units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n"
+                                            "  - {base: free, generator: {random: {bodies: 5, joint: spherical}}}\n"
+                                            "  - {base: fixed, generator: {random: {bodies: 4, joint: link}}}\n"
+                                            "  - {base: fixed, generator: {random: {bodies: 3, joint: revolute}}}\n";
+    Ended const e = catena({"solve", "mixed.yaml", "--accelerations", "a.h5", "--json", "-", "--repeat", "1"}, folder.path());
+    expect_good(e);
+    Json const json = e.json();
+    hid_t const file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    auto const accelerations = dataset<double>(file, "accelerations", H5T_NATIVE_DOUBLE), forces = dataset<double>(file, "joint_forces", H5T_NATIVE_DOUBLE);
+    auto const offsets = dataset<std::int64_t>(file, "offsets", H5T_NATIVE_INT64);
+    H5Fclose(file);
+    std::vector<double> expected_accelerations, expected_forces;
+    std::vector<std::int64_t> expected_offsets;
+    for (std::size_t body = 0; body < 12; ++body) {
+        expected_offsets.insert(expected_offsets.end(), {std::ssize(expected_accelerations), std::ssize(expected_forces)});
+        flatten(json["joint_accelerations"][body], expected_accelerations);
+        flatten(json["joint_forces"][body], expected_forces);
+    }
+    expected_offsets.insert(expected_offsets.end(), {std::ssize(expected_accelerations), std::ssize(expected_forces)});
+    EXPECT_EQ(accelerations, expected_accelerations);
+    EXPECT_EQ(forces, expected_forces);
+    EXPECT_EQ(offsets, expected_offsets);
+    EXPECT_EQ(accelerations.size(), 6U + 4 * 3 + 4 * 3 + 3);
+    EXPECT_EQ(forces.size(), 5U * 6 + 4 + 3 * 6);
+}
+
+TEST(Accelerations, FilesThatCannotBeAreRefusedBeforeAnythingIsComputed) {
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}), 2, "no such folder");
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2, "not a regular file (--accelerations /dev/null)");
+}
+
+}  // namespace
+}  // namespace catena::test

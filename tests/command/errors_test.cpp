@@ -1,0 +1,50 @@
+// One line on standard error and the right status for each class of mistake.
+#include <fstream>
+
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST(Errors, TheCommandLine) {
+    expect_refused(catena({}), 2, "no command is named");
+    expect_refused(catena({"slove", "x.yaml"}), 2, "did you mean `solve`?");
+    expect_refused(catena({"solve", input("arm.yaml"), "--bakend", "serial"}), 2, "did you mean `--backend`?");
+    expect_refused(catena({"solve", input("arm.yaml"), "--backend", "cuda"}), 2, "not in this version: --backend cuda");
+    expect_refused(catena({"plan", input("arm.yaml"), "--explain"}), 2, "not in this version: --explain");
+    expect_refused(catena({"bench", "peers"}), 2, "not in this version: catena bench peers");
+}
+
+TEST(Errors, TheScene) {
+    expect_refused(catena({"check", "missing.yaml"}), 2, "missing.yaml");
+    expect_refused(catena({"check", "."}), 2, "(.)");
+    expect_refused(catena({"check", input("arm.yaml"), "--set", "chains[0].bass=fixed"}), 2, "did you mean `base`?");
+    expect_refused(catena({"check", input("arm.yaml"), "--set", "chains[0].bodies[1].mass=-1"}), 2, "body 2");
+    expect_refused(catena({"check", input("arm.yaml"), "--set", "solver.backend=cuda"}), 2, "not in this version");
+    expect_refused(catena({"check", input("arm.yaml"), "--set", "nonsense"}), 2, "--set nonsense");
+    expect_refused(catena({"run", input("random-link.yaml")}), 2, "no dynamics section");
+    TemporaryFolder const folder;
+    std::ofstream(folder / "bad.yaml") << "chains: [{name: a\n";
+    expect_refused(catena({"check", folder / "bad.yaml"}), 2, "bad.yaml");
+}
+
+TEST(Errors, FilesThatCannotBe) {
+    expect_refused(catena({"check", input("arm.yaml"), "--json", "/no/such/folder/x.json"}), 2, "no such folder: /no/such/folder (--json");
+    expect_refused(catena({"check", input("arm.yaml"), "--json", "/"}), 2, "--json /");
+    expect_refused(catena({"report", input("arm.yaml"), "--output", "/dev/null/x"}), 2, "--output /dev/null/x");
+}
+
+TEST(Errors, AFullDiskIsAFailedComputation) {
+    expect_refused(catena({"check", input("arm.yaml"), "--quiet", "--json", "/dev/full"}), 1, "/dev/full");
+    expect_refused(run_program({"sh", "-c", program() + " check " + input("arm.yaml") + " > /dev/full"}), 1, "cannot write to standard output");
+}
+
+TEST(Errors, AComputationThatFailsIsStatusOne) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50", "--steps", "2", "--quiet"}, folder.path());
+    expect_refused(e, 1, "dynamics.step");
+}
+
+}  // namespace
+}  // namespace catena::test

@@ -1,0 +1,28 @@
+#include "tests/command/program.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST(Help, EveryCommandExplainsItselfWithExamples) {
+    Ended const all = catena({"--help"});
+    expect_good(all);
+    for (std::string const command : {"check", "plan", "solve", "run", "report", "bench"}) {
+        EXPECT_NE(all.out.find("\n  " + command + " "), std::string::npos) << all.out;
+        Ended const one = catena({command, "--help"});
+        expect_good(one);
+        EXPECT_NE(one.out.find("Usage: catena " + command), std::string::npos) << one.out;
+        EXPECT_NE(one.out.find("Examples:\n  "), std::string::npos) << one.out;
+        for (std::string const option : {"--backend", "--handles", "--threads", "--gpu-levels", "--set", "--json", "--quiet", "--log-level"})
+            EXPECT_NE(one.out.find(option), std::string::npos) << command << " " << option;
+    }
+}
+
+TEST(Help, VersionSaysWhatIsInTheBuild) {
+    Ended const e = catena({"--version"});
+    expect_good(e);
+    EXPECT_TRUE(e.out.starts_with("catena ")) << e.out;
+    for (std::string const part : {"MPI", "OpenMP", "OpenMM", "HDF5", "CUDA    none"}) EXPECT_NE(e.out.find("  " + part), std::string::npos) << e.out;
+}
+
+}  // namespace
+}  // namespace catena::test

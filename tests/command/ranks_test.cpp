@@ -1,0 +1,67 @@
+// mpirun with the executable: one voice, one status, the same numbers.
+#include <filesystem>
+#include <fstream>
+
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST(Ranks, EveryCommandPrintsOnce) {
+    TemporaryFolder const folder;
+    std::string const arm = input("arm.yaml");
+    for (auto const& [words, part] : std::vector<std::pair<Words, std::string>>{{{"--version"}, "catena "},
+                                                                                {{"solve", "--help"}, "Usage:"},
+                                                                                {{"check", arm}, "The scene is valid."},
+                                                                                {{"plan", arm}, "left out"},
+                                                                                {{"solve", arm, "--repeat", "1"}, "\nVALID"},
+                                                                                {{"bench", "solve", "--sizes", "9", "--joints", "link", "--backend", "segments", "--repeat", "1"}, " VALID"},
+                                                                                {{"report", arm, "--repeat", "1", "--backend", "segments"}, "\nVALID"}}) {
+        Ended const e = catena_on(3, words, folder.path());
+        EXPECT_EQ(e.status, 0) << words[0] << e.err;
+        EXPECT_EQ(count(e.out, part), 1U) << words[0] << ":\n" << e.out;
+    }
+}
+
+TEST(Ranks, MoreRanksThanBodies) {
+    auto const json = catena_on(6, {"solve", input("arm.yaml"), "--repeat", "1", "--json", "-"}).json();
+    EXPECT_EQ(json.at("ranks"), 6);
+    EXPECT_EQ(json.at("joint_accelerations").size(), 4U);
+}
+
+TEST(Ranks, InputErrorsAreOneLineAndStatusTwo) {
+    expect_refused(catena_on(3, {"solve", "missing.yaml"}), 2, "missing.yaml");
+    expect_refused(catena_on(3, {"slove"}), 2, "did you mean `solve`?");
+    expect_refused(catena_on(2, {"solve", input("arm.yaml"), "--json", "/no/such/folder/x"}), 2, "no such folder");
+}
+
+TEST(Ranks, AFailureThatEveryRankMeetsIsOneLineAndStatusOne) {
+    TemporaryFolder const folder;
+    Ended const e = catena_on(3, {"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50", "--steps", "2", "--quiet"}, folder.path());
+    EXPECT_EQ(e.status, 1);
+    EXPECT_EQ(count(e.err, "catena: "), 1U) << e.err;
+}
+
+TEST(Ranks, AFullDiskOnRankZeroEndsAllInGoodOrder) {
+    Ended const e = catena_on(3, {"solve", input("arm.yaml"), "--repeat", "1", "--quiet", "--json", "/dev/full"});
+    expect_refused(e, 1, "/dev/full");
+}
+
+TEST(Ranks, TheSameNumbersInTheFile) {
+    for (auto const& [scene, bodies] : {std::pair{"random-link.yaml", "10000"}, {"random-spherical.yaml", "256"}, {"random-revolute.yaml", "257"}}) {
+        nlohmann::json expected;
+        for (int const ranks : {1, 2, 3, 5, 6}) {
+            Ended const e = catena_on(ranks, {"solve", input(scene), "--set", std::string("chains[0].generator.random.bodies=") + bodies, "--repeat", "1", "--backend",
+                                              "segments", "--json", "-"});
+            ASSERT_EQ(e.status, 0) << e.err;
+            nlohmann::json const json = e.json();
+            EXPECT_EQ(json.at("ranks"), ranks);
+            if (ranks == 1) expected = json;
+            for (char const* const key : {"joint_accelerations", "joint_forces"}) EXPECT_EQ(json.at(key).dump(), expected.at(key).dump()) << scene << " on " << ranks;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace catena::test

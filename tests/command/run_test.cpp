@@ -1,0 +1,56 @@
+#include <filesystem>
+#include <fstream>
+
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> lines_of(std::string const& file) {
+    std::vector<std::string> lines;
+    std::ifstream stream(file);
+    for (std::string line; std::getline(stream, line);) lines.push_back(line);
+    return lines;
+}
+
+TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
+    TemporaryFolder const folder;
+    Words const run{"run", input("spherical-chain.yaml"), "--set", "output.every=10", "--quiet"};
+    auto const with = [&](Words more) {
+        Words words = run;
+        words.insert(words.end(), more.begin(), more.end());
+        return catena(words, folder.path());
+    };
+    Ended const first = with({"--steps", "20", "--json", "summary.json"});
+    expect_good(first);
+    EXPECT_EQ(first.out, "");
+    std::string const made = folder / "spherical-chain-run/";
+    for (char const* const file : {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
+        EXPECT_TRUE(fs::exists(made + file)) << file;
+    auto const summary = nlohmann::json::parse(std::ifstream(folder / "summary.json"));
+    EXPECT_EQ(summary.at("valid"), true);
+    EXPECT_EQ(summary.at("run").at("last_step"), 20);
+
+    expect_refused(with({"--steps", "20"}), 2, "the output folder exists");
+    expect_refused(with({"--steps", "10", "--restart", made + "checkpoint.h5"}), 2, "step 20");
+    expect_refused(with({"--restart", "missing.h5"}), 2, "missing.h5");
+    expect_good(with({"--steps", "40", "--restart", made + "checkpoint.h5"}));
+    EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 5);   // steps 0, 10, .. 40
+    expect_good(with({"--steps", "10", "--overwrite"}));
+    EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 2);
+}
+
+TEST(Run, SummaryOnTheTerminal) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"run", input("arm.yaml"), "--steps", "20", "--output", "a/b"}, folder.path());
+    EXPECT_EQ(e.status, 0) << e.err;
+    for (std::string const part : {"steps/s", "constraint error", "total_energy [J]", "a/b/trajectory.h5md", "\nVALID\n"})
+        EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
+    EXPECT_TRUE(fs::exists(folder / "a/b/checkpoint.h5"));
+}
+
+}  // namespace
+}  // namespace catena::test

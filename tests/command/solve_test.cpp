@@ -1,0 +1,100 @@
+#include <cmath>
+#include <fstream>
+
+#include "dca/oracle/oracle.hpp"
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+using Json = nlohmann::json;
+
+std::string const small = "chains[0].generator.random.bodies=";
+
+Json solved(Words words) {
+    words.insert(words.begin(), "solve");
+    words.insert(words.end(), {"--json", "-", "--repeat", "1"});
+    Ended const e = catena(words);
+    expect_good(e);
+    return e.json();
+}
+
+TEST(Solve, JsonHoldsWhatTheContractNames) {
+    Json const json = solved({input("arm.yaml"), "--backend", "segments"});
+    for (char const* const key : {"scene", "chains", "bodies", "dof", "backend", "ranks", "threads", "gpu_levels", "handles", "seconds", "phases", "residual",
+                                  "residual_bound", "rnea_residual", "valid", "potential_energy", "joint_accelerations", "bead_accelerations", "bead_forces", "joint_forces"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    EXPECT_EQ(json["chains"], Json::parse(R"([{"name": "arm", "bodies": 4, "kind": "revolute", "base": "fixed"}])"));
+    for (char const* const key : {"median", "min", "max", "repeat"}) EXPECT_TRUE(json["seconds"].contains(key)) << key;
+    EXPECT_LE(json["residual"].get<double>(), json["residual_bound"].get<double>());
+    EXPECT_TRUE(json["valid"].get<bool>());
+    EXPECT_TRUE(json["joint_accelerations"][0].is_number());          // revolute
+    EXPECT_EQ(json["joint_accelerations"][1].size(), 3U);             // spherical
+    for (Json const& wrench : json["joint_forces"]) EXPECT_EQ(wrench.size(), 6U);
+    EXPECT_EQ(json["bead_accelerations"], Json::array());
+}
+
+/// The numbers against an independent solver, through the file.
+TEST(Solve, AccelerationsAreThoseOfTheOracle) {
+    Json const json = solved({input("arm.yaml")});
+    Scene const scene = load_scene(input("arm.yaml"));
+    auto const expected = oracle::aba<long double>(scene.chains[0], {scene.forces.gravity, {}});
+    double largest = 0, difference = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+        Json const& found = json["joint_accelerations"][k];
+        for (int i = 0; i < (found.is_number() ? 1 : 3); ++i) {
+            auto const value = static_cast<double>(expected.qdd[k][i]);
+            largest = std::max(largest, std::abs(value));
+            difference = std::max(difference, std::abs(value - (found.is_number() ? found : found[i]).get<double>()));
+        }
+        for (int i = 0; i < 3; ++i) {
+            auto const force = static_cast<double>(expected.constraint_force[k].force[i]), torque = static_cast<double>(expected.constraint_force[k].torque[i]);
+            EXPECT_NEAR(json["joint_forces"][k][3 + i].get<double>(), force, 1e-12 * 200) << k;
+            EXPECT_NEAR(json["joint_forces"][k][i].get<double>(), torque, 1e-12 * 200) << k;
+        }
+    }
+    EXPECT_LE(difference, 1e-13 * largest);
+}
+
+TEST(Solve, AFreeBaseHasTwoAccelerations) {
+    Json const json = solved({input("spherical-chain.yaml")});
+    EXPECT_EQ(json["joint_accelerations"][0]["alpha"].size(), 3U);
+    EXPECT_EQ(json["joint_accelerations"][0]["acceleration"].size(), 3U);
+    EXPECT_EQ(json["joint_accelerations"][1].size(), 3U);
+    EXPECT_EQ(json["joint_forces"][0], Json({0.0, 0.0, 0.0, 0.0, 0.0, 0.0}));
+}
+
+/// Two beads of mass 2 hang at rest under gravity 10: the links bear 40 and 20.
+TEST(Solve, TensionIsPositiveWhereALinkPulls) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "hanging.csv") << "0,0,-1\n0,0,-2\n";
+    std::ofstream(folder / "hanging.yaml") << "units: si\nforces: {gravity: [0, 0, -10]}\nchains: [{base: fixed, anchor: [0, 0, 0], positions: hanging.csv, "
+                                              "generator: {freely_jointed: {beads: 2, length: 1, mass: 2}}}]\n";
+    for (std::string const handles : {"projected", "full"}) {
+        Json const json = solved({folder / "hanging.yaml", "--handles", handles});
+        EXPECT_NEAR(json["joint_forces"][0].get<double>(), 40, 1e-13);
+        EXPECT_NEAR(json["joint_forces"][1].get<double>(), 20, 1e-13);
+        EXPECT_EQ(json["joint_accelerations"], json["bead_accelerations"]);
+        EXPECT_NEAR(json["bead_accelerations"][1][2].get<double>(), 0, 1e-13);
+        EXPECT_EQ(json["potential_energy"]["gravity"], 2 * 10 * -1.0 + 2 * 10 * -2.0);
+    }
+}
+
+TEST(Solve, ArraysEndAtTenThousandBodies) {
+    EXPECT_EQ(solved({input("random-link.yaml"), "--set", small + "10000"})["bead_accelerations"].size(), 10000U);
+    Json const larger = solved({input("random-link.yaml"), "--set", small + "10001"});
+    EXPECT_FALSE(larger.contains("joint_accelerations"));
+    EXPECT_TRUE(larger["rnea_residual"].is_null());
+    EXPECT_TRUE(larger["valid"].get<bool>());
+}
+
+TEST(Solve, TextNamesTimeResidualAndVerdict) {
+    Ended const e = catena({"solve", input("random-spherical.yaml"), "--repeat", "3", "--backend", "serial"});
+    expect_good(e);
+    for (std::string const part : {"serial, projected handles, 1 rank", "median of 3", "matrix sweep", "bound", "(32 depth eps)\nVALID\n"})
+        EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
+}
+
+}  // namespace
+}  // namespace catena::test
