@@ -244,17 +244,18 @@ def draw_conformation(axes, trajectory):
     axes.axis("off")
     draw_scale(axes, extent, trajectory["unit"])
     if len(chains) == 1:
-        mark_ends(axes, flat[0], trajectory["chains"][0][1], radius)
+        mark_ends(axes, flat[0], trajectory["chains"][0][1], radius + 0.032 * (extent[1] - extent[0]))
 
 
-def mark_ends(axes, chain, count, radius):
-    """The numbers of the first and last site, beyond the chain's ends."""
+def mark_ends(axes, chain, count, distance):
+    """The numbers of the first and last site, where the chain leaves most room beside them."""
     import numpy as np
-    for site, number, near in ((0, 1, chain[:6]), (-1, count, chain[-6:])):
-        away = chain[site, :2] - near.mean(axis=0)[:2]
-        away = away / max(np.linalg.norm(away), 1e-300)
-        axes.annotate(str(number), chain[site, :2] + radius * away, xytext=12 * away, textcoords="offset points", ha="center", va="center",
-                      color=INK, fontsize=10, fontweight="bold")
+    angle = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    for site, number in ((0, 1), (-1, count)):
+        places = chain[site, :2] + distance * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+        room = np.linalg.norm(places[:, None] - chain[None, ::max(1, len(chain) // 5000), :2], axis=-1).min(axis=1)
+        axes.annotate(str(number), places[np.argmax(np.round(room / distance, 2))], ha="center", va="center", color=INK, fontsize=10,
+                      fontweight="bold")
 
 
 def name_and_unit(column):
@@ -262,9 +263,10 @@ def name_and_unit(column):
     return name, unit.rstrip("]")
 
 
-def chosen_columns(names):
-    """Indices of the columns to draw: the preferred ones first, then others, in the order of the table."""
+def chosen_columns(names, records):
+    """Indices of the columns to draw: of those that change the preferred ones first, then others, in the order of the table."""
     columns = {name_and_unit(name)[0]: k for k, name in enumerate(names) if k >= 2}
+    columns = {name: k for name, k in columns.items() if (records[:, k] != records[0, k]).any()} or columns
     wanted = [name for name in PREFERRED if name in columns] + [name for name in columns if name not in PREFERRED]
     return sorted(columns[name] for name in wanted[:MOST_PANELS])
 
@@ -295,7 +297,7 @@ def draw_observable(axes, time, values, column, is_last, time_label):
             axes.yaxis.set_major_locator(MaxNLocator(4))
             axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 5), useMathText=True)
             axes.yaxis.get_offset_text().set(size=8.5, color=SOFT)
-    readable = name.replace("_", " ").capitalize() + (f"  [{unit}]" if unit else "")
+    readable = name.replace("_", " ").capitalize() + (f"  [{unit}]" if unit not in ("", "1") else "")
     axes.annotate(readable, (1, 1), xytext=(0, 5), xycoords="axes fraction", textcoords="offset points", ha="right", color=INK, fontsize=10.5)
     axes.grid(axis="y", color=GRID, linewidth=0.9)
     axes.set_axisbelow(True)
@@ -310,7 +312,7 @@ def draw_observable(axes, time, values, column, is_last, time_label):
 
 def draw_picture(names, records, trajectory, output):
     import matplotlib.pyplot as plt
-    columns = chosen_columns(names)
+    columns = chosen_columns(names, records)
     if not columns:
         raise UserError("the table holds no observables (observables.csv): ask for some under output.observables")
     plt.rcParams.update({"font.family": "DejaVu Sans", "axes.facecolor": SURFACE, "figure.facecolor": SURFACE})

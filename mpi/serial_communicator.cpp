@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdlib>
+#include <stdexcept>
 
 #include "mpi/communicator.hpp"
 
@@ -12,7 +13,10 @@ class SerialCommunicator final : public Communicator {
     int size() const override { return 1; }
     int ranks_on_host() const override { return 1; }
 
-    void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const&) const override {
+    void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
+                    std::vector<std::int64_t> const& bytes_of_rank) const override {
+        if (bytes_of_rank.size() != 1 || own.size() != static_cast<std::size_t>(bytes_of_rank[0]) || all.size() != own.size())
+            throw std::logic_error("gather: the blocks do not have the lengths that bytes_of_rank gives them");
         if (own.data() != all.data()) std::copy(own.begin(), own.end(), all.begin());
     }
     void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const override {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "calvados2_parameters.inc"   // generated: embedded_parameters, one {name, mass, lambda, sigma, charge} a residue
+#include "calvados2_parameters.inc"  // generated: embedded_parameters, one {name, mass, lambda, sigma, charge} a residue
 
 namespace catena {
 

@@ -11,12 +11,12 @@
 namespace catena {
 
 struct Calvados2Residue {
-    char letter;         // one-letter code
-    std::string name;    // three-letter code, upper case
-    double mass;         // amu
-    double lambda;       // stickiness
-    double sigma;        // bead diameter, nm
-    double charge;       // e, inside a chain; histidine: neutral, see histidine_charge
+    char letter;       // one-letter code
+    std::string name;  // three-letter code, upper case
+    double mass;       // amu
+    double lambda;     // stickiness
+    double sigma;      // bead diameter, nm
+    double charge;     // e, inside a chain; histidine: neutral, see histidine_charge
 };
 
 /// The twenty residues, in the order of the parameter file.
@@ -28,14 +28,14 @@ Calvados2Residue const* find_calvados2(std::string_view three_letter_name);
 
 namespace calvados2 {
 
-inline constexpr double bond_length = 0.38;          // nm
-inline constexpr double first_bead_mass = 2.0;       // amu, added to a chain's first bead
-inline constexpr double last_bead_mass = 16.0;       // amu, added to a chain's last bead
-inline constexpr double first_bead_charge = 1.0;     // e, added to a chain's first bead
-inline constexpr double last_bead_charge = -1.0;     // e, added to a chain's last bead
-inline constexpr double epsilon = 0.8368;            // kJ/mol, Ashbaugh-Hatch
-inline constexpr double ashbaugh_hatch_cutoff = 2.0; // nm
-inline constexpr double yukawa_cutoff = 4.0;         // nm
+inline constexpr double bond_length = 0.38;           // nm
+inline constexpr double first_bead_mass = 2.0;        // amu, added to a chain's first bead
+inline constexpr double last_bead_mass = 16.0;        // amu, added to a chain's last bead
+inline constexpr double first_bead_charge = 1.0;      // e, added to a chain's first bead
+inline constexpr double last_bead_charge = -1.0;      // e, added to a chain's last bead
+inline constexpr double epsilon = 0.8368;             // kJ/mol, Ashbaugh-Hatch
+inline constexpr double ashbaugh_hatch_cutoff = 2.0;  // nm
+inline constexpr double yukawa_cutoff = 4.0;          // nm
 
 /// Mass of bead k (from 0) of a chain of n residues: the residue's, plus what its terminus carries.
 double bead_mass(Calvados2Residue const&, std::int64_t k, std::int64_t n);

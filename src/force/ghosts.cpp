@@ -68,7 +68,7 @@ std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::int64_
     std::vector<std::int64_t> ghosts;
     if (first >= last) return ghosts;
     Grid const grid(radius, box);
-    std::unordered_map<Cell, std::vector<std::int64_t>, CellHash> near;   // own beads in and around each cell
+    std::unordered_map<Cell, std::vector<std::int64_t>, CellHash> near;  // own beads in and around each cell
     for (std::int64_t k = first; k < last; ++k)
         grid.around(grid.cell(positions[k]), [&](Cell const& c) {
             auto& beads = near[c];

@@ -6,7 +6,7 @@ namespace catena {
 
 namespace {
 
-using namespace OpenMM;   // this file handles nothing else
+using namespace OpenMM;  // this file handles nothing else
 
 template <class Source>
 void copy_globals(Source const& from, Source& to) {

@@ -49,9 +49,9 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
     if (beads.box)
         for (int i = 0; i < 3; ++i)
             if ((*beads.box)[i] < 2 * calvados2::yukawa_cutoff)
-                throw InputError(fmt::format("box edge {} nm is less than twice the cutoff of {} nm", (*beads.box)[i],
-                                             calvados2::yukawa_cutoff),
-                                 beads.scene_file + ", box.periodic", "take a larger box or none");
+                throw InputError(
+                    fmt::format("box edge {} nm is less than twice the cutoff of {} nm", (*beads.box)[i], calvados2::yukawa_cutoff),
+                    beads.scene_file + ", box.periodic", "take a larger box or none");
 }
 
 /// Half of sigma and lambda are the particles' parameters, so that a pair's arithmetic means are sums.
@@ -80,16 +80,15 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa con
 
 void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSystem const& beads, int group) {
     for (auto const& link : beads.links) force.addExclusion(static_cast<int>(link.inboard), static_cast<int>(link.outboard));
-    force.setNonbondedMethod(beads.box ? OpenMM::CustomNonbondedForce::CutoffPeriodic
-                                       : OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
+    force.setNonbondedMethod(beads.box ? OpenMM::CustomNonbondedForce::CutoffPeriodic : OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
     force.setUseSwitchingFunction(spec.switch_width > 0);
     if (spec.switch_width > 0) force.setSwitchingDistance(force.getCutoffDistance() - spec.switch_width);
     force.setForceGroup(group);
 }
 
 std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& beads, calvados2::Yukawa const& y) {
-    std::string const histidine =
-        spec.ph ? fmt::format("histidine {:.3g} e (pH {})", calvados2::histidine_charge(spec.ph), *spec.ph) : "histidine neutral (no ph given)";
+    std::string const histidine = spec.ph ? fmt::format("histidine {:.3g} e (pH {})", calvados2::histidine_charge(spec.ph), *spec.ph)
+                                          : "histidine neutral (no ph given)";
     std::string const edge = spec.switch_width > 0 ? fmt::format("switched off over {} nm", spec.switch_width) : "cut";
     return {fmt::format("CALVADOS 2 at {} K, {} mol/l: Debye length {:.4g} nm, {}", spec.temperature, spec.ionic_strength, 1 / y.kappa,
                         histidine),
@@ -108,8 +107,7 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
 
     OpenMmModel model;
     model.system = std::make_shared<OpenMM::System>();
-    if (beads.box)
-        model.system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0}, {0, 0, (*beads.box)[2]});
+    if (beads.box) model.system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0}, {0, 0, (*beads.box)[2]});
     for_each_bead(beads, [&](std::int64_t bead, Place const& at) {
         auto const& residue = residue_of(beads, bead, at);
         model.system->addParticle(beads.mass[bead]);

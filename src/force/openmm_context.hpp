@@ -16,9 +16,9 @@ namespace catena {
 
 /// How coordinates may be changed before OpenMM, which computes in single precision on most platforms, gets them.
 enum class Placement {
-    as_given,   // a force may depend on where in space things are
-    shifted,    // all by one vector: forces depend on differences alone
-    wrapped     // each bead into the box: and on their nearest images
+    as_given,  // a force may depend on where in space things are
+    shifted,   // all by one vector: forces depend on differences alone
+    wrapped    // each bead into the box: and on their nearest images
 };
 
 /// What the System's forces allow.
@@ -45,7 +45,7 @@ class ForceContext {
     std::optional<Vec3> box_;
     Placement placement_;
     std::shared_ptr<OpenMM::System const> system_;
-    OpenMM::VerletIntegrator integrator_{0.001};   // a Context wants one; it never steps
+    OpenMM::VerletIntegrator integrator_{0.001};  // a Context wants one; it never steps
     std::unique_ptr<OpenMM::Context> context_;
     std::vector<OpenMM::Vec3> positions_;
 };

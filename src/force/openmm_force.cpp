@@ -50,16 +50,16 @@ class OpenMmForces final : public OpenMmForce {
     bool replicate_;
     OpenMmModel model_;
     OpenMmPlatform platform_;
-    std::optional<Vec3> box_;                        // where the forces are periodic
+    std::optional<Vec3> box_;  // where the forces are periodic
     RankForces rank_;
     PathChoice path_;
-    std::unique_ptr<ForceContext> energy_context_;   // every bead, on rank 0 of several
+    std::unique_ptr<ForceContext> energy_context_;  // every bead, on rank 0 of several
     std::vector<Vec3> own_, all_, forces_;
     bool under_way_ = false, evaluated_ = false;
     double begun_ = 0;
     Interval interval_;
     std::exception_ptr error_;
-    std::unique_ptr<Worker> worker_;                 // last: its thread ends before what it uses
+    std::unique_ptr<Worker> worker_;  // last: its thread ends before what it uses
 };
 
 std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
@@ -71,7 +71,7 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
       first_of_rank_(beads.first_of_rank),
       replicate_(spec.replicate),
       model_(std::move(model)),
-      platform_(choose_platform(spec, communicator, beads.scene_file)),
+      platform_(choose_platform(spec, beads, communicator)),
       box_(box_of(model_, beads)),
       rank_(model_, platform_, first_of_rank_[communicator.rank()], first_of_rank_[communicator.rank() + 1],
             communicator.size() == 1 || spec.replicate, box_),
@@ -138,8 +138,7 @@ void OpenMmForces::finish(View<3> forces) {
 void OpenMmForces::compute_energies(std::vector<double>& values) {
     ForceContext* context = rank_.whole_context();
     if (context == nullptr) {
-        if (!energy_context_)
-            energy_context_ = std::make_unique<ForceContext>(model_.system, model_.bead_of_particle, platform_, box_);
+        if (!energy_context_) energy_context_ = std::make_unique<ForceContext>(model_.system, model_.bead_of_particle, platform_, box_);
         context = energy_context_.get();
     }
     context->set_positions(all_);
@@ -160,7 +159,8 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     }
     char failed = failure.empty() ? 0 : 1;
     communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
-    if (failed != 0) throw ComputationError(fmt::format("OpenMM failed to compute the energies on rank 0{}{}", failure.empty() ? "" : ": ", failure));
+    if (failed != 0)
+        throw ComputationError(fmt::format("OpenMM failed to compute the energies on rank 0{}{}", failure.empty() ? "" : ": ", failure));
     communicator_.broadcast(std::as_writable_bytes(std::span(values)));
     std::vector<EnergyTerm> terms;
     for (std::size_t i = 0; i < values.size(); ++i) terms.push_back({model_.terms[i], values[i]});
@@ -169,13 +169,14 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
 
 std::vector<std::string> OpenMmForces::description() const {
     std::vector<std::string> lines{platform_.name() == "CPU"
-                                       ? fmt::format("{}, platform CPU, {} threads a rank", openmm_version(), platform_.threads)
+                                       ? fmt::format("{}, platform CPU, threads a rank: {}", openmm_version(), platform_.threads)
                                        : fmt::format("{}, platform {}", openmm_version(), platform_.name())};
     lines.push_back("terms: " + (model_.terms.empty() ? std::string("none") : join(model_.terms)));
     lines.insert(lines.end(), model_.notes.begin(), model_.notes.end());
     lines.push_back("path " + path_.text());
     int const cores = cores_of_rank(communicator_);
-    if (path_.runs_on_worker() && cores < 2) lines.push_back("warning: OpenMM's worker thread has no core of its own (bind ranks to two cores or more, or path: inline)");
+    if (path_.runs_on_worker() && cores < 2)
+        lines.push_back("warning: OpenMM's worker thread has no core of its own (bind ranks to two cores or more, or path: inline)");
     if (platform_.threads > cores)
         lines.push_back(fmt::format("warning: {} threads share {} cores of this rank", platform_.threads, cores));
     if (communicator_.size() > 1 && replicate_) lines.push_back("replicated: every rank computes the whole System");
@@ -193,7 +194,10 @@ std::string name_for_refusal(OpenMM::Force const& force) {
     auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force);
     if (charges == nullptr) return kind;
     auto const method = charges->getNonbondedMethod();
-    return fmt::format("{} ({})", kind, method == OpenMM::NonbondedForce::Ewald ? "Ewald" : method == OpenMM::NonbondedForce::PME ? "PME" : "LJPME");
+    return fmt::format("{} ({})", kind,
+                       method == OpenMM::NonbondedForce::Ewald ? "Ewald"
+                       : method == OpenMM::NonbondedForce::PME ? "PME"
+                                                               : "LJPME");
 }
 
 void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& where, int ranks) {
@@ -210,7 +214,8 @@ std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& bead
     if (beads.size() == 0)
         throw InputError("OpenMM has nothing to act on", where, "give the scene a chain of beads, or leave forces.openmm out");
     if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))
-        throw InputError(fmt::format("OpenMM's forces have no builder \"{}\"", spec.builder), where, "take builder: calvados2, or system: and topology:");
+        throw InputError(fmt::format("OpenMM's forces have no builder \"{}\"", spec.builder), where,
+                         "take builder: calvados2, or system: and topology:");
     OpenMmModel model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
     if (communicator.size() > 1 && !spec.replicate) refuse_what_cannot_be_split(model, where, communicator.size());
     try {
@@ -219,7 +224,7 @@ std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& bead
         throw;
     } catch (std::bad_alloc const&) {
         throw;
-    } catch (std::exception const& e) {   // OpenMM's exceptions have no common base below this
+    } catch (std::exception const& e) {  // OpenMM's exceptions have no common base below this
         throw InputError(fmt::format("OpenMM refuses these forces: {}", e.what()), where, "mend the System, or take another platform");
     }
 }

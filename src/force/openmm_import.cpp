@@ -29,7 +29,7 @@ std::map<int, double> lengths_to_neighbours(OpenMM::System const& system) {
             note();
         }
     }
-    for (int i = 0; i < system.getNumConstraints(); ++i) {   // these hold exactly, so they have the last word
+    for (int i = 0; i < system.getNumConstraints(); ++i) {  // these hold exactly, so they have the last word
         system.getConstraintParameters(i, a, b, length);
         note();
     }
@@ -43,9 +43,10 @@ ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const
         chain.mass.push_back(system.getParticleMass(first + k));
         auto const link = lengths.find(first + k);
         if (k > 0 && link == lengths.end())
-            throw InputError(fmt::format("particles {} and {} (from 0) are joined by no harmonic bond and no constraint", first + k - 1, first + k),
-                             fmt::format("{}, chain {}, body {}", where, from.name, k + 1),
-                             "join neighbours in a chain, or end the chain between them in the topology (TER)");
+            throw InputError(
+                fmt::format("particles {} and {} (from 0) are joined by no harmonic bond and no constraint", first + k - 1, first + k),
+                fmt::format("{}, chain {}, body {}", where, from.name, k + 1),
+                "join neighbours in a chain, or end the chain between them in the topology (TER)");
         chain.length.push_back(k > 0 ? link->second : 0);
     }
     return chain;

@@ -11,16 +11,16 @@ namespace catena {
 /// Arrays of one entry a bead.
 struct ImportedChain {
     std::string name;
-    std::vector<std::string> residue;   // three letters
-    std::vector<double> mass;           // amu, the System's
-    std::vector<Vec3> position;         // nm, as the PDB file rounds them
-    std::vector<double> length;         // nm, of the link to the bead before; entry 0 is 0
+    std::vector<std::string> residue;  // three letters
+    std::vector<double> mass;          // amu, the System's
+    std::vector<Vec3> position;        // nm, as the PDB file rounds them
+    std::vector<double> length;        // nm, of the link to the bead before; entry 0 is 0
 };
 
 struct ImportedSystem {
-    std::vector<ImportedChain> chains;   // the topology's, in its order
-    bool periodic = false;               // some force uses the box
-    Vec3 box = Vec3::zero();             // edges of the System's box
+    std::vector<ImportedChain> chains;  // the topology's, in its order
+    bool periodic = false;              // some force uses the box
+    Vec3 box = Vec3::zero();            // edges of the System's box
 };
 
 /// Particle order is topology order. Neighbours in a chain are joined by a link as long as the harmonic bond or constraint between them.

@@ -12,10 +12,10 @@
 namespace catena {
 
 struct OpenMmModel {
-    std::shared_ptr<OpenMM::System> system;   // force i in group i; nothing in it that a rigid link replaces
-    std::vector<std::string> terms;           // names of the forces, all different
+    std::shared_ptr<OpenMM::System> system;  // force i in group i; nothing in it that a rigid link replaces
+    std::vector<std::string> terms;          // names of the forces, all different
     std::vector<std::int64_t> bead_of_particle;
-    std::vector<std::string> notes;           // for people: what the model is, what was left out
+    std::vector<std::string> notes;  // for people: what the model is, what was left out
 };
 
 /// The CALVADOS 2 model on every chain of beads. Two forces: ashbaugh-hatch and yukawa.
@@ -27,8 +27,8 @@ OpenMmModel system_model(OpenMmSpec const&, BeadSystem const&);
 /// "CustomNonbondedForce".
 std::string kind_of(OpenMM::Force const&);
 
-/// The whole serialised System in `file`. `where`: scene file and key, for messages. Throws InputError with one line; for a System that this
-/// OpenMM cannot read it names both versions.
+/// The whole serialised System in `file`. `where`: scene file and key, for messages. Throws InputError with one line; for a System that
+/// this OpenMM cannot read it names both versions.
 std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std::string const& where);
 
 /// Refuses what a simulation with rigid links driven by Catena cannot have: virtual sites, massless particles, and forces that move

@@ -1,4 +1,5 @@
-// Whether a worker thread computes OpenMM's forces while the caller goes on, or the caller itself: said by the scene or found by trying both.
+// Whether a worker thread computes OpenMM's forces while the caller goes on, or the caller itself: said by the scene or found by trying
+// both.
 #pragma once
 
 #include <string>
@@ -26,7 +27,7 @@ class PathChoice {
 
   private:
     bool trying_, worker_ = false;
-    std::vector<double> inline_, host_;   // seconds
+    std::vector<double> inline_, host_;  // seconds
     double inline_median_ = 0, host_median_ = 0;
     std::string asked_;
 };

@@ -10,12 +10,15 @@
 #include <thread>
 
 #include "error.hpp"
+#include "force/openmm_model.hpp"
 
 namespace catena {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+std::int64_t constexpr beads_per_thread = 500;
 
 std::vector<fs::path> plugin_folders() {
     std::vector<fs::path> folders;
@@ -77,16 +80,16 @@ int cores_of_rank(Communicator const& communicator) {
     return online > usable ? usable : share;
 }
 
-OpenMmPlatform choose_platform(OpenMmSpec const& spec, Communicator const& communicator, std::string const& scene_file) {
+OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
     auto const& failures = load_openmm_plugins();
     auto const present = platforms_present();
     std::string const name = !spec.platform.empty() ? spec.platform : contains(present, "CPU") ? "CPU" : "Reference";
     if (!contains(present, name))
         throw InputError(fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
-                         scene_file + ", forces.openmm.platform",
+                         openmm_key(beads.scene_file, "platform"),
                          fmt::format("take one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
     if (!spec.precision.empty() && spec.precision != "single" && spec.precision != "mixed" && spec.precision != "double")
-        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision), scene_file + ", forces.openmm.precision",
+        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision), openmm_key(beads.scene_file, "precision"),
                          "take single, mixed or double");
 
     OpenMmPlatform chosen;
@@ -96,7 +99,8 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, Communicator const& commu
         if (contains(known, property)) chosen.properties[property] = value;
     };
     if (name == "CPU") {
-        chosen.threads = spec.threads > 0 ? spec.threads : cores_of_rank(communicator);
+        auto const useful = static_cast<int>(std::min<std::int64_t>(1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
+        chosen.threads = spec.threads > 0 ? spec.threads : useful;
         set("Threads", std::to_string(chosen.threads));
     } else if (!chosen.on_cpu()) {
         set("Precision", spec.precision.empty() ? "mixed" : spec.precision);

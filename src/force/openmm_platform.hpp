@@ -25,8 +25,10 @@ struct OpenMmPlatform {
 /// Returns what did not load, one line a file.
 std::vector<std::string> const& load_openmm_plugins();
 
-/// The platform that the scene names, else CPU where there is one, else Reference. Throws InputError listing those present.
-OpenMmPlatform choose_platform(OpenMmSpec const&, Communicator const&, std::string const& scene_file);
+/// The platform that the scene names, else CPU where there is one, else Reference. CPU threads, where the scene gives no number: the rank's
+/// cores, but one for every 500 beads at most (on two cores, a second thread slows 280 beads down by a fifth). Throws InputError listing
+/// those present.
+OpenMmPlatform choose_platform(OpenMmSpec const&, BeadSystem const&, Communicator const&);
 
 /// Cores that this rank may use: those it is bound to, else an equal share of the host's.
 int cores_of_rank(Communicator const&);

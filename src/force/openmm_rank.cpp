@@ -55,14 +55,14 @@ RankForces::RankForces(OpenMmModel const& model, OpenMmPlatform const& platform,
     std::sort(partners_.begin(), partners_.end());
     std::vector<std::int64_t> smallest = range(first, last);
     smallest.insert(smallest.end(), partners_.begin(), partners_.end());
-    context_for(smallest);   // so that a platform that refuses the forces is found out before the first step
+    context_for(smallest);  // so that a platform that refuses the forces is found out before the first step
 }
 
 std::unique_ptr<ForceContext> RankForces::context_for(std::vector<std::int64_t> beads) const {
     std::vector<int> particles;
     for (std::int64_t bead : beads) particles.push_back(particle_of_bead_[bead]);
-    return std::make_unique<ForceContext>(subset_of(*model_.system, particles, static_cast<int>(last_ - first_)), std::move(beads), platform_,
-                                          box_);
+    return std::make_unique<ForceContext>(subset_of(*model_.system, particles, static_cast<int>(last_ - first_)), std::move(beads),
+                                          platform_, box_);
 }
 
 std::vector<std::int64_t> RankForces::ghost_beads(std::span<Vec3 const> all) const {
@@ -83,7 +83,7 @@ void RankForces::rebuild(std::span<Vec3 const> all) {
     auto beads = range(first_, last_);
     auto const ghosts = ghost_beads(all);
     beads.insert(beads.end(), ghosts.begin(), ghosts.end());
-    context_.reset();   // before the next takes its memory
+    context_.reset();  // before the next takes its memory
     context_ = context_for(std::move(beads));
     listed_.assign(all.begin(), all.end());
     largest_ = std::max(largest_, context_->size());

@@ -15,8 +15,8 @@ namespace catena {
 
 class RankForces {
   public:
-    /// The rank owns beads [first, last). `whole`: its Context holds every bead (one rank, or `replicate`); else its own beads and ghosts: every
-    /// bead within reach + skin, renewed when a bead has moved so far that one might be missing. A rank without beads builds nothing.
+    /// The rank owns beads [first, last). `whole`: its Context holds every bead (one rank, or `replicate`); else its own beads and ghosts:
+    /// every bead within reach + skin, renewed when a bead has moved so far that one might be missing. A rank without beads builds nothing.
     /// `box`: edges of the box where the forces are periodic. Throws what OpenMM throws if it refuses the forces.
     RankForces(OpenMmModel const& model, OpenMmPlatform const& platform, std::int64_t first, std::int64_t last, bool whole,
                std::optional<Vec3> const& box);
@@ -47,10 +47,10 @@ class RankForces {
     bool whole_;
     std::optional<Vec3> box_;
     std::vector<int> particle_of_bead_;
-    std::vector<std::int64_t> partners_;   // beads of other ranks that share a bonded term with own ones
+    std::vector<std::int64_t> partners_;  // beads of other ranks that share a bonded term with own ones
     double reach_ = std::numeric_limits<double>::infinity(), skin_ = 0;
     std::unique_ptr<ForceContext> context_;
-    std::vector<Vec3> listed_;             // positions of all beads when the Context was made
+    std::vector<Vec3> listed_;  // positions of all beads when the Context was made
     std::int64_t largest_ = 0, rebuilds_ = 0;
 };
 

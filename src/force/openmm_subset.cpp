@@ -11,7 +11,7 @@ namespace catena {
 
 namespace {
 
-using namespace OpenMM;   // this file handles nothing else
+using namespace OpenMM;  // this file handles nothing else
 
 /// Notes the partners of own particles; keeps no term.
 class PartnerCollector : public TermFilter {
@@ -61,7 +61,7 @@ class Renumbering : public TermFilter {
   private:
     std::vector<int> const& particles_;
     int own_count_;
-    std::vector<int> index_;   // in the subset; -1: not in it
+    std::vector<int> index_;  // in the subset; -1: not in it
 };
 
 template <class Source>
@@ -157,7 +157,7 @@ std::unique_ptr<Force> copy_pairs(NonbondedForce const& from, Renumbering const&
     to->setSwitchingDistance(from.getSwitchingDistance());
     to->setReactionFieldDielectric(from.getReactionFieldDielectric());
     to->setExceptionsUsePeriodicBoundaryConditions(from.getExceptionsUsePeriodicBoundaryConditions());
-    to->setUseDispersionCorrection(false);   // it adds no force
+    to->setUseDispersionCorrection(false);  // it adds no force
     copy_globals(from, *to);
     double charge, sigma, epsilon;
     for (int p : subset.particles()) {

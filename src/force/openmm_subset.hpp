@@ -18,8 +18,8 @@ double reach_of(OpenMM::System const&);
 /// Particles, ascending, that share a bonded term or an exception with one of `own` and are not among them.
 std::vector<int> bonded_partners(OpenMM::System const&, std::vector<int> const& own);
 
-/// The System of `particles`, in this order, with the forces that act on the first `own_count` of them complete: bonded terms that touch one of
-/// these, and all pairs. Force groups and names stay. Precondition: what shares a bonded term with them is among `particles`.
+/// The System of `particles`, in this order, with the forces that act on the first `own_count` of them complete: bonded terms that touch
+/// one of these, and all pairs. Force groups and names stay. Precondition: what shares a bonded term with them is among `particles`.
 std::unique_ptr<OpenMM::System> subset_of(OpenMM::System const&, std::vector<int> const& particles, int own_count);
 
 }  // namespace catena

@@ -17,8 +17,8 @@ namespace {
 using OpenMM::HarmonicBondForce;
 using OpenMM::System;
 
-double constexpr same_length = 1e-6;         // nm: lengths that were written in decimals
-double constexpr same_mass = 1e-6;           // relative: masses likewise
+double constexpr same_length = 1e-6;  // nm: lengths that were written in decimals
+double constexpr same_mass = 1e-6;    // relative: masses likewise
 int constexpr force_groups_of_openmm = 32;
 
 /// The links of the scene by the particles that they join.
@@ -50,8 +50,10 @@ struct LeftOut {
         largest_difference = std::max(largest_difference, std::abs(length - link));
     }
     std::string note(std::string const& what) const {
-        std::string text = longest - shortest < same_length ? fmt::format("{} {} along rigid links left out (length {:.6g} nm)", count, what, longest)
-                                                            : fmt::format("{} {} along rigid links left out (lengths {:.6g} to {:.6g} nm)", count, what, shortest, longest);
+        std::string text =
+            longest - shortest < same_length
+                ? fmt::format("{} {} along rigid links left out (length {:.6g} nm)", count, what, longest)
+                : fmt::format("{} {} along rigid links left out (lengths {:.6g} to {:.6g} nm)", count, what, shortest, longest);
         if (largest_difference > same_length) text += fmt::format("; their links differ from them by up to {:.3g} nm", largest_difference);
         return text;
     }
@@ -60,7 +62,8 @@ struct LeftOut {
 void check_counts(System const& system, OpenMmSpec const& spec, BeadSystem const& beads) {
     if (system.getNumParticles() != beads.size())
         throw InputError(fmt::format("the System has {} particles and the scene {} beads", system.getNumParticles(), beads.size()),
-                         openmm_key(beads.scene_file, "system"), fmt::format("let every particle of {} be a bead of the scene", spec.system));
+                         openmm_key(beads.scene_file, "system"),
+                         fmt::format("let every particle of {} be a bead of the scene", spec.system));
 }
 
 /// One chain after the other, without a map: the topology's chains must be the scene's.
@@ -79,12 +82,13 @@ void check_topology(OpenMmSpec const& spec, BeadSystem const& beads) {
         std::int64_t const in_scene = c < count ? beads.chain_offset[c + 1] - beads.chain_offset[c] : 0;
         std::int64_t const in_topology = c < chains.size() ? std::ssize(chains[c].residue) : 0;
         if (in_scene != in_topology)
-            throw InputError(fmt::format("chain {} has {} beads in the scene and {} atoms in the topology", c + 1, in_scene, in_topology), where,
-                             "give the chains in the topology's order, or say which particles are whose with forces.openmm.map");
+            throw InputError(fmt::format("chain {} has {} beads in the scene and {} atoms in the topology", c + 1, in_scene, in_topology),
+                             where, "give the chains in the topology's order, or say which particles are whose with forces.openmm.map");
     }
 }
 
-/// `map` names the first and last particle of each chain, counted from 0 as OpenMM does; without it particles and beads have the same order.
+/// `map` names the first and last particle of each chain, counted from 0 as OpenMM does; without it particles and beads have the same
+/// order.
 std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::vector<std::int64_t> bead(static_cast<std::size_t>(beads.size()), spec.map.empty() ? 0 : -1);
     if (spec.map.empty()) {
@@ -98,23 +102,27 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
         std::size_t entry = 0;
         while (entry < spec.map.size() && (used[entry] || spec.map[entry].first != name)) ++entry;
         if (entry == spec.map.size())
-            throw InputError(fmt::format("chain {} is not in the map", name), where, "give every chain of beads its first and last particle");
+            throw InputError(fmt::format("chain {} is not in the map", name), where,
+                             "give every chain of beads its first and last particle");
         used[entry] = true;
         auto const [first, last] = spec.map[entry].second;
         std::int64_t const count = beads.chain_offset[c + 1] - beads.chain_offset[c];
         if (first < 0 || last >= beads.size() || last - first + 1 != count)
-            throw InputError(fmt::format("chain {} has {} beads, and its particles are {} to {} of 0 to {}", name, count, first, last, beads.size() - 1), where,
-                             "name its first and last particle, counted from 0");
+            throw InputError(
+                fmt::format("chain {} has {} beads, and its particles are {} to {} of 0 to {}", name, count, first, last, beads.size() - 1),
+                where, "name its first and last particle, counted from 0");
         for (std::int64_t k = 0; k < count; ++k) {
             auto& owner = bead[static_cast<std::size_t>(first + k)];
-            if (owner >= 0) throw InputError(fmt::format("particle {} (from 0) belongs to two chains", first + k), where, "let the ranges be disjoint");
+            if (owner >= 0)
+                throw InputError(fmt::format("particle {} (from 0) belongs to two chains", first + k), where, "let the ranges be disjoint");
             owner = beads.chain_offset[c] + k;
         }
     }
     auto const spare = std::find(used.begin(), used.end(), false);
     if (spare != used.end())
-        throw InputError(fmt::format("the scene has no chain of beads named {}", spec.map[static_cast<std::size_t>(spare - used.begin())].first), where,
-                         fmt::format("take one of {}", fmt::join(beads.chain_name, ", ")));
+        throw InputError(
+            fmt::format("the scene has no chain of beads named {}", spec.map[static_cast<std::size_t>(spare - used.begin())].first), where,
+            fmt::format("take one of {}", fmt::join(beads.chain_name, ", ")));
     return bead;
 }
 
@@ -139,8 +147,9 @@ std::vector<std::string> remove_constraints(System& system, LinkTable const& lin
             throw InputError(fmt::format("the constraint between particles {} and {} (from 0) is no link of the scene", a, b), where,
                              "constrain neighbours in a chain only, or make it a bond");
         if (std::abs(*link - length) > same_length)
-            throw InputError(fmt::format("the constraint between particles {} and {} (from 0) has length {}, its link {}", a, b, length, *link), where,
-                             "let both be the same");
+            throw InputError(
+                fmt::format("the constraint between particles {} and {} (from 0) has length {}, its link {}", a, b, length, *link), where,
+                "let both be the same");
         left_out.add(length, *link);
         system.removeConstraint(i);
     }
@@ -156,8 +165,10 @@ std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
         int a, b;
         double length, k;
         bonds.getBondParameters(i, a, b, length, k);
-        if (double const* link = links.length(a, b)) left_out.add(length, *link);
-        else kept->addBond(a, b, length, k);
+        if (double const* link = links.length(a, b))
+            left_out.add(length, *link);
+        else
+            kept->addBond(a, b, length, k);
     }
     return kept;
 }
@@ -198,7 +209,7 @@ std::vector<std::string> name_terms(System& system, std::string const& where) {
     for (int i = 0; i < system.getNumForces(); ++i) {
         auto& force = system.getForce(i);
         force.setForceGroup(i);
-        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&force)) charges->setReciprocalSpaceForceGroup(-1);   // with the rest
+        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&force)) charges->setReciprocalSpaceForceGroup(-1);  // with the rest
         int const before = seen[force.getName()]++;
         names.push_back(before == 0 ? force.getName() : fmt::format("{} {}", force.getName(), before + 1));
     }

@@ -80,7 +80,8 @@ std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std:
 void refuse_movers(OpenMM::System const& system, std::string const& where) {
     for (int p = 0; p < system.getNumParticles(); ++p) {
         if (system.isVirtualSite(p))
-            throw InputError(fmt::format("particle {} (from 0) is a virtual site", p), where, "leave virtual sites out: every particle is a bead with a mass");
+            throw InputError(fmt::format("particle {} (from 0) is a virtual site", p), where,
+                             "leave virtual sites out: every particle is a bead with a mass");
         if (!(system.getParticleMass(p) > 0))
             throw InputError(fmt::format("particle {} (from 0) has no mass", p), where, "give it one: every particle is a bead that moves");
     }

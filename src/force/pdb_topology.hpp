@@ -9,9 +9,9 @@
 namespace catena {
 
 struct PdbChain {
-    std::string name;                   // chain identifier; its number where the file gives none
-    std::vector<std::string> residue;   // one an atom
-    std::vector<Vec3> position;         // nm
+    std::string name;                  // chain identifier; its number where the file gives none
+    std::vector<std::string> residue;  // one an atom
+    std::vector<Vec3> position;        // nm
 
     std::size_t size() const { return residue.size(); }
 };

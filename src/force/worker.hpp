@@ -25,7 +25,7 @@ class Worker {
 
     std::mutex mutex_;
     std::condition_variable changed_;
-    std::function<void()> task_;   // empty: nothing to do
+    std::function<void()> task_;  // empty: nothing to do
     bool leave_ = false;
     std::thread thread_;
 };

@@ -28,6 +28,7 @@ th { text-align: left; font-weight: 400; color: var(--soft); padding: 3px 16px 3
 thead th { font-weight: 600; text-align: right; padding: 3px 0 3px 14px; }
 thead th:first-child, .rows td:first-child { text-align: left; padding-left: 0; }
 td { padding: 3px 0; text-align: right; font-variant-numeric: tabular-nums; overflow-wrap: anywhere; }
+td.text { text-align: left; } td.text span { color: var(--soft); display: block; }
 td + td { padding-left: 14px; }
 tr + tr > *, tbody tr > * { border-top: 1px solid var(--grid); }
 .files { max-width: 640px; } .files td { text-align: left; }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double seconds_between_redraws = 0.2;
 constexpr double first_interval = 1, longest_interval = 30;  // seconds, of a log
-constexpr int bar_width = 28;
+constexpr std::int64_t widest_bar = 30, narrowest_bar = 8;   // characters
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
@@ -25,9 +25,9 @@ std::string duration(double seconds) {
     return fmt::format("{}:{:02}", whole / 60, whole % 60);
 }
 
-std::string bar(double fraction) {
-    int const filled = static_cast<int>(fraction * bar_width);
-    return "[" + std::string(static_cast<std::size_t>(filled), '=') + std::string(static_cast<std::size_t>(bar_width - filled), ' ') + "]";
+std::string bar(double fraction, std::size_t length) {
+    auto const filled = static_cast<std::size_t>(fraction * static_cast<double>(length));
+    return "[" + std::string(filled, '=') + std::string(length - filled, ' ') + "]";
 }
 
 std::size_t width_of(int descriptor) {
@@ -84,7 +84,8 @@ void Progress::show(bool last) const {
         double const steps = static_cast<double>(last_ - first_);
         double const fraction = steps > 0 ? std::clamp(static_cast<double>(now_ - first_) / steps, 0.0, 1.0) : 1;
         std::size_t const width = width_of(::fileno(out_));
-        if (text.size() + bar_width + 3 < width) text = bar(fraction) + " " + text;
+        auto const room = std::min<std::int64_t>(widest_bar, static_cast<std::int64_t>(width) - static_cast<std::int64_t>(text.size()) - 4);
+        if (room >= narrowest_bar) text = bar(fraction, static_cast<std::size_t>(room)) + " " + text;
         text = "\r" + text.substr(0, width - 1) + "\x1b[K";
     }
     if (!terminal_ || last) text += "\n";

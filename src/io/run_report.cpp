@@ -49,18 +49,28 @@ std::string statistics(std::vector<double> const& values) {
     return text;
 }
 
+/// A line that says nothing.
+bool is_constant(std::vector<double> const& values) {
+    return values.size() > 1 && std::all_of(values.begin(), values.end(), [&](double value) { return value == values[0]; });
+}
+
 std::string charts(ObservablesTable const& table) {
     if (table.columns[0].empty()) return "<p>No record was written.</p>\n";
     auto const [time, time_unit] = name_and_unit(table.names[1]);
     std::string const time_label = time_unit.empty() ? time : fmt::format("{} / {}", time, time_unit);
-    std::string html = "<div class=\"charts\">\n";
+    std::string html = "<div class=\"charts\">\n", constant;
     for (std::size_t k = 2; k < table.names.size(); ++k) {
         auto const [name, unit] = name_and_unit(table.names[k]);
-        Curve const curve{time_label, unit, table.columns[1], table.columns[k]};
+        if (is_constant(table.columns[k])) {
+            constant += fmt::format("{}{}: {} {}", constant.empty() ? "" : ", ", escaped(readable_name(name)),
+                                    readable_number(table.columns[k][0]), escaped(unit));
+            continue;
+        }
+        Curve const curve{time_label, unit == "1" ? "" : unit, table.columns[1], table.columns[k]};
         html += fmt::format("<figure>\n<h3>{}</h3>\n{}<figcaption>{}</figcaption>\n</figure>\n", escaped(readable_name(name)),
                             line_chart(curve), statistics(table.columns[k]));
     }
-    return html + "</div>\n";
+    return html + "</div>\n" + (constant.empty() ? "" : "<p>The same all the time: " + constant + ".</p>\n");
 }
 
 std::string files_in(fs::path const& folder) {
@@ -88,7 +98,7 @@ std::string timeline_section(fs::path const& file) {
 
 std::string title_of(Json const& summary, fs::path const& folder) {
     for (char const* key : {"title", "scene"})
-        if (summary.is_object() && summary.contains(key) && summary[key].is_string() && !summary[key].get<std::string>().empty())
+        if (summary.contains(key) && summary[key].is_string() && !summary[key].get<std::string>().empty())
             return summary[key].get<std::string>();
     return fs::absolute(folder).lexically_normal().filename().string();
 }
@@ -99,10 +109,12 @@ void write_run_report(std::string const& folder) {
     fs::path const in(folder), summary_file = in / "summary.json", observables = in / "observables.csv", timeline = in / "timeline.json";
     if (!fs::exists(summary_file) && !fs::exists(observables) && !fs::exists(timeline))
         throw InputError("nothing to report", folder, "name the folder of a run");
-    Json const summary = fs::exists(summary_file) ? read_json(summary_file) : Json::object();
+    Json summary = fs::exists(summary_file) ? read_json(summary_file) : Json::object();
+    if (!summary.is_object()) throw InputError("not an object", summary_file.string(), "mend or remove the file");
     std::string const title = title_of(summary, in);
     std::string body = fmt::format("<h1>{}</h1>\n<p>A run of Catena</p>\n", escaped(title));
-    if (summary.is_object() && !summary.empty()) body += "<h2>Summary</h2>\n" + summary_tables(summary);
+    summary.erase("files");  // they are listed with links at the end
+    if (!summary.empty()) body += "<h2>Summary</h2>\n" + summary_tables(summary);
     if (fs::exists(observables)) body += "<h2>Observables</h2>\n" + charts(read_observables(observables.string()));
     if (fs::exists(timeline)) body += timeline_section(timeline);
     body += files_in(in);

@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t most_entries = 8, most_rows = 40;
+constexpr std::size_t most_entries = 8, most_rows = 40, most_columns = 4, longest_cell = 40;
 
 bool is_rows(Json const& value) {
     return value.is_array() && !value.empty() &&
@@ -29,12 +29,16 @@ std::string cell(Json const& value) {
     return escaped(value.dump());
 }
 
-std::string row(std::string const& key, Json const& value) {
-    return fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", escaped(readable_name(key)), cell(value));
+bool is_empty(Json const& value) {
+    return value.is_null() || (value.is_string() && value.get<std::string>().empty()) ||
+           ((value.is_array() || value.is_object()) && value.empty());
 }
 
-std::string card(std::string const& title, std::string const& table) {
-    return fmt::format("<section class=\"card\">\n<h3>{}</h3>\n{}</section>\n", escaped(readable_name(title)), table);
+std::string row(std::string const& key, Json const& value) {
+    std::string const name = escaped(readable_name(key)), text = cell(value);
+    // Sentences get the whole width.
+    if (text.size() > longest_cell) return fmt::format("<tr><td colspan=\"2\" class=\"text\"><span>{}</span> {}</td></tr>\n", name, text);
+    return fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", name, text);
 }
 
 /// Columns are the keys of the first row.
@@ -52,23 +56,37 @@ std::string table_of_rows(Json const& rows) {
     return table + "</tbody>\n</table>\n";
 }
 
-/// The object's own values in one card, then a card for everything nested in it.
-std::string cards(std::string const& title, Json const& object) {
-    std::string own, nested;
-    for (auto const& [key, value] : object.items()) {
-        std::string const full = title.empty() ? key : title + ": " + readable_name(key);
-        if (value.is_object() && !value.empty())
-            nested += cards(full, value);
-        else if (is_rows(value))
-            nested += card(full, table_of_rows(value));
-        else
-            own += row(key, value);
+/// A card for each object's own values, and below all cards the tables of many columns.
+struct Sections {
+    std::string cards, wide;
+
+    static std::string card(std::string const& title, std::string const& table) {
+        return fmt::format("<section class=\"card\">\n<h3>{}</h3>\n{}</section>\n", escaped(readable_name(title)), table);
     }
-    return (own.empty() ? "" : card(title.empty() ? "run" : title, "<table>\n" + own + "</table>\n")) + nested;
-}
+
+    void add(std::string const& title, Json const& object) {
+        std::string own;
+        for (auto const& [key, value] : object.items())
+            if (!is_empty(value) && !value.is_object() && !is_rows(value)) own += row(key, value);
+        if (!own.empty()) cards += card(title.empty() ? "overview" : title, "<table>\n" + own + "</table>\n");
+        for (auto const& [key, value] : object.items()) {
+            std::string const full = title.empty() ? key : fmt::format("{}: {}", title, readable_name(key));
+            if (value.is_object())
+                add(full, value);
+            else if (is_rows(value) && value.size() == 1)
+                add(full, value[0]);
+            else if (is_rows(value))
+                (value[0].size() > most_columns ? wide : cards) += card(full, table_of_rows(value));
+        }
+    }
+};
 
 }  // namespace
 
-std::string summary_tables(Json const& summary) { return "<div class=\"cards\">\n" + cards("", summary) + "</div>\n"; }
+std::string summary_tables(Json const& summary) {
+    Sections sections;
+    sections.add("", summary);
+    return "<div class=\"cards\">\n" + sections.cards + "</div>\n" + sections.wide;
+}
 
 }  // namespace catena

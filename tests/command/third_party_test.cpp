@@ -80,7 +80,9 @@ TEST(ThirdParty, AChangedRateShows) {
     ReferenceChain r = reference_chain("chain50");
     r.chain.bodies.qd[20] = (1 + 1e-6) * r.chain.bodies.qd[20];
     Deviation const d = deviation(r, Backend::segments, Handles::projected);
-    if (testing::world().rank() == 0) EXPECT_GT(d.acceleration, 1e3 * allowed);
+    if (testing::world().rank() == 0) {
+        EXPECT_GT(d.acceleration, 1e3 * allowed);
+    }
 }
 
 }  // namespace

@@ -120,8 +120,9 @@ std::string pdb_of(BeadSystem const& beads, std::vector<Vec3> const& positions) 
     std::string text;
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
         for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k)
-            text += fmt::format("ATOM  {:5}  CA  {:>3} {}{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00\n", k + 1, beads.residue[k], beads.chain_name[c],
-                                k - beads.chain_offset[c] + 1, 10 * positions[k][0], 10 * positions[k][1], 10 * positions[k][2]);
+            text += fmt::format("ATOM  {:5}  CA  {:>3} {}{:4}    {:8.3f}{:8.3f}{:8.3f}  1.00  0.00\n", k + 1, beads.residue[k],
+                                beads.chain_name[c], k - beads.chain_offset[c] + 1, 10 * positions[k][0], 10 * positions[k][1],
+                                10 * positions[k][2]);
         text += "TER\n";
     }
     return text + "END\n";

@@ -20,7 +20,8 @@ BeadSystem proteins(std::vector<std::string> const& sequences, int ranks = 1, st
 /// The same beads on another number of ranks.
 BeadSystem split(BeadSystem beads, int ranks);
 
-/// Beads without overlaps: the chains wind about parallel lines along x, 0.3 nm a bead. Neighbours are not 0.38 nm apart: forces do not mind.
+/// Beads without overlaps: the chains wind about parallel lines along x, 0.3 nm a bead. Neighbours are not 0.38 nm apart: forces do not
+/// mind.
 std::vector<Vec3> wound(BeadSystem const& beads, std::uint64_t seed);
 
 /// Each component moved by up to `amplitude`.

@@ -19,7 +19,7 @@ void add_bonds(System& system, int n, bool periodic) {
     auto* custom = new CustomBondForce("k*(r-r0)^2/(1+r)");
     custom->addGlobalParameter("k", 12.5);
     custom->addPerBondParameter("r0");
-    for (int i = 0; i + 1 < n; ++i) harmonic->addBond(i, i + 1, 0.38, 800);   // along links and between the chains' ends
+    for (int i = 0; i + 1 < n; ++i) harmonic->addBond(i, i + 1, 0.38, 800);  // along links and between the chains' ends
     for (int i = 0; i + 37 < n; i += 5) harmonic->addBond(i, i + 37, 1.0 + 0.01 * i, 3);
     for (int i = 0; i + 3 < n; i += 2) custom->addBond(i, i + 3, {0.5 + 0.001 * i});
     harmonic->setUsesPeriodicBoundaryConditions(periodic);
@@ -37,7 +37,8 @@ void add_angles_and_torsions(System& system, int n, bool periodic) {
     auto* rb = new RBTorsionForce;
     auto* custom_torsions = new CustomTorsionForce("k*(1+cos(3*theta))");
     custom_torsions->addPerTorsionParameter("k");
-    for (int i = 0; i + 2 < n; ++i) (i % 2 ? custom_angles->addAngle(i, i + 1, i + 2, {7.0 + 0.1 * i}) : angles->addAngle(i, i + 1, i + 2, 1.9, 20));
+    for (int i = 0; i + 2 < n; ++i)
+        (i % 2 ? custom_angles->addAngle(i, i + 1, i + 2, {7.0 + 0.1 * i}) : angles->addAngle(i, i + 1, i + 2, 1.9, 20));
     for (int i = 0; i + 5 < n; ++i) {
         torsions->addTorsion(i, i + 1, i + 2, i + 3, 1 + i % 3, 0.3, 2.0);
         rb->addTorsion(i, i + 1, i + 3, i + 5, 0.1, 0.7, -0.3, 0.2, 0.1, -0.1);
@@ -68,7 +69,7 @@ void add_charges(System& system, int n, bool periodic) {
     charges->addGlobalParameter("scale", 0.7);
     for (int i = 0; i < n; ++i) charges->addParticle(0.2 * (i % 5 - 2), 0.3 + 0.01 * (i % 4), 0.5);
     for (int i = 0; i + 1 < n; ++i) charges->addException(i, i + 1, 0, 1, 0);
-    for (int i = 0; i + 24 < n; i += 6) charges->addException(i, i + 24, 0.3, 0.4, 0.1);   // farther than the cutoff and its skin
+    for (int i = 0; i + 24 < n; i += 6) charges->addException(i, i + 24, 0.3, 0.4, 0.1);  // farther than the cutoff and its skin
     for (int i = 0; i < n; i += 4) charges->addParticleParameterOffset("scale", i, 0.1, 0.0, 0.2);
     charges->addExceptionParameterOffset("scale", n, 0.2, 0.0, 0.0);
     charges->setExceptionsUsePeriodicBoundaryConditions(periodic);

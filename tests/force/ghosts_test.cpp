@@ -37,11 +37,12 @@ TEST(Ghosts, AreThoseOfAllPairs) {
     auto const positions = scattered(400, 10, 1);
     for (double const radius : {0.5, 2.0, 4.5, 50.0})
         for (auto const& [first, last] : {std::pair{0, 7}, {100, 150}, {399, 400}, {0, 400}, {5, 5}})
-            EXPECT_EQ(ghosts_of(positions, first, last, radius, {}), by_all_pairs(positions, first, last, radius, {})) << radius << ' ' << first;
+            EXPECT_EQ(ghosts_of(positions, first, last, radius, {}), by_all_pairs(positions, first, last, radius, {}))
+                << radius << ' ' << first;
 }
 
 TEST(Ghosts, InABoxTheyAreNearestImages) {
-    auto const positions = scattered(300, 30, 2);   // many boxes away
+    auto const positions = scattered(300, 30, 2);  // many boxes away
     for (Vec3 const box : {Vec3{{9, 10, 11}}, Vec3{{4, 40, 7.3}}, Vec3{{3, 3, 3}}})
         for (double const radius : {0.8, 1.49, 2.5, 3.6})
             for (auto const& [first, last] : {std::pair{0, 4}, {120, 123}, {299, 300}})

@@ -18,11 +18,12 @@ class Import : public ::testing::Test {
         system->addForce(bonds);
         bonds->addBond(0, 1, 0.38, 100);
         bonds->addBond(3, 2, 0.41, 100);
-        bonds->addBond(0, 5, 7.0, 100);   // no neighbours: no link
+        bonds->addBond(0, 5, 7.0, 100);  // no neighbours: no link
         system->addConstraint(1, 2, 0.39);
     }
     ImportedSystem import(std::vector<Vec3> const& positions) {
-        return import_openmm_system(scratch_file("import.xml", xml_of(*system)), scratch_file("import.pdb", pdb_of(beads, positions)), "scene.yaml");
+        return import_openmm_system(scratch_file("import.xml", xml_of(*system)), scratch_file("import.pdb", pdb_of(beads, positions)),
+                                    "scene.yaml");
     }
 };
 
@@ -54,8 +55,9 @@ TEST_F(Import, Box) {
 
 TEST_F(Import, AlphaSynuclein) {
     std::string const reference = std::string(CATENA_TEST_DATA) + "/reference/calvados2-asyn-system-openmm7.xml";
-    beads = proteins({std::string("MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMP"
-                                  "SEEGYQDYEPEA")});
+    beads = proteins({std::string(
+        "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMP"
+        "SEEGYQDYEPEA")});
     auto const imported = import_openmm_system(reference, scratch_file("asyn.pdb", pdb_of(beads, wound(beads, 1))), "scene.yaml");
     ASSERT_EQ(imported.chains.size(), 1u);
     for (std::int64_t k = 0; k < beads.size(); ++k) {
@@ -67,16 +69,19 @@ TEST_F(Import, AlphaSynuclein) {
 TEST_F(Import, Messages) {
     auto const positions = wound(beads, 1);
     EXPECT_EQ(complaint([&] { import(positions); }),
-              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml, forces.openmm.system, chain B, body 2): join "
+              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml, forces.openmm.system, chain B, "
+              "body 2): join "
               "neighbours in a chain, or end the chain between them in the topology (TER)");
     bonds->addBond(4, 5, 0.5, 100);
     std::string const file = scratch_file("import.xml", xml_of(*system));
     EXPECT_EQ(complaint([&] { import_openmm_system(file, scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions)), "scene.yaml"); }),
-              "the topology has 2 atoms and the System 7 particles (scene.yaml, forces.openmm.topology): give one atom a particle, in the System's order");
+              "the topology has 2 atoms and the System 7 particles (scene.yaml, forces.openmm.topology): give one atom a particle, in the "
+              "System's order");
     EXPECT_EQ(complaint([&] { import_openmm_system(file, "/nowhere/a.pdb", "scene.yaml"); }),
               "cannot open /nowhere/a.pdb (scene.yaml, forces.openmm.topology): name a PDB file that can be read");
     system->addForce(new OpenMM::CMMotionRemover);
-    EXPECT_TRUE(complaint([&] { import(positions); }).starts_with("the System holds a CMMotionRemover (scene.yaml, forces.openmm.system): "));
+    EXPECT_TRUE(
+        complaint([&] { import(positions); }).starts_with("the System holds a CMMotionRemover (scene.yaml, forces.openmm.system): "));
 }
 
 }  // namespace

@@ -39,7 +39,8 @@ class Messages : public ::testing::Test {
 TEST_F(Messages, Platform) {
     OpenMmSpec spec = on_reference();
     spec.platform = "Abacus";
-    EXPECT_TRUE(of(spec).starts_with("OpenMM " + version + " has no platform Abacus (scene.yaml, forces.openmm.platform): take one of Reference, CPU"))
+    EXPECT_TRUE(of(spec).starts_with("OpenMM " + version +
+                                     " has no platform Abacus (scene.yaml, forces.openmm.platform): take one of Reference, CPU"))
         << of(spec);
     spec = on_reference();
     spec.precision = "half";
@@ -52,9 +53,11 @@ TEST_F(Messages, Platform) {
 TEST_F(Messages, Builder) {
     EXPECT_EQ(of(on_reference("martini")),
               "OpenMM's forces have no builder \"martini\" (scene.yaml, forces.openmm): take builder: calvados2, or system: and topology:");
-    EXPECT_EQ(of(on_reference("")), "OpenMM's forces have no builder \"\" (scene.yaml, forces.openmm): take builder: calvados2, or system: and topology:");
+    EXPECT_EQ(of(on_reference("")),
+              "OpenMM's forces have no builder \"\" (scene.yaml, forces.openmm): take builder: calvados2, or system: and topology:");
     beads = proteins({});
-    EXPECT_EQ(of(on_reference()), "OpenMM has nothing to act on (scene.yaml, forces.openmm): give the scene a chain of beads, or leave forces.openmm out");
+    EXPECT_EQ(of(on_reference()),
+              "OpenMM has nothing to act on (scene.yaml, forces.openmm): give the scene a chain of beads, or leave forces.openmm out");
 }
 
 TEST_F(Messages, Calvados2) {
@@ -69,11 +72,13 @@ TEST_F(Messages, Calvados2) {
     EXPECT_EQ(of(spec),
               "switch width 2 nm is not between 0 and the shortest cutoff, 2 nm (scene.yaml, forces.openmm.switch_width): take about 0.2");
     beads.box = Vec3{{9, 7.5, 9}};
-    EXPECT_EQ(of(on_reference()), "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml, box.periodic): take a larger box or none");
+    EXPECT_EQ(of(on_reference()),
+              "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml, box.periodic): take a larger box or none");
     beads.box.reset();
     beads.residue[5] = "UNK";
     EXPECT_EQ(of(on_reference()),
-              "CALVADOS 2 has no residue UNK (scene.yaml, chain B, body 2): use the twenty amino acids (sequence and model: calvados2), or give the forces "
+              "CALVADOS 2 has no residue UNK (scene.yaml, chain B, body 2): use the twenty amino acids (sequence and model: calvados2), or "
+              "give the forces "
               "as a System (forces.openmm.system)");
 }
 
@@ -82,15 +87,18 @@ TEST_F(Messages, UnreadableSystem) {
     spec.system = "/nowhere/system.xml";
     EXPECT_EQ(of(spec), "cannot open /nowhere/system.xml (scene.yaml, forces.openmm.system): name a serialised System that can be read");
     EXPECT_NE(of(with_text("hello")).find(" is no serialised System (scene.yaml, forces.openmm.system): "), std::string::npos);
-    EXPECT_NE(of(with_text("<?xml version=\"1.0\" ?>\n<State type=\"State\" version=\"1\"></State>")).find(" is no serialised System ("), std::string::npos);
+    EXPECT_NE(of(with_text("<?xml version=\"1.0\" ?>\n<State type=\"State\" version=\"1\"></State>")).find(" is no serialised System ("),
+              std::string::npos);
 
     std::string xml = xml_of(*every_force(proteins({random_sequence(60, 1)})));
-    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is cut short (scene.yaml, forces.openmm.system): write the System again"), std::string::npos);
+    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is cut short (scene.yaml, forces.openmm.system): write the System again"),
+              std::string::npos);
     auto const at = xml.find("\"", xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
     xml.replace(at, 1, "9");
     std::string const text = of(with_text(xml));
     EXPECT_TRUE(text.starts_with("OpenMM " + version + " cannot read ")) << text;
-    EXPECT_NE(text.find("messages.xml, written by OpenMM " + version + ": Unsupported version number (scene.yaml, forces.openmm.system): build Catena"),
+    EXPECT_NE(text.find("messages.xml, written by OpenMM " + version +
+                        ": Unsupported version number (scene.yaml, forces.openmm.system): build Catena"),
               std::string::npos)
         << text;
     EXPECT_EQ(text.find('\n'), std::string::npos);
@@ -131,7 +139,8 @@ TEST_F(Messages, ConstraintsThatAreNoLinks) {
                   "constrain neighbours in a chain only, or make it a bond");
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(1, 2, 0.5); }),
               "the constraint between particles 1 and 2 (from 0) has length 0.5, its link 0.38" + where + "let both be the same");
-    auto const force = make_openmm_force(with_system([](auto& s) { s.addConstraint(2, 1, 0.38), s.addConstraint(2, 3, 0.38); }), beads, *serial);
+    auto const force =
+        make_openmm_force(with_system([](auto& s) { s.addConstraint(2, 1, 0.38), s.addConstraint(2, 3, 0.38); }), beads, *serial);
     EXPECT_NE(fmt::format("{}", fmt::join(force->description(), "\n")).find("2 constraints along rigid links left out (length 0.38 nm)"),
               std::string::npos);
 }
@@ -146,8 +155,9 @@ TEST_F(Messages, BondsOfOtherLengthsThanTheirLinks) {
     });
     auto const force = make_openmm_force(spec, beads, *serial);
     std::string const text = fmt::format("{}", fmt::join(force->description(), "\n"));
-    EXPECT_NE(text.find("2 harmonic bonds along rigid links left out (lengths 0.38 to 0.4 nm); their links differ from them by up to 0.02 nm"),
-              std::string::npos)
+    EXPECT_NE(
+        text.find("2 harmonic bonds along rigid links left out (lengths 0.38 to 0.4 nm); their links differ from them by up to 0.02 nm"),
+        std::string::npos)
         << text;
     auto const forces = evaluate(*force, {Vec3::zero(), {{9, 0, 0}}, {{9, 9, 0}}, {{1.5, 0, 0}}, {{5, 5, 5}}, {{6, 5, 5}}});
     EXPECT_NEAR(forces[0][0], 50, 1e-12);
@@ -161,9 +171,10 @@ TEST_F(Messages, BondsOfOtherLengthsThanTheirLinks) {
 TEST_F(Messages, CountsAndMasses) {
     std::string const where = " (scene.yaml, forces.openmm.system): ";
     OpenMmSpec const longer = with_system([](auto& s) { s.addParticle(1); });
-    EXPECT_EQ(of(longer), "the System has 7 particles and the scene 6 beads" + where + "let every particle of " + longer.system + " be a bead of the scene");
-    EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(4, 60); }),
-              "particle 4 (from 0) has mass 60 in the System and 59.05 in the scene" + where + "masses come from the System: let the scene give the same");
+    EXPECT_EQ(of(longer), "the System has 7 particles and the scene 6 beads" + where + "let every particle of " + longer.system +
+                              " be a bead of the scene");
+    EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(4, 60); }), "particle 4 (from 0) has mass 60 in the System and 59.05 in the scene" +
+                                                                        where + "masses come from the System: let the scene give the same");
     make_openmm_force(with_system([](auto& s) { s.setParticleMass(4, 59.05 * (1 + 1e-9)); }), beads, *serial);
 }
 
@@ -174,8 +185,9 @@ TEST_F(Messages, Topology) {
     EXPECT_EQ(of(spec), "the topology has 5 atoms and the System 6 particles (scene.yaml, forces.openmm.topology): let " + spec.topology +
                             " hold one atom a particle, in the System's order");
     spec.topology = scratch_file("other.pdb", pdb_of(proteins({"KDE", "GGG"}), anywhere));
-    EXPECT_EQ(of(spec), "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml, forces.openmm.topology): give the chains in the "
-                        "topology's order, or say which particles are whose with forces.openmm.map");
+    EXPECT_EQ(of(spec),
+              "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml, forces.openmm.topology): give the chains in the "
+              "topology's order, or say which particles are whose with forces.openmm.map");
     spec.topology = scratch_file("one.pdb", pdb_of(proteins({"KDEKGG"}), anywhere));
     EXPECT_TRUE(of(spec).starts_with("chain 1 has 4 beads in the scene and 6 atoms in the topology"));
     spec.topology = scratch_file("right.pdb", pdb_of(beads, anywhere));
@@ -190,9 +202,11 @@ TEST_F(Messages, Map) {
     spec.map = {{"A", {0, 3}}, {"B", {3, 4}}};
     EXPECT_EQ(of(spec), "particle 3 (from 0) belongs to two chains" + where + "let the ranges be disjoint");
     spec.map = {{"A", {0, 3}}, {"B", {5, 6}}};
-    EXPECT_EQ(of(spec), "chain B has 2 beads, and its particles are 5 to 6 of 0 to 5" + where + "name its first and last particle, counted from 0");
+    EXPECT_EQ(of(spec),
+              "chain B has 2 beads, and its particles are 5 to 6 of 0 to 5" + where + "name its first and last particle, counted from 0");
     spec.map = {{"A", {0, 2}}, {"B", {4, 5}}};
-    EXPECT_EQ(of(spec), "chain A has 4 beads, and its particles are 0 to 2 of 0 to 5" + where + "name its first and last particle, counted from 0");
+    EXPECT_EQ(of(spec),
+              "chain A has 4 beads, and its particles are 0 to 2 of 0 to 5" + where + "name its first and last particle, counted from 0");
     spec.map = {{"A", {0, 3}}, {"C", {0, 1}}, {"B", {4, 5}}};
     EXPECT_EQ(of(spec), "the scene has no chain of beads named C" + where + "take one of A, B");
     spec.map = {{"B", {4, 5}}, {"A", {0, 3}}};
@@ -209,7 +223,8 @@ TEST_F(Messages, Box) {
         s.addForce(pairs);
     };
     std::string const expected =
-        "the System's forces are periodic and its box is not the scene's (scene.yaml, box.periodic): give the System's, [5, 6, 7]; it must be rectangular";
+        "the System's forces are periodic and its box is not the scene's (scene.yaml, box.periodic): give the System's, [5, 6, 7]; it must "
+        "be rectangular";
     EXPECT_EQ(of_system(periodic), expected);
     beads.box = Vec3{{5, 6, 7.5}};
     EXPECT_EQ(of_system(periodic), expected);
@@ -218,7 +233,8 @@ TEST_F(Messages, Box) {
     EXPECT_EQ(of_system([&](auto& s) { periodic(s), s.setDefaultPeriodicBoxVectors({5, 0, 0}, {1, 6, 0}, {0, 0, 7}); }), expected);
 
     auto const open = make_openmm_force(with_system([](auto& s) { s.addForce(new OpenMM::HarmonicBondForce); }), beads, *serial);
-    EXPECT_NE(fmt::format("{}", fmt::join(open->description(), "\n")).find("no force of the System knows the scene's box"), std::string::npos);
+    EXPECT_NE(fmt::format("{}", fmt::join(open->description(), "\n")).find("no force of the System knows the scene's box"),
+              std::string::npos);
 }
 
 TEST_F(Messages, TooManyForces) {
@@ -271,7 +287,8 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
         return complaint([&] { make_openmm_force(spec, beads, Alone()); });
     };
     std::string const rest =
-        " cannot be split over 2 ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, or run "
+        " cannot be split over 2 ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the "
+        "whole System, or run "
         "on one rank";
     EXPECT_EQ(refused(new OpenMM::CustomCVForce("1")), "CustomCVForce" + rest);
     EXPECT_EQ(refused(new OpenMM::CustomGBForce), "CustomGBForce" + rest);
@@ -279,7 +296,8 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
     EXPECT_EQ(refused(new OpenMM::GayBerneForce), "GayBerneForce" + rest);
     EXPECT_EQ(refused(new OpenMM::CustomCentroidBondForce(2, "distance(g1,g2)")), "CustomCentroidBondForce" + rest);
     EXPECT_EQ(refused(new OpenMM::CustomManyParticleForce(3, "1")), "CustomManyParticleForce" + rest);
-    for (auto const& [method, name] : {std::pair{OpenMM::NonbondedForce::Ewald, "Ewald"}, {OpenMM::NonbondedForce::PME, "PME"},
+    for (auto const& [method, name] : {std::pair{OpenMM::NonbondedForce::Ewald, "Ewald"},
+                                       {OpenMM::NonbondedForce::PME, "PME"},
                                        {OpenMM::NonbondedForce::LJPME, "LJPME"}}) {
         beads.box = Vec3{{4, 4, 4}};
         auto* charges = new OpenMM::NonbondedForce;
@@ -289,7 +307,7 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
 }
 
 TEST_F(Messages, RefusedByOpenMm) {
-    std::string const text = of_system([](auto& s) { s.addForce(new OpenMM::CustomNonbondedForce("1/r")); });   // without its particles
+    std::string const text = of_system([](auto& s) { s.addForce(new OpenMM::CustomNonbondedForce("1/r")); });  // without its particles
     EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
     EXPECT_TRUE(text.ends_with(" (scene.yaml, forces.openmm): mend the System, or take another platform")) << text;
 }

@@ -28,12 +28,14 @@ class Ranks : public ::testing::Test {
             for (int i = 0; i < evaluations; ++i) {
                 auto const expected = evaluate(*whole, positions);
                 auto const own = evaluate(*force, beads, communicator.rank(), positions);
-                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected)) << "evaluation " << i << " on " << communicator.size() << " ranks";
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), same * largest(expected))
+                    << "evaluation " << i << " on " << communicator.size() << " ranks";
                 if (i % 2 == 0) expect_same_energies(*force, *whole);
                 shake(positions, stride, 100 + i);
             }
             bool const anew = force->rebuilds() > 1 && force->rebuilds() < evaluations;
-            EXPECT_EQ(communicator.max(anew ? 1 : 0) == 1, rebuilt && communicator.size() > 1) << force->rebuilds() << " on " << communicator.size() << " ranks";
+            EXPECT_EQ(communicator.max(anew ? 1 : 0) == 1, rebuilt && communicator.size() > 1)
+                << force->rebuilds() << " on " << communicator.size() << " ranks";
             double const least = -communicator.max(-static_cast<double>(force->largest_context()));
             if (rebuilt && communicator.size() > 1) {
                 EXPECT_LT(least, static_cast<double>(beads.size()));
@@ -144,9 +146,11 @@ TEST_F(Ranks, Replicated) {
     on_ranks([&](Communicator const& communicator) {
         if (communicator.size() == 1) return;
         std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
-        EXPECT_EQ(text, "NonbondedForce (PME) cannot be split over " + std::to_string(communicator.size()) +
-                            " ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
-                            "or run on one rank");
+        EXPECT_EQ(
+            text,
+            "NonbondedForce (PME) cannot be split over " + std::to_string(communicator.size()) +
+                " ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
+                "or run on one rank");
     });
 }
 
@@ -173,13 +177,12 @@ TEST_F(Ranks, ChainsInAnotherOrderThanTheirParticles) {
 TEST_F(Ranks, OneRanksTroubleIsEverybodysMessage) {
     BeadSystem const beads = proteins({"KDEKDE"});
     auto const system = bare_system(beads);
-    auto* pairs = new OpenMM::CustomBondForce("r^");   // no expression
+    auto* pairs = new OpenMM::CustomBondForce("r^");  // no expression
     pairs->addBond(0, 2);
     system->addForce(pairs);
     OpenMmSpec const spec = of_system(*system, "wrong.xml");
     on_ranks([&](Communicator const& communicator) {
-        std::string const text =
-            complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
+        std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
         EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
         EXPECT_NE(text.find(" (scene.yaml, forces.openmm): "), std::string::npos) << text;
     });

@@ -64,7 +64,8 @@ class Reference : public ::testing::TestWithParam<std::string> {
     }
 };
 
-// The Reference platform computes in double precision as the reference did: what is left is the order of sums, some ulps of the largest terms.
+// The Reference platform computes in double precision as the reference did: what is left is the order of sums, some ulps of the largest
+// terms.
 double constexpr in_double = 1e-10;
 double constexpr in_single = 1e-3;
 
@@ -159,7 +160,7 @@ TEST_F(PairSum, InABox) {
     auto positions = wound(beads, 6);
     compare(on_reference(), positions);
     for (std::size_t k = 0; k < positions.size(); ++k) positions[k][k % 3] += (*beads.box)[k % 3] * static_cast<double>(k % 5);
-    compare(on_reference(), positions);   // unwrapped as it comes
+    compare(on_reference(), positions);  // unwrapped as it comes
 }
 
 TEST_F(PairSum, SwitchedOffBeforeTheCutoffs) {

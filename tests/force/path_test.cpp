@@ -12,7 +12,7 @@ PathChoice tried(double inline_seconds, double host_seconds) {
     for (int i = 0; i < 2 * PathChoice::trials; ++i) {
         choice.settle(*serial);
         EXPECT_EQ(choice.runs_on_worker(), i >= PathChoice::trials);
-        bool const first = i % PathChoice::trials == 0;   // builds something: must not count
+        bool const first = i % PathChoice::trials == 0;  // builds something: must not count
         choice.note(first ? 1.0 : choice.runs_on_worker() ? host_seconds : inline_seconds);
     }
     choice.settle(*serial);
@@ -32,7 +32,7 @@ TEST(Path, TheFasterOneIsTaken) {
 TEST(Path, WhatTheSceneSaysIsTaken) {
     EXPECT_TRUE(PathChoice("host", true, "s").runs_on_worker());
     EXPECT_FALSE(PathChoice("inline", true, "s").runs_on_worker());
-    EXPECT_TRUE(PathChoice("auto", false, "s").runs_on_worker());   // a GPU: the caller's core is free meanwhile
+    EXPECT_TRUE(PathChoice("auto", false, "s").runs_on_worker());  // a GPU: the caller's core is free meanwhile
 }
 
 TEST(Path, Messages) {

@@ -7,16 +7,18 @@ namespace {
 
 std::string atom(int serial, std::string const& residue, char chain, double x) {
     char line[100];
-    std::snprintf(line, sizeof line, "ATOM  %5d  CA  %3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           C\n", serial, residue.c_str(), chain, serial, x, -1.5,
-                  20.25);
+    std::snprintf(line, sizeof line, "ATOM  %5d  CA  %3s %c%4d    %8.3f%8.3f%8.3f  1.00  0.00           C\n", serial, residue.c_str(),
+                  chain, serial, x, -1.5, 20.25);
     return line;
 }
 
-std::vector<PdbChain> read(std::string const& text) { return read_pdb_topology(scratch_file("topology.pdb", text), "scene.yaml, topology"); }
+std::vector<PdbChain> read(std::string const& text) {
+    return read_pdb_topology(scratch_file("topology.pdb", text), "scene.yaml, topology");
+}
 
 TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
-    auto const chains = read("REMARK x\n" + atom(1, "MET", 'A', 1) + atom(2, "ALA", 'A', 2) + "TER\n" + atom(3, "GLY", 'A', 3) + atom(4, "LYS", 'B', 4) +
-                             atom(5, "TRP", ' ', 5) + "END\n");
+    auto const chains = read("REMARK x\n" + atom(1, "MET", 'A', 1) + atom(2, "ALA", 'A', 2) + "TER\n" + atom(3, "GLY", 'A', 3) +
+                             atom(4, "LYS", 'B', 4) + atom(5, "TRP", ' ', 5) + "END\n");
     ASSERT_EQ(chains.size(), 4u);
     EXPECT_EQ(chains[0].name, "A");
     EXPECT_EQ(chains[0].residue, (std::vector<std::string>{"MET", "ALA"}));
@@ -29,7 +31,8 @@ TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
 }
 
 TEST(PdbTopology, TheFirstModelAloneAndLinesOfOtherSystems) {
-    auto const chains = read("MODEL 1\r\n" + atom(1, "GLY", 'A', 1) + "TER\r\n" + atom(2, "GLY", 'A', 2) + "ENDMDL\n" + atom(3, "GLY", 'A', 3));
+    auto const chains =
+        read("MODEL 1\r\n" + atom(1, "GLY", 'A', 1) + "TER\r\n" + atom(2, "GLY", 'A', 2) + "ENDMDL\n" + atom(3, "GLY", 'A', 3));
     ASSERT_EQ(chains.size(), 2u);
     EXPECT_EQ(chains[1].size(), 1u);
 }

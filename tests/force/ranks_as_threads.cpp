@@ -31,7 +31,7 @@ class ThreadCommunicator final : public Communicator {
     int ranks_on_host() const override { return size(); }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const&) const override {
-        std::vector<std::byte> const copy(own.begin(), own.end());   // `own` may lie in `all`
+        std::vector<std::byte> const copy(own.begin(), own.end());  // `own` may lie in `all`
         meeting_.blocks[rank_] = copy;
         barrier();
         auto to = all.begin();

@@ -15,7 +15,7 @@ TEST(Worker, RunsTasksInTurnOnAThreadOfItsOwn) {
     Worker worker;
     std::thread::id first, second;
     int sum = 0;
-    worker.wait();   // nothing to wait for
+    worker.wait();  // nothing to wait for
     worker.post([&] { first = std::this_thread::get_id(), sum += 1; });
     worker.wait();
     worker.post([&] { second = std::this_thread::get_id(), sum *= 10; });
@@ -75,7 +75,7 @@ TEST_P(Trouble, ComesOutOfFinish) {
     EXPECT_EQ(difference(evaluate(*force, positions), good), 0);
 
     bad = positions;
-    bad[2] = bad[0];   // on top of each other
+    bad[2] = bad[0];  // on top of each other
     for (std::int64_t k = 0; k < beads.size(); ++k) given.set(k, bad[k]);
     force->begin(std::as_const(given).view());
     EXPECT_THROW(force->finish(forces.view()), ComputationError);
@@ -104,7 +104,7 @@ TEST_P(Trouble, NoneWhenNobodyTakesTheForces) {
     Field<3> positions(beads.size());
     auto const x = wound(beads, 1);
     for (std::int64_t k = 0; k < beads.size(); ++k) positions.set(k, x[k]);
-    force->begin(std::as_const(positions).view());   // and the destructor waits
+    force->begin(std::as_const(positions).view());  // and the destructor waits
 }
 
 TEST_P(Trouble, TheIntervalIsThatOfTheEvaluation) {

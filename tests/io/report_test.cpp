@@ -85,9 +85,11 @@ TEST(LineChart, FewOddOrNoPointsAreFine) {
 void write_folder(TemporaryFolder const& folder) {
     write_text_file(folder / "summary.json",
                     R"({"title": "a <b> & \"c\"", "steps": 1000, "valid": true, "rate": {"steps_per_second": 1234.5678, "ns_per_day": 0.1},
-                        "phases": [{"name": "forces", "seconds": 1.5}, {"name": "matrices", "seconds": 0.25}], "none": null})");
-    ObservablesWriter table(folder / "observables.csv", {"total_energy [kJ/mol]", "temperature [K]", "ratio"}, {});
-    for (int k = 0; k < 50; ++k) table.write(k, 0.01 * k, {std::cos(k), 300.0 + k, 1});
+                        "phases": [{"name": "forces", "seconds": 1.5}, {"name": "matrices", "seconds": 0.25}], "none": null,
+                        "files": {"a": "b"}, "single": [{"depth": 12}], "wide": [{"a": 1, "b": 2, "c": 3, "d": 4, "e": 5}, {"a": 6}],
+                        "story": "a sentence that is longer than the forty characters of a cell"})");
+    ObservablesWriter table(folder / "observables.csv", {"total_energy [kJ/mol]", "temperature [K]", "still [nm]", "ratio [1]"}, {});
+    for (int k = 0; k < 50; ++k) table.write(k, 0.01 * k, {std::cos(k), 300.0 + k, 1, 0.01 * k});
     table.close();
     write_text_file(folder / "timeline.json",
                     R"({"ranks": [{"rank": 0, "steps": [
@@ -107,11 +109,16 @@ TEST(RunReport, IsOneSelfContainedPage) {
     EXPECT_EQ(page.find("<script"), std::string::npos);
     EXPECT_NE(page.find("<h1>a &lt;b&gt; &amp; &quot;c&quot;</h1>"), std::string::npos);
     EXPECT_EQ(count(page, "<polyline"), 3U) << "one curve an observable";
+    EXPECT_NE(page.find("The same all the time: Still: 1 nm.<"), std::string::npos);
     EXPECT_NE(page.find("<h3>Total energy</h3>"), std::string::npos);
     EXPECT_NE(page.find(">time / ps<"), std::string::npos);
     EXPECT_NE(page.find("<tr><th>Steps per second</th><td>1234.57</td></tr>"), std::string::npos);
     EXPECT_NE(page.find("<h3>Rate</h3>"), std::string::npos);
     EXPECT_NE(page.find("<tr><td>matrices</td><td>0.25</td></tr>"), std::string::npos);
+    EXPECT_EQ(page.find("<th>None</th>"), std::string::npos) << "nothing to tell";
+    EXPECT_NE(page.find("<h3>Single</h3>\n<table>\n<tr><th>Depth</th><td>12</td></tr>"), std::string::npos);
+    EXPECT_GT(page.find("<h3>Wide</h3>"), page.find("<h3>Single</h3>"));
+    EXPECT_NE(page.find("<span>Story</span> a sentence"), std::string::npos);
     EXPECT_NE(page.find("href=\"observables.csv\""), std::string::npos);
     EXPECT_EQ(page.find("href=\"trajectory.h5md\""), std::string::npos) << "a file that is not there";
 }
