@@ -41,7 +41,7 @@ void RunFolder::open(Topology const& topology, Frame const& first, std::vector<s
         std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_) : std::nullopt;
         if (!appends_) topology_files_ = write_topology(folder_, topology, first);
         trajectory_ = make_trajectory(path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
-        observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after);
+        observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");
     });
 }
 

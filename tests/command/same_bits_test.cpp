@@ -30,9 +30,10 @@ bool same_bits(std::vector<double> const& a, std::vector<double> const& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
 }
 
-bool has_threads() { return cpu_backends().size() > 2; }
+/// Threads are there, and are not more than usual machines' cores: waiting for each other then takes long.
+bool threads_fit() { return cpu_backends().size() > 2 && testing::world().size() == 1; }
 
-void expect_same_bits(Scene const& scene, std::string const& what) {
+void expect_same_bits(Scene const& scene, std::string const& what, bool with_threads) {
     Communicator const& world = testing::world();
     auto const alone = serial_communicator();
     for (Handles const handles : {Handles::projected, Handles::full})
@@ -46,7 +47,7 @@ void expect_same_bits(Scene const& scene, std::string const& what) {
                 EXPECT_TRUE(same_bits(found.joint_force, expected.joint_force)) << name;
             };
             expect(backend, 1);
-            if (backend != Backend::segments || !has_threads() || world.size() > 2) continue;
+            if (backend != Backend::segments || !with_threads) continue;
             expect(Backend::openmp, 1);
             expect(Backend::openmp, 2);
         }
@@ -55,13 +56,13 @@ void expect_same_bits(Scene const& scene, std::string const& what) {
 TEST(SameBits, OneChain) {
     for (char const* const joint : {"link", "spherical", "revolute"})
         for (int const bodies : {1, 2, 3, 255, 256, 257, 10000})
-            expect_same_bits(scene_of(random_chain(joint, bodies, bodies % 2 == 1)), std::string(joint) + " " + std::to_string(bodies));
+            expect_same_bits(scene_of(random_chain(joint, bodies, bodies % 2 == 1)), std::string(joint) + " " + std::to_string(bodies), threads_fit());
 }
 
 TEST(SameBits, SeveralChainsOfDifferentKinds) {
     expect_same_bits(scene_of(random_chain("link", 70, true) + random_chain("revolute", 9, false) + random_chain("link", 300, false) +
                               random_chain("spherical", 130, true) + random_chain("revolute", 1, true)),
-                     "several chains");
+                     "several chains", threads_fit() || (cpu_backends().size() > 2 && testing::world().size() == 2));
 }
 
 // The comparison itself: another state has other bits.
