@@ -26,7 +26,7 @@ Spread time_oracle(Scene const& scene, int repeat) {
     for (int i = 0; i <= repeat; ++i) {
         double const start = seconds_now();
         oracle::aba<double>(scene.chains.front(), {scene.forces.gravity, {}});
-        if (i > 0) seconds.push_back(seconds_now() - start);   // the first one warms up
+        if (i > 0) seconds.push_back(seconds_now() - start);  // the first one warms up
     }
     return spread_of(seconds);
 }
@@ -63,8 +63,11 @@ Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
             {"handles", name_of(scene.solver.handles)},
             {"threads", m.threads},
             {"repeat", m.timing.evaluation.count},
-            {"ns_per_body", {{"matrix_sweep", nanoseconds(m.timing.matrix_sweep)}, {"bias_sweep", nanoseconds(m.timing.bias_sweep)},
-                             {"evaluation", nanoseconds(m.timing.evaluation)}, {"aba_oracle", nanoseconds(oracle)}}},
+            {"ns_per_body",
+             {{"matrix_sweep", nanoseconds(m.timing.matrix_sweep)},
+              {"bias_sweep", nanoseconds(m.timing.bias_sweep)},
+              {"evaluation", nanoseconds(m.timing.evaluation)},
+              {"aba_oracle", nanoseconds(oracle)}}},
             {"sweeps_an_evaluation", {{"matrix", m.timing.matrix_sweeps}, {"bias", m.timing.bias_sweeps}}},
             {"residual", m.residual},
             {"residual_bound", m.bound},
@@ -73,7 +76,9 @@ Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
 
 Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = request.backends.empty() ? cpu_backends() : request.backends;
-    Table table({"joint", "bodies", "backend", "threads", "matrix sweep", "bias sweep", "evaluation", "ABA oracle", "residual", "bound", ""}, {0, 2, 10});
+    Table table(
+        {"joint", "bodies", "backend", "threads", "matrix sweep", "bias sweep", "evaluation", "ABA oracle", "residual", "bound", ""},
+        {0, 2, 10});
     Outcome outcome;
     outcome.json = {{"bench", "solve"},
                     {"build", version_json()},
@@ -88,20 +93,26 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                 Measured const m = measure(scene, joint, backend, communicator, request.repeat);
                 outcome.valid = outcome.valid && m.valid();
                 auto const ns = [&](Spread const& s) { return fmt::format("{:.1f}", m.a_body(s)); };
-                table.add({joint, std::to_string(bodies), m.backend, std::to_string(m.threads), ns(m.timing.matrix_sweep), ns(m.timing.bias_sweep),
-                           ns(m.timing.evaluation), ns(oracle), fmt::format("{:.1e}", m.residual), fmt::format("{:.1e}", m.bound), m.valid() ? "VALID" : "INVALID"});
+                table.add({joint, std::to_string(bodies), m.backend, std::to_string(m.threads), ns(m.timing.matrix_sweep),
+                           ns(m.timing.bias_sweep), ns(m.timing.evaluation), ns(oracle), fmt::format("{:.1e}", m.residual),
+                           fmt::format("{:.1e}", m.bound), m.valid() ? "VALID" : "INVALID"});
                 outcome.json["results"].push_back(json_of(m, scene, oracle));
             }
         }
     outcome.json["valid"] = outcome.valid;
-    outcome.text = fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too (links: two bias sweeps). {}, {} threads on {}; {}, {}\n",
-                               request.repeat, counted(communicator.size(), "rank", "ranks"), processor_threads(), processor_name(), compiler_name(), instruction_set());
+    outcome.text = fmt::format(
+        "ns a body, median of {}; a whole evaluation holds kinematics and loads too (links: two bias sweeps). {}, {} threads on {}; {}, "
+        "{}\n",
+        request.repeat, counted(communicator.size(), "rank", "ranks"), processor_threads(), processor_name(), compiler_name(),
+        instruction_set());
     outcome.text += table.text();
     return outcome;
 }
 
 }  // namespace
 
-Outcome run_bench(Communicator const& communicator, BenchRequest const& request) { return request.name == "list" ? list() : solve(communicator, request); }
+Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
+    return request.name == "list" ? list() : solve(communicator, request);
+}
 
 }  // namespace catena::command

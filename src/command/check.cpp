@@ -17,15 +17,20 @@ std::vector<std::string> openmm_lines(Scene const& scene, Communicator const& co
 Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
     ForcesOnJoints const found = forces_on_joints(scene);
     Vec3 const& g = scene.forces.gravity;
-    return {{"gravity", {g[0], g[1], g[2]}}, {"springs", found.springs}, {"dampers", found.dampers}, {"torques", found.torques}, {"wrenches", found.wrenches},
-            {"openmm", openmm}};
+    return {{"gravity", {g[0], g[1], g[2]}}, {"springs", found.springs},   {"dampers", found.dampers},
+            {"torques", found.torques},      {"wrenches", found.wrenches}, {"openmm", openmm}};
 }
 
 Json dynamics_json(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     if (!d.given) return nullptr;
-    return {{"integrator", name_of(d.integrator)}, {"step", d.step},         {"steps", d.steps}, {"temperature", d.temperature},
-            {"friction", d.friction},              {"seed", d.seed},         {"constraint_tolerance", d.constraint_tolerance}};
+    return {{"integrator", name_of(d.integrator)},
+            {"step", d.step},
+            {"steps", d.steps},
+            {"temperature", d.temperature},
+            {"friction", d.friction},
+            {"seed", d.seed},
+            {"constraint_tolerance", d.constraint_tolerance}};
 }
 
 Json handles_json(Scene const& scene) {
@@ -58,8 +63,8 @@ Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory 
     text.entry("integrator", dynamics_text(scene));
     text.heading("memory");
     text.entry(ranks == 1 ? "estimate" : "estimate, each rank",
-               fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene), bytes_text(memory.state),
-                           bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
+               fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene),
+                           bytes_text(memory.state), bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
     text.heading("The scene is valid.");
     return text;
 }
@@ -67,7 +72,7 @@ Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory 
 }  // namespace
 
 Outcome check_scene(Scene const& scene, Communicator const& communicator) {
-    choose_backend(scene, communicator);   // throws for those of later versions
+    choose_backend(scene, communicator);  // throws for those of later versions
     std::vector<std::string> const openmm = openmm_lines(scene, communicator);
     Memory const memory = memory_of(scene, communicator.size());
     Outcome outcome;

@@ -37,16 +37,24 @@ struct Words {
 
 void add_common(CLI::App& command, Words& words) {
     CommonOptions& c = words.common;
-    command.add_option("--set", c.set, "override a key of the scene, as in --set chains[0].count=10 (may be repeated)")->type_name("KEY.PATH=VALUE")->allow_extra_args(false);
-    command.add_option("--handles", c.handles, "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3)")->type_name("KIND");
+    command.add_option("--set", c.set, "override a key of the scene, as in --set chains[0].count=10 (may be repeated)")
+        ->type_name("KEY.PATH=VALUE")
+        ->allow_extra_args(false);
+    command.add_option("--handles", c.handles, "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3)")
+        ->type_name("KIND");
     command.add_option("--threads", c.threads, "threads a rank for backend openmp (0: the host's cores over its ranks)")->type_name("N");
     command.add_option("--gpu-levels", c.gpu_levels, "levels of the tree on the GPU: auto (others: not in this version)")->type_name("K");
-    command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")->type_name("FILE");
+    command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")
+        ->type_name("FILE");
     command.add_flag("--quiet", c.quiet, "print nothing but errors");
-    command.add_option("--log-level", c.log_level, "log lines on standard error: trace | debug | info | warn (default) | error | off")->type_name("LEVEL");
+    command.add_option("--log-level", c.log_level, "log lines on standard error: trace | debug | info | warn (default) | error | off")
+        ->type_name("LEVEL");
 }
 void add_backend(CLI::App& command, Words& words) {
-    command.add_option("--backend", words.common.backend, "auto (default) | serial | segments | openmp | cuda | cuda-levels (the last two: not in this version)")->type_name("NAME");
+    command
+        .add_option("--backend", words.common.backend,
+                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (the last two: not in this version)")
+        ->type_name("NAME");
 }
 void add_scene(CLI::App& command, Words& words) { command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name(""); }
 void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
@@ -56,24 +64,29 @@ void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
 void add_commands(CLI::App& app, Words& words) {
     CLI::App* command = app.add_subcommand("check", "validate a scene and print what it is");
     add_scene(*command, words);
-    command->footer("Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
+    command->footer(
+        "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
 
     command = app.add_subcommand("plan", "print what will run and what is left out, and why");
     add_scene(*command, words);
-    command->footer("Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments");
+    command->footer(
+        "Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments");
 
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
     add_repeat(*command, words, "11");
-    command->add_option("--accelerations", words.accelerations, "write accelerations and joint forces of any number of bodies (HDF5)")->type_name("FILE");
+    command->add_option("--accelerations", words.accelerations, "write accelerations and joint forces of any number of bodies (HDF5)")
+        ->type_name("FILE");
     command->footer(
         "Examples:\n  catena solve inputs/arm.yaml --json arm.json\n"
         "  catena solve inputs/random-revolute.yaml --set chains[0].generator.random.bodies=100000 --backend openmp --accelerations a.h5");
 
     command = app.add_subcommand("run", "simulate and write a folder of results");
     add_scene(*command, words);
-    command->add_option("--steps", words.steps, "last step, counted from the scene's start, in the place of dynamics.steps")->type_name("N");
-    command->add_option("--output", words.output, "folder (default: the scene's name with -run; with --restart the checkpoint's)")->type_name("DIR");
+    command->add_option("--steps", words.steps, "last step, counted from the scene's start, in the place of dynamics.steps")
+        ->type_name("N");
+    command->add_option("--output", words.output, "folder (default: the scene's name with -run; with --restart the checkpoint's)")
+        ->type_name("DIR");
     command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     command->footer(
@@ -92,7 +105,8 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--joints", words.joints, "link, spherical, revolute (default: all)")->type_name("J,...");
     add_repeat(*command, words, "21");
     command->add_option("--backend", words.backends, "serial, segments, openmp (default: all in this build)")->type_name("B,...");
-    command->footer("Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json");
+    command->footer(
+        "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json");
 
     for (CLI::App* each : app.get_subcommands({})) {
         if (each->get_name() != "bench") add_backend(*each, words);
@@ -185,16 +199,19 @@ BenchRequest bench_request(Words const& words) {
     BenchRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
     if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list, or catena bench solve");
-    if (std::find(later_benches.begin(), later_benches.end(), words.name) != later_benches.end()) throw not_in_this_version("catena bench " + words.name);
+    if (std::find(later_benches.begin(), later_benches.end(), words.name) != later_benches.end())
+        throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
     if (!words.sizes.empty()) {
         request.sizes.clear();
-        for (std::string const& size : comma_list("--sizes", words.sizes)) request.sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
+        for (std::string const& size : comma_list("--sizes", words.sizes))
+            request.sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
     }
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
     for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
     if (!words.backends.empty())
-        for (std::string const& backend : comma_list("--backend", words.backends)) request.backends.push_back(backend_named("--backend", backend));
+        for (std::string const& backend : comma_list("--backend", words.backends))
+            request.backends.push_back(backend_named("--backend", backend));
     request.repeat = repeat_of(words, request.repeat);
     return request;
 }
@@ -225,9 +242,11 @@ Request parse_command_line(int argc, char const* const* argv) {
     for (int i = 0; i < argc; ++i) words.common.command_line += (i == 0 ? "" : " ") + std::string(argv[i]);
     bool version_asked = false;
     app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
-    app.footer("catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation failed or is INVALID; 2 the input is wrong.");
+    app.footer(
+        "catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation "
+        "failed or is INVALID; 2 the input is wrong.");
     add_commands(app, words);
-    app.require_subcommand(0, 1);   // so that "catena bench solve" is no second command
+    app.require_subcommand(0, 1);  // so that "catena bench solve" is no second command
     app.allow_extras();
     for (CLI::App* each : app.get_subcommands({})) each->allow_extras();
     try {

@@ -30,7 +30,8 @@ Table chain_table(Scene const& scene) {
         std::size_t end = i + 1;
         while (end < scene.chains.size() && alike(first, scene.chains[end])) ++end;
         std::string const name = end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
-        table.add({name, std::to_string(end - i), std::to_string(first.size()), first.is_beads() ? "beads" : "bodies", base_name(first), "free", kind_of(first)});
+        table.add({name, std::to_string(end - i), std::to_string(first.size()), first.is_beads() ? "beads" : "bodies", base_name(first),
+                   "free", kind_of(first)});
         i = end;
     }
     return table;
@@ -77,7 +78,8 @@ std::string dynamics_text(Scene const& scene) {
     if (!d.given) return "none (solve and report need none)";
     std::string text = fmt::format("{}, {} steps of {} {} ({:.6g} {})", name_of(d.integrator), d.steps, d.step, time_unit(scene),
                                    static_cast<double>(d.steps) * d.step, time_unit(scene));
-    if (d.integrator == Integrator::g_baoab) text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
+    if (d.integrator == Integrator::g_baoab)
+        text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
     return text;
 }
 
@@ -96,8 +98,9 @@ Directions directions_of(Scene const& scene) {
 std::string block_text(bool beads, int directions, Handles handles) {
     std::string const size = fmt::format("{0}x{0}", directions);
     if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
-    return size + (beads ? ", projected on the links" : directions == 5 ? ", projected on the restricted directions of revolute joints"
-                                                                        : ", projected on the restricted directions of spherical joints");
+    return size + (beads             ? ", projected on the links"
+                   : directions == 5 ? ", projected on the restricted directions of revolute joints"
+                                     : ", projected on the restricted directions of spherical joints");
 }
 
 }  // namespace catena::command

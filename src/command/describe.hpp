@@ -19,7 +19,7 @@ Json chains_json(Scene const&);
 
 /// What acts on the chains.
 struct ForcesOnJoints {
-    std::int64_t springs = 0, dampers = 0, torques = 0, wrenches = 0;   // joints (bodies) that have one
+    std::int64_t springs = 0, dampers = 0, torques = 0, wrenches = 0;  // joints (bodies) that have one
 };
 ForcesOnJoints forces_on_joints(Scene const&);
 /// "springs on 2 joints, ..."; "none"

@@ -19,7 +19,7 @@ class SharedError : public ComputationError {
 /// Runs `action` on rank 0. What it throws is thrown on every rank: InputError as such, anything else as SharedError. Collective.
 template <class Action>
 void on_first_rank(Communicator const& communicator, Action const& action) {
-    std::int64_t message[2] = {0, 0};   // status, length of the text
+    std::int64_t message[2] = {0, 0};  // status, length of the text
     std::string text;
     if (communicator.rank() == 0) {
         try {

@@ -17,10 +17,14 @@ SolverSizes sizes() {
 }
 SolverSizes sizes_for(int directions) {
     switch (directions) {
-        case 1: return sizes<1>();
-        case 3: return sizes<3>();
-        case 5: return sizes<5>();
-        default: return sizes<6>();
+        case 1:
+            return sizes<1>();
+        case 3:
+            return sizes<3>();
+        case 5:
+            return sizes<5>();
+        default:
+            return sizes<6>();
     }
 }
 
@@ -46,8 +50,10 @@ Memory memory_of(Scene const& scene, int ranks) {
         int const k = chain.is_beads() ? directions.beads : directions.bodies;
         auto const n = static_cast<double>(chain.size());
         SolverSizes const size = sizes_for(k);
-        dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()), dca::run_length_for(static_cast<std::int64_t>(chain.size()), k, pairwise));
-        double const numbers = chain.is_beads() ? bead_numbers : body_numbers + (scene.dynamics.integrator == Integrator::rk4 ? runge_kutta_numbers : 0);
+        dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()),
+                                  dca::run_length_for(static_cast<std::int64_t>(chain.size()), k, pairwise));
+        double const numbers =
+            chain.is_beads() ? bead_numbers : body_numbers + (scene.dynamics.integrator == Integrator::rk4 ? runge_kutta_numbers : 0);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

@@ -25,8 +25,8 @@ std::string backend_reason(Scene const& scene, Communicator const& communicator)
 
 /// What one evaluation of a group costs in messages.
 struct Rounds {
-    bool shared = false;          // a chain is cut by a rank's end
-    int matrices = 0, biases = 0, kinematics = 0;   // collectives a sweep or pass
+    bool shared = false;                           // a chain is cut by a rank's end
+    int matrices = 0, biases = 0, kinematics = 0;  // collectives a sweep or pass
 };
 Rounds rounds_of(ChainGroup const& group) {
     Rounds r;
@@ -38,7 +38,8 @@ Rounds rounds_of(ChainGroup const& group) {
 
 std::vector<std::int64_t> shares_of(ChainGroup const& group) {
     std::vector<std::int64_t> shares;
-    for (std::size_t r = 0; r + 1 < group.first_of_rank().size(); ++r) shares.push_back(group.first_of_rank()[r + 1] - group.first_of_rank()[r]);
+    for (std::size_t r = 0; r + 1 < group.first_of_rank().size(); ++r)
+        shares.push_back(group.first_of_rank()[r + 1] - group.first_of_rank()[r]);
     return shares;
 }
 
@@ -49,21 +50,23 @@ std::string shares_text(std::vector<std::int64_t> const& shares) {
 }
 
 dca::ChainTree const& longest_tree(ChainGroup const& group) {
-    return *std::max_element(group.partition.trees.begin(), group.partition.trees.end(), [](auto const& a, auto const& b) { return a.bodies < b.bodies; });
+    return *std::max_element(group.partition.trees.begin(), group.partition.trees.end(),
+                             [](auto const& a, auto const& b) { return a.bodies < b.bodies; });
 }
 
 void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport const& report) {
     dca::ChainTree const& tree = longest_tree(group);
     Rounds const rounds = rounds_of(group);
     std::vector<std::int64_t> const shares = shares_of(group);
-    text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"), group.beads ? "beads on links" : "bodies", group.kind()));
+    text.heading(fmt::format("{} of {} ({})", counted(group.partition.chains(), "chain", "chains"),
+                             group.beads ? "beads on links" : "bodies", group.kind()));
     text.entry("blocks", block_text(group.beads, group.directions, group.handles));
-    text.entry("tree", fmt::format("{} bodies: runs of {}, {} of them, then {} levels of merges; depth {}; table version {}", tree.bodies, tree.run_length,
-                                   tree.runs, tree.levels(), tree.depth(), dca::tree_table_version));
+    text.entry("tree", fmt::format("{} bodies: runs of {}, {} of them, then {} levels of merges; depth {}; table version {}", tree.bodies,
+                                   tree.run_length, tree.runs, tree.levels(), tree.depth(), dca::tree_table_version));
     text.entry("units", fmt::format("{} (whole ones go to ranks; the tree above them is every rank's own)", tree.units));
     text.entry("bodies of the ranks", shares_text(shares));
-    text.entry("collectives", rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}", rounds.matrices, rounds.biases,
-                                                          rounds.kinematics > 0 ? "1" : "none")
+    text.entry("collectives", rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}", rounds.matrices,
+                                                          rounds.biases, rounds.kinematics > 0 ? "1" : "none")
                                             : "none: no chain is shared by ranks");
     text.entry("solver's memory", bytes_text(static_cast<double>(report.memory_bytes)) + " on this rank");
     list.push_back({{"kind", group.kind()},
@@ -92,13 +95,15 @@ std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system)
             continue;
         }
         if (group->axes == Axes::joint) {
-            lines.emplace_back("positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
+            lines.emplace_back(
+                "positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
             lines.emplace_back("rotations at merges: both sides of a joint share its axes");
         } else {
             lines.emplace_back("kinematics along the chain: orientations and positions are the coordinates");
             lines.emplace_back("rotations at merges: all handles are in ground axes");
         }
-        if (!full && group->directions < 6) lines.push_back(fmt::format("{} of 6 directions a handle: the joints' forces along them are known", 6 - group->directions));
+        if (!full && group->directions < 6)
+            lines.push_back(fmt::format("{} of 6 directions a handle: the joints' forces along them are known", 6 - group->directions));
         if (found.springs == 0) lines.emplace_back("joint springs: there are none");
         if (found.dampers == 0) lines.emplace_back("joint dampers: there are none");
         if (found.wrenches == 0) lines.emplace_back("external wrenches: there are none");
@@ -116,13 +121,19 @@ struct StepPlan {
     std::string text;
 };
 StepPlan step_of(DynamicsSpec const& d) {
-    std::string const chosen = fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
+    std::string const chosen =
+        fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
     switch (d.integrator) {
-        case Integrator::rk4: return {4, 4, 0, "4 evaluations: 4 matrix sweeps, 4 bias sweeps; joint coordinates need no projection"};
+        case Integrator::rk4:
+            return {4, 4, 0, "4 evaluations: 4 matrix sweeps, 4 bias sweeps; joint coordinates need no projection"};
         case Integrator::rattle:
-            return {1, 1, 1, "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half kicks in one), s of the drift; " + chosen};
+            return {
+                1, 1, 1,
+                "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half kicks in one), s of the drift; " + chosen};
         case Integrator::g_baoab:
-            return {2, 2, 2, "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the thermostat, s for either half drift; " + chosen};
+            return {
+                2, 2, 2,
+                "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the thermostat, s for either half drift; " + chosen};
     }
     return {};
 }
@@ -160,15 +171,9 @@ Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
     Outcome outcome;
     Json& json = outcome.json;
     std::string const reason = backend_reason(scene, communicator);
-    json = {{"scene", scene.file},
-            {"backend", name_of(system.backend())},
-            {"backend_reason", reason},
-            {"ranks", communicator.size()},
-            {"threads", system.executor().threads()},
-            {"handles", name_of(scene.solver.handles)},
-            {"gpu_levels", nullptr},
-            {"tree_table", dca::tree_table_version},
-            {"groups", Json::array()}};
+    json = {{"scene", scene.file},          {"backend", name_of(system.backend())},   {"backend_reason", reason},
+            {"ranks", communicator.size()}, {"threads", system.executor().threads()}, {"handles", name_of(scene.solver.handles)},
+            {"gpu_levels", nullptr},        {"tree_table", dca::tree_table_version},  {"groups", Json::array()}};
     Text text;
     text.heading(title_of(scene));
     text.entry("backend", fmt::format("{} ({})", name_of(system.backend()), reason));

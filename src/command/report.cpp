@@ -29,14 +29,16 @@ Json json_of(SolverStudy const& study) {
                           {"forward_error", p.forward_error},
                           {"seconds", spread_json(p.seconds)},
                           {"valid", p.valid}});
-    return {{"title", study.title},
-            {"scene", study.file},
-            {"kind", study.kind},
-            {"bodies", study.bodies},
-            {"condition", study.condition ? Json(*study.condition) : Json()},
-            {"reference", study.reference},
-            {"oracle", {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}, {"seconds", spread_json(study.oracle_seconds)}}},
-            {"points", points}};
+    return {
+        {"title", study.title},
+        {"scene", study.file},
+        {"kind", study.kind},
+        {"bodies", study.bodies},
+        {"condition", study.condition ? Json(*study.condition) : Json()},
+        {"reference", study.reference},
+        {"oracle",
+         {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}, {"seconds", spread_json(study.oracle_seconds)}}},
+        {"points", points}};
 }
 
 std::string text_of(SolverStudy const& study) {
@@ -46,10 +48,11 @@ std::string text_of(SolverStudy const& study) {
     Table table({"backend", "handles", "threads", "residual", "bound", "forward error", "time", "ns a body", ""}, {0, 1, 8});
     auto const a_body = [&](double seconds) { return fmt::format("{:.1f}", 1e9 * seconds / static_cast<double>(study.bodies)); };
     for (SolverPoint const& p : study.points)
-        table.add({p.backend, p.handles, std::to_string(p.threads), fmt::format("{:.1e}", p.residual), fmt::format("{:.1e}", p.residual_bound),
-                   fmt::format("{:.1e}", p.forward_error), duration_text(p.seconds.median), a_body(p.seconds.median), p.valid ? "VALID" : "INVALID"});
-    table.add({"articulated bodies", "(oracle)", "1", "", "", fmt::format("{:.1e}", study.oracle_error), duration_text(study.oracle_seconds.median),
-               a_body(study.oracle_seconds.median), ""});
+        table.add({p.backend, p.handles, std::to_string(p.threads), fmt::format("{:.1e}", p.residual),
+                   fmt::format("{:.1e}", p.residual_bound), fmt::format("{:.1e}", p.forward_error), duration_text(p.seconds.median),
+                   a_body(p.seconds.median), p.valid ? "VALID" : "INVALID"});
+    table.add({"articulated bodies", "(oracle)", "1", "", "", fmt::format("{:.1e}", study.oracle_error),
+               duration_text(study.oracle_seconds.median), a_body(study.oracle_seconds.median), ""});
     text.add(table);
     return text.str();
 }
@@ -63,8 +66,10 @@ Outcome report_scenes(std::vector<Scene> const& scenes, Communicator const& comm
         if (error || !std::filesystem::is_directory(request.output))
             throw InputError("the folder cannot be made: " + error.message(), "--output " + request.output, "name another");
     });
-    std::vector<Backend> const backends = request.backend.empty() || request.backend == "auto" ? cpu_backends() : std::vector{scenes.front().solver.backend};
-    std::vector<Handles> const handles = request.handles.empty() ? std::vector{Handles::projected, Handles::full} : std::vector{scenes.front().solver.handles};
+    std::vector<Backend> const backends =
+        request.backend.empty() || request.backend == "auto" ? cpu_backends() : std::vector{scenes.front().solver.backend};
+    std::vector<Handles> const handles =
+        request.handles.empty() ? std::vector{Handles::projected, Handles::full} : std::vector{scenes.front().solver.handles};
     Outcome outcome;
     outcome.json = {{"report", "solver error against run time"},
                     {"build", version_json()},
@@ -76,7 +81,8 @@ Outcome report_scenes(std::vector<Scene> const& scenes, Communicator const& comm
         SolverStudy const study = study_solver_errors(scene, communicator, backends, handles, request.repeat);
         spdlog::info("{} done", scene.title);
         if (communicator.rank() != 0) continue;
-        outcome.valid = outcome.valid && std::all_of(study.points.begin(), study.points.end(), [](SolverPoint const& p) { return p.valid; });
+        outcome.valid =
+            outcome.valid && std::all_of(study.points.begin(), study.points.end(), [](SolverPoint const& p) { return p.valid; });
         outcome.text += text_of(study);
         outcome.json["studies"].push_back(json_of(study));
     }
@@ -85,7 +91,8 @@ Outcome report_scenes(std::vector<Scene> const& scenes, Communicator const& comm
         outcome.json["valid"] = outcome.valid;
         write_text_file(json, json_text(outcome.json));
         Picture const picture = draw_report(json, png);
-        outcome.text += fmt::format("{} threads on {}, {}\n", processor_threads(), processor_name(), counted(communicator.size(), "rank", "ranks"));
+        outcome.text +=
+            fmt::format("{} threads on {}, {}\n", processor_threads(), processor_name(), counted(communicator.size(), "rank", "ranks"));
         outcome.text += "wrote " + json + "\n" + (picture.file.empty() ? picture.remark : "drew " + picture.file) + "\n";
         outcome.text += outcome.valid ? "VALID\n" : "INVALID\n";
     });

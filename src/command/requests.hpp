@@ -12,9 +12,9 @@
 namespace catena::command {
 
 struct CommonOptions {
-    std::vector<std::string> set;   // key.path=value
-    std::string backend, gpu_levels, handles, threads;   // empty: the scene's
-    std::string json;               // file; empty: none; "-": standard output, in the place of the text
+    std::vector<std::string> set;                       // key.path=value
+    std::string backend, gpu_levels, handles, threads;  // empty: the scene's
+    std::string json;                                   // file; empty: none; "-": standard output, in the place of the text
     std::string log_level = "warn";
     bool quiet = false;
     std::string command_line;
@@ -29,16 +29,16 @@ struct CheckRequest : SceneOptions {};
 struct PlanRequest : SceneOptions {};
 struct SolveRequest : SceneOptions {
     int repeat = 11;
-    std::string accelerations;   // HDF5 file
+    std::string accelerations;  // HDF5 file
 };
 struct RunRequest : SceneOptions {
     std::optional<std::int64_t> steps;
-    std::string output;          // folder; empty: see output_folder()
+    std::string output;  // folder; empty: see output_folder()
     std::string restart;
     bool overwrite = false;
 };
 struct ReportRequest : CommonOptions {
-    std::vector<std::string> scenes;   // empty: generated ones
+    std::vector<std::string> scenes;  // empty: generated ones
     std::string output = "catena-report";
     int repeat = 11;
 };
@@ -46,7 +46,7 @@ struct BenchRequest : CommonOptions {
     std::string name;
     std::vector<std::int64_t> sizes{1000, 10000, 100000};
     std::vector<std::string> joints{"link", "spherical", "revolute"};
-    std::vector<Backend> backends;     // empty: all of this build
+    std::vector<Backend> backends;  // empty: all of this build
     int repeat = 21;
 };
 /// --help and --version.

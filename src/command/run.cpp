@@ -5,6 +5,7 @@
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "integrate/simulation.hpp"
+#include "report/start_velocities.hpp"
 
 namespace catena::command {
 namespace {
@@ -25,18 +26,24 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel"), &constraints = s.at("constraints");
     text.heading(title_of(scene));
-    text.entry("steps", fmt::format("{} to {}, {:.6g} {} in all", run.at("first_step").get<std::int64_t>(), run.at("last_step").get<std::int64_t>(),
-                                    number(run, "time"), time_unit(scene)));
+    text.entry("steps", fmt::format("{} to {}, {:.6g} {} in all", run.at("first_step").get<std::int64_t>(),
+                                    run.at("last_step").get<std::int64_t>(), number(run, "time"), time_unit(scene)));
     std::string rate = fmt::format("{}: {:.4g} steps/s", duration_text(number(speed, "seconds")), number(speed, "steps_per_second"));
     if (speed.contains("ns_per_day")) rate += fmt::format(", {:.4g} ns/day", number(speed, "ns_per_day"));
     text.entry("time", rate);
     text.entry("solver", fmt::format("{}, {}, {} each", s.at("solver").at("backend").get<std::string>(),
-                                     counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"), counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
+                                     counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"),
+                                     counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
     if (auto const forces = s.find("forces"); forces != s.end()) {
-        text.entry("OpenMM", fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
+        text.entry("OpenMM",
+                   fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
         text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces", 100 * number(*forces, "matrix_sweep_hidden")));
     }
-    text.entry("constraint error", fmt::format("{:.2e}, tolerance {:.0e}", number(constraints, "largest_error"), number(constraints, "tolerance")));
+    if (run.at("integrator") == name_of(Integrator::rk4))
+        text.entry("constraint error", "none: joint coordinates cannot drift apart");
+    else
+        text.entry("constraint error",
+                   fmt::format("{:.2e}, tolerance {:.0e}", number(constraints, "largest_error"), number(constraints, "tolerance")));
     bool first = true;
     if (auto const last = s.find("last_observables"); last != s.end())
         for (auto const& [name, value] : last->items()) {
@@ -63,7 +70,9 @@ Outcome run_scene(Scene const& scene, Communicator const& communicator, RunReque
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;
-    nlohmann::json const summary = run_simulation(scene, communicator, options);
+    // In absolute coordinates the run draws its velocities itself.
+    bool const draws = scene.dynamics.integrator != Integrator::rk4;
+    nlohmann::json const summary = run_simulation(draws ? scene : with_start_velocities(scene, communicator), communicator, options);
     Outcome outcome;
     outcome.valid = summary.at("valid").get<bool>();
     if (communicator.rank() != 0) return outcome;

@@ -33,7 +33,8 @@ int fail(Communicator const& communicator, std::string const& line) {
     return 1;
 }
 
-int run_request(Communicator const& communicator, int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
+int run_request(Communicator const& communicator, int argc, char** argv,
+                std::function<int(Communicator const&, Request const&)> const& execute) {
     bool const speaks = communicator.rank() == 0;
     try {
         return execute(communicator, parse_command_line(argc, argv));
@@ -64,7 +65,8 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
         std::filesystem::path const file = options.json;
         if (file.empty() || file == "-") return;
         std::error_code ignored;
-        if (std::filesystem::is_directory(file, ignored)) throw InputError("a folder is no file for JSON", "--json " + file.string(), "name a file");
+        if (std::filesystem::is_directory(file, ignored))
+            throw InputError("a folder is no file for JSON", "--json " + file.string(), "name a file");
         if (file.has_parent_path() && !std::filesystem::is_directory(file.parent_path(), ignored))
             throw InputError("no such folder: " + file.parent_path().string(), "--json " + file.string(), "make it, or name another file");
     });
@@ -73,8 +75,8 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
 Scene Session::load(std::string const& file) const {
     auto const start = std::chrono::steady_clock::now();
     Scene scene = load_scene(file, overrides_of(options_));
-    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
-                  scene.chains.size(), scene.bodies());
+    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file,
+                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), scene.chains.size(), scene.bodies());
     return scene;
 }
 
@@ -96,7 +98,7 @@ int guarded(int argc, char** argv, std::function<int(Communicator const&, Reques
     try {
         std::unique_ptr<Communicator> const world = world_communicator(&argc, &argv);
         return run_request(*world, argc, argv, execute);
-    } catch (InputError const& error) {   // no ranks, no communicator: the launcher's numbers say who speaks
+    } catch (InputError const& error) {  // no ranks, no communicator: the launcher's numbers say who speaks
         if (launch_environment().rank == 0) say_error(error.what());
         return 2;
     } catch (std::exception const& error) {

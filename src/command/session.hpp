@@ -26,8 +26,8 @@ class Session {
     CommonOptions const& options_;
 };
 
-/// Initialises the ranks, reads the command line, runs `execute` and turns whatever is thrown into one line on standard error and an exit status, the
-/// same on every rank: 2 for InputError, else 1.
+/// Initialises the ranks, reads the command line, runs `execute` and turns whatever is thrown into one line on standard error and an exit
+/// status, the same on every rank: 2 for InputError, else 1.
 int guarded(int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute);
 
 }  // namespace catena::command

@@ -12,6 +12,7 @@
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
 #include "report/solution.hpp"
+#include "report/start_velocities.hpp"
 #include "report/timing.hpp"
 
 namespace catena::command {
@@ -32,12 +33,14 @@ Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
         for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
             Vec3 own = Vec3::zero();
             auto const first = s.acceleration_offset[body];
-            for (std::int64_t i = 0; i < std::min<std::int64_t>(3, s.acceleration_offset[body + 1] - first); ++i) own[static_cast<int>(i)] = s.acceleration[first + i];
+            for (std::int64_t i = 0; i < std::min<std::int64_t>(3, s.acceleration_offset[body + 1] - first); ++i)
+                own[static_cast<int>(i)] = s.acceleration[first + i];
             accelerations.push_back(own);
             if (s.acceleration_offset[body + 1] - first == 6)
                 for (int i = 0; i < 3; ++i) base[i] = s.acceleration[first + 3 + i];
         }
-        if (!s.bead_force.empty() && chain.is_beads()) loads.bead_forces.assign(s.bead_force.begin() + bead, s.bead_force.begin() + bead + chain.size());
+        if (!s.bead_force.empty() && chain.is_beads())
+            loads.bead_forces.assign(s.bead_force.begin() + bead, s.bead_force.begin() + bead + chain.size());
         bead += chain.beads.size();
         worst = larger(worst, oracle::rnea_residual(chain, loads, accelerations, base));
     }
@@ -58,9 +61,14 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
             double const* const a = s.acceleration.data() + s.acceleration_offset[body];
             double const* const f = s.joint_force.data() + s.force_offset[body];
             switch (s.acceleration_offset[body + 1] - s.acceleration_offset[body]) {
-                case 1: accelerations.push_back(a[0]); break;
-                case 3: accelerations.push_back({a[0], a[1], a[2]}); break;
-                default: accelerations.push_back({{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
+                case 1:
+                    accelerations.push_back(a[0]);
+                    break;
+                case 3:
+                    accelerations.push_back({a[0], a[1], a[2]});
+                    break;
+                default:
+                    accelerations.push_back({{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
             }
             if (chain.is_beads())
                 forces.push_back(f[0]);
@@ -93,33 +101,44 @@ Json summary_json(ChainSystem const& system, Timing const& timing) {
             {"handles", name_of(scene.solver.handles)},
             {"tree_table", dca::tree_table_version},
             {"seconds",
-             {{"median", timing.evaluation.median}, {"min", timing.evaluation.min}, {"max", timing.evaluation.max}, {"repeat", timing.evaluation.count}}},
+             {{"median", timing.evaluation.median},
+              {"min", timing.evaluation.min},
+              {"max", timing.evaluation.max},
+              {"repeat", timing.evaluation.count}}},
             {"phases", phases},
             {"sweeps", {{"matrix", timing.matrix_sweeps}, {"bias", timing.bias_sweeps}}}};
 }
 
 bool starts_thermal(Scene const& scene) {
-    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
+    return std::any_of(scene.chains.begin(), scene.chains.end(),
+                       [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
 }
 
 std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing) {
     Scene const& scene = system.scene();
     Text text;
     text.heading(title_of(scene));
-    text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(), counted(std::ssize(scene.chains), "chain", "chains"), degrees_of_freedom(scene)));
+    text.entry("bodies", fmt::format("{} in {}, {} degrees of freedom", scene.bodies(),
+                                     counted(std::ssize(scene.chains), "chain", "chains"), degrees_of_freedom(scene)));
     text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()), name_of(scene.solver.handles),
-                                     counted(system.communicator().size(), "rank", "ranks"), counted(system.executor().threads(), "thread", "threads")));
-    for (std::size_t i = 0; system.openmm() && i < system.openmm()->description().size(); ++i) text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
-    if (starts_thermal(scene)) text.entry("velocities", "zero (thermal ones are drawn by catena run)");
-    text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median), timing.evaluation.count,
-                                   duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
+                                     counted(system.communicator().size(), "rank", "ranks"),
+                                     counted(system.executor().threads(), "thread", "threads")));
+    for (std::size_t i = 0; system.openmm() && i < system.openmm()->description().size(); ++i)
+        text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
+    if (json["velocities"] == "thermal")
+        text.entry("velocities", fmt::format("thermal, {} K, seed {}, as a run's first", scene.dynamics.temperature, scene.dynamics.seed));
+    text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median),
+                                   timing.evaluation.count, duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                                    1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
     for (auto const& [name, seconds] : timing.phases) text.entry("  " + name, duration_text(seconds));
     for (auto const& [term, energy] : json["potential_energy"].items())
         text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
     Json const& inverse = json["rnea_residual"];
-    text.entry("inverse dynamics", inverse.is_null() ? "residual not computed (several ranks or many bodies)" : fmt::format("residual {:.2e}, as information", inverse.get<double>()));
-    text.entry("residual", fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(), json["residual_bound"].get<double>()));
+    text.entry("inverse dynamics", inverse.is_null() ? "residual not computed (several ranks or many bodies)"
+                                                     : fmt::format("residual {:.2e}, as information", inverse.get<double>()));
+    text.entry("residual",
+               fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
+                           json["residual_bound"].get<double>()));
     text.heading(json["valid"].get<bool>() ? "VALID" : "INVALID");
     return text.str();
 }
@@ -137,8 +156,9 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
 
 }  // namespace
 
-Outcome solve_scene(Scene const& scene, Communicator const& communicator, SolveRequest const& request) {
+Outcome solve_scene(Scene const& given, Communicator const& communicator, SolveRequest const& request) {
     prepare_file(communicator, request.accelerations);
+    Scene const scene = with_start_velocities(given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     Timing const timing = time_evaluations(system, request.repeat);
     Outcome outcome;
@@ -155,7 +175,7 @@ Outcome solve_scene(Scene const& scene, Communicator const& communicator, SolveR
         json["valid"] = outcome.valid;
         json["potential_energy"] = Json::object();
         for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
-        json["velocities"] = starts_thermal(scene) ? "zero in the place of thermal ones" : "as given";
+        json["velocities"] = starts_thermal(given) ? "thermal" : "given";
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
         if (request.accelerations.empty()) return;

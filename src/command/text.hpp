@@ -9,7 +9,8 @@ namespace catena::command {
 /// Columns as wide as their widest cell; the first is flush left, the others flush right unless `left` says otherwise.
 class Table {
   public:
-    explicit Table(std::vector<std::string> header, std::vector<std::size_t> left = {0}) : rows_{std::move(header)}, left_(std::move(left)) {}
+    explicit Table(std::vector<std::string> header, std::vector<std::size_t> left = {0})
+        : rows_{std::move(header)}, left_(std::move(left)) {}
     void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
     std::string text(std::string const& indent = "  ") const;
 

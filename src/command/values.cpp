@@ -21,8 +21,10 @@ std::int64_t whole_number(std::string const& option, std::string const& text, st
     bool const whole = fault == scene::NumberFault::none && std::floor(value) == value && std::abs(value) < 9.0e15;
     if (!whole) throw InputError(fmt::format("`{}` is not a whole number", text), option, fmt::format("give one from {} on", least));
     auto const number = static_cast<std::int64_t>(value);
-    if (number < least) throw InputError(fmt::format("{} is below {}", number, least), option, fmt::format("give a whole number from {} on", least));
-    if (number > most) throw InputError(fmt::format("{} is above {}", number, most), option, fmt::format("give a whole number up to {}", most));
+    if (number < least)
+        throw InputError(fmt::format("{} is below {}", number, least), option, fmt::format("give a whole number from {} on", least));
+    if (number > most)
+        throw InputError(fmt::format("{} is above {}", number, most), option, fmt::format("give a whole number up to {}", most));
     return number;
 }
 
@@ -44,7 +46,8 @@ std::vector<std::string> comma_list(std::string const& option, std::string const
 }
 
 Backend backend_named(std::string const& option, std::string const& text) {
-    constexpr Backend all[] = {Backend::automatic, Backend::serial, Backend::segments, Backend::openmp, Backend::cuda, Backend::cuda_levels};
+    constexpr Backend all[] = {Backend::automatic, Backend::serial, Backend::segments,
+                               Backend::openmp,    Backend::cuda,   Backend::cuda_levels};
     std::vector<std::string_view> names;
     for (Backend const backend : all) names.emplace_back(name_of(backend));
     known_value(option, text, names);

@@ -27,7 +27,8 @@ nlohmann::ordered_json version_json() {
 std::string version_text() {
     std::string text = fmt::format("catena {} ({}, {})\n", version(), compiler_name(), instruction_set());
     nlohmann::ordered_json const all = version_json();
-    for (auto const& [label, key] : {std::pair{"MPI", "mpi"}, {"OpenMP", "openmp"}, {"OpenMM", "openmm"}, {"HDF5", "hdf5"}, {"CUDA", "cuda"}})
+    for (auto const& [label, key] :
+         {std::pair{"MPI", "mpi"}, {"OpenMP", "openmp"}, {"OpenMM", "openmm"}, {"HDF5", "hdf5"}, {"CUDA", "cuda"}})
         text += fmt::format("  {:<8}{}\n", label, all.at(key).get<std::string>());
     return text;
 }

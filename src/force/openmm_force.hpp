@@ -1,4 +1,5 @@
-// Forces on beads from OpenMM. One Context, owned by a worker thread; begin() hands it positions, finish() takes forces.
+// Forces on beads from OpenMM. One Context a rank, driven by a worker thread or by the caller: begin() hands it positions, finish()
+// takes forces. Not for several threads of a process at once: OpenMM's set-up of expressions is not safe there.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +47,8 @@ class OpenMmForce {
     virtual ~OpenMmForce() = default;
     /// Starts the computation of the forces at `positions` (own beads, nm, W, unwrapped). Collective. Returns at once on path `host`.
     virtual void begin(ConstView<3> positions) = 0;
-    /// Waits for it and adds the forces (kJ/mol/nm) to `forces` (own beads). Throws ComputationError if OpenMM failed.
+    /// Waits for it and adds the forces (kJ/mol/nm) to `forces` (own beads). Throws ComputationError if OpenMM failed, perhaps on this rank
+    /// alone.
     virtual void finish(View<3> forces) = 0;
     /// Potential energy of all beads, term by term in a fixed order, at the positions given last; the same on every rank. Collective, after
     /// finish().

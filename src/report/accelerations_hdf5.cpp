@@ -21,7 +21,8 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
     put_text(root, "format", "catena accelerations");
     put_attribute(root, "version", std::int64_t{1});
     std::vector<std::int64_t> offsets;
-    for (std::size_t b = 0; b < s.acceleration_offset.size(); ++b) offsets.insert(offsets.end(), {s.acceleration_offset[b], s.force_offset[b]});
+    for (std::size_t b = 0; b < s.acceleration_offset.size(); ++b)
+        offsets.insert(offsets.end(), {s.acceleration_offset[b], s.force_offset[b]});
     std::array<hsize_t, 2> const shape{s.acceleration_offset.size(), 2};
     Dataset accelerations = put_array(root, "accelerations", s.acceleration);
     Dataset forces = put_array(root, "joint_forces", s.joint_force);

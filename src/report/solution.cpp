@@ -32,7 +32,6 @@ std::vector<double> openmm_forces(ChainSystem& system) {
             append(own, force);
         }
         gather_to_scene(system.communicator(), group, 3, own, forces);
-        system.openmm()->begin(dynamics->bead_positions());   // ChainSystem::accelerations() takes a finished computation's forces once more
     }
     return forces;
 }
@@ -89,7 +88,8 @@ double largest_difference(Scene const& scene, Solution const& found, std::vector
                 largest[kind] = std::max(largest[kind], std::abs(reference[i]));
             }
     double worst = 0;
-    for (int kind = 0; kind < classes; ++kind) worst = larger(worst, largest[kind] > 0 ? difference[kind] / largest[kind] : difference[kind]);
+    for (int kind = 0; kind < classes; ++kind)
+        worst = larger(worst, largest[kind] > 0 ? difference[kind] / largest[kind] : difference[kind]);
     return worst;
 }
 

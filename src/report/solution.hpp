@@ -11,16 +11,16 @@ namespace catena {
 
 /// On rank 0; empty on the others. Body b's numbers are entries [offset[b], offset[b + 1]).
 struct Solution {
-    /// Revolute: q''; spherical: derivative of the components of qd (B); free: {alpha (B), acceleration of the origin (W)}; link: the bead's
-    /// acceleration (W).
+    /// Revolute: q''; spherical: derivative of the components of qd (B); free: {alpha (B), acceleration of the origin (W)}; link: the
+    /// bead's acceleration (W).
     std::vector<double> acceleration;
     std::vector<std::int64_t> acceleration_offset;
-    /// Constraint wrench [torque, force] on body b at its inboard joint (W); link: its tension, positive when it pulls its ends together (0 where bead
-    /// 1 of a free chain has none).
+    /// Constraint wrench [torque, force] on body b at its inboard joint (W); link: its tension, positive when it pulls its ends together (0
+    /// where bead 1 of a free chain has none).
     std::vector<double> joint_force;
     std::vector<std::int64_t> force_offset;
-    std::vector<Vec3> bead_acceleration;   // of the beads alone, W
-    std::vector<Vec3> bead_force;          // OpenMM's on the beads, W; empty without OpenMM
+    std::vector<Vec3> bead_acceleration;  // of the beads alone, W
+    std::vector<Vec3> bead_force;         // OpenMM's on the beads, W; empty without OpenMM
 };
 
 /// Of the last evaluate(). Collective.
@@ -30,13 +30,14 @@ Solution solution_of(ChainSystem&);
 char const* kind_of(ChainSpec const&);
 
 /// Writes /accelerations, /joint_forces (both flat) and /offsets ([bodies + 1][2]: where a body's numbers begin in the one and the other).
-/// Throws ComputationError naming file and cause. The first of the two tells beforehand, by InputError, what is no regular file, and "built without
-/// HDF5" where it is absent.
+/// Throws ComputationError naming file and cause. The first of the two tells beforehand, by InputError, what is no regular file, and "built
+/// without HDF5" where it is absent.
 void require_accelerations_writer(std::string const& file);
 void write_accelerations(std::string const& file, Solution const&);
 
 /// Largest difference of the joint accelerations from the reference, relative to the largest of the reference: taken for joints' angular
-/// accelerations, linear accelerations of free bases and accelerations of beads one by one, the worst of them. Equal layouts are a precondition.
+/// accelerations, linear accelerations of free bases and accelerations of beads one by one, the worst of them. Equal layouts are a
+/// precondition.
 double largest_difference(Scene const&, Solution const& found, std::vector<double> const& reference);
 
 }  // namespace catena

@@ -6,6 +6,7 @@
 #include "dca/oracle/oracle.hpp"
 #include "error.hpp"
 #include "report/solution.hpp"
+#include "report/start_velocities.hpp"
 
 namespace catena {
 namespace {
@@ -20,11 +21,13 @@ std::vector<double> oracle_accelerations(Scene const& scene, std::vector<Vec3> c
     };
     for (ChainSpec const& chain : scene.chains) {
         oracle::Loads loads{scene.forces.gravity, {}};
-        if (chain.is_beads() && !bead_force.empty()) loads.bead_forces.assign(bead_force.begin() + bead, bead_force.begin() + bead + chain.size());
+        if (chain.is_beads() && !bead_force.empty())
+            loads.bead_forces.assign(bead_force.begin() + bead, bead_force.begin() + bead + chain.size());
         bead += chain.beads.size();
         oracle::OracleResult<Scalar> const r = oracle::aba<Scalar>(chain, loads);
         for (std::size_t k = 0; k < chain.size(); ++k) {
-            append(chain.is_beads() ? r.com_acceleration[k] : r.qdd[k], !chain.is_beads() && chain.bodies.joint[k] == JointType::revolute ? 1 : 3);
+            append(chain.is_beads() ? r.com_acceleration[k] : r.qdd[k],
+                   !chain.is_beads() && chain.bodies.joint[k] == JointType::revolute ? 1 : 3);
             if (!chain.is_beads() && chain.bodies.joint[k] == JointType::free) append(r.base_acceleration, 3);
         }
     }
@@ -43,7 +46,8 @@ struct Reference {
     void make(SolverStudy& study, Scene const& scene, Solution const& first, int repeat) {
         bool const quad = study.bodies <= largest_quad;
         study.reference = quad ? "articulated bodies, 113 bits" : "articulated bodies, 64 bits";
-        acceleration = quad ? oracle_accelerations<oracle::Quad>(scene, first.bead_force) : oracle_accelerations<long double>(scene, first.bead_force);
+        acceleration =
+            quad ? oracle_accelerations<oracle::Quad>(scene, first.bead_force) : oracle_accelerations<long double>(scene, first.bead_force);
         std::vector<double> seconds, in_double;
         for (int i = 0; i < repeat; ++i) {
             double const start = seconds_now();
@@ -81,14 +85,15 @@ std::vector<Backend> cpu_backends() {
     try {
         openmp_executor(1);
         backends.push_back(Backend::openmp);
-    } catch (InputError const&) {   // built without OpenMP
+    } catch (InputError const&) {  // built without OpenMP
     }
     return backends;
 }
 
-SolverStudy study_solver_errors(Scene const& scene, Communicator const& communicator, std::vector<Backend> const& backends, std::vector<Handles> const& handles,
-                                int repeat) {
+SolverStudy study_solver_errors(Scene const& given, Communicator const& communicator, std::vector<Backend> const& backends,
+                                std::vector<Handles> const& handles, int repeat) {
     bool const root = communicator.rank() == 0;
+    Scene const scene = with_start_velocities(given, communicator);
     SolverStudy study;
     study.title = scene.title;
     study.file = scene.file;

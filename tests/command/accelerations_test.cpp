@@ -42,7 +42,8 @@ TEST(Accelerations, HoldTheNumbersOfTheJson) {
     Json const json = e.json();
     hid_t const file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     ASSERT_GE(file, 0);
-    auto const accelerations = dataset<double>(file, "accelerations", H5T_NATIVE_DOUBLE), forces = dataset<double>(file, "joint_forces", H5T_NATIVE_DOUBLE);
+    auto const accelerations = dataset<double>(file, "accelerations", H5T_NATIVE_DOUBLE),
+               forces = dataset<double>(file, "joint_forces", H5T_NATIVE_DOUBLE);
     auto const offsets = dataset<std::int64_t>(file, "offsets", H5T_NATIVE_INT64);
     H5Fclose(file);
     std::vector<double> expected_accelerations, expected_forces;
@@ -62,7 +63,8 @@ TEST(Accelerations, HoldTheNumbersOfTheJson) {
 
 TEST(Accelerations, FilesThatCannotBeAreRefusedBeforeAnythingIsComputed) {
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}), 2, "no such folder");
-    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2, "not a regular file (--accelerations /dev/null)");
+    expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2,
+                   "not a regular file (--accelerations /dev/null)");
 }
 
 }  // namespace

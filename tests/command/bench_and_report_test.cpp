@@ -16,13 +16,15 @@ TEST(Bench, ListNamesTheBenchmarks) {
 }
 
 TEST(Bench, SolveGivesEachFigureWithItsResidual) {
-    Ended const e = catena({"bench", "solve", "--sizes", "20,1e2", "--joints", "link,revolute", "--backend", "serial,segments", "--repeat", "3", "--json", "-"});
+    Ended const e = catena({"bench", "solve", "--sizes", "20,1e2", "--joints", "link,revolute", "--backend", "serial,segments", "--repeat",
+                            "3", "--json", "-"});
     expect_good(e);
     Json const json = e.json();
     EXPECT_EQ(json.at("results").size(), 8U);
     EXPECT_TRUE(json.at("hardware").contains("processor"));
     for (Json const& row : json.at("results")) {
-        for (char const* const key : {"matrix_sweep", "bias_sweep", "evaluation", "aba_oracle"}) EXPECT_GT(row.at("ns_per_body").at(key).at("median").get<double>(), 0);
+        for (char const* const key : {"matrix_sweep", "bias_sweep", "evaluation", "aba_oracle"})
+            EXPECT_GT(row.at("ns_per_body").at(key).at("median").get<double>(), 0);
         EXPECT_LE(row.at("residual").get<double>(), row.at("residual_bound").get<double>());
         EXPECT_EQ(row.at("valid"), true);
         EXPECT_EQ(row.at("sweeps_an_evaluation").at("matrix"), 1);
@@ -38,7 +40,7 @@ TEST(Report, ErrorsAndTimesOfEveryBackendAndHandleKind) {
     Json const json = Json::parse(std::ifstream(folder / "report/report.json"));
     ASSERT_EQ(json.at("studies").size(), 2U);
     for (Json const& study : json.at("studies")) {
-        EXPECT_GE(study.at("points").size(), 4U);   // serial and segments, and openmp where it is
+        EXPECT_GE(study.at("points").size(), 4U);  // serial and segments, and openmp where it is
         EXPECT_EQ(study.at("points").size() % 2, 0U);
         for (Json const& point : study.at("points")) {
             EXPECT_LE(point.at("residual").get<double>(), point.at("residual_bound").get<double>());
@@ -46,17 +48,18 @@ TEST(Report, ErrorsAndTimesOfEveryBackendAndHandleKind) {
             EXPECT_GT(point.at("seconds").at("median").get<double>(), 0);
         }
     }
-    EXPECT_GT(json["studies"][0]["condition"].get<double>(), 1);     // 4 bodies
-    EXPECT_TRUE(json["studies"][1]["condition"].is_null());          // 1,000
-    bool const drawn = e.out.find("drew ") != std::string::npos;     // a Python with matplotlib may be absent; then a line says what to do
+    EXPECT_GT(json["studies"][0]["condition"].get<double>(), 1);  // 4 bodies
+    EXPECT_TRUE(json["studies"][1]["condition"].is_null());       // 1,000
+    bool const drawn = e.out.find("drew ") != std::string::npos;  // a Python with matplotlib may be absent; then a line says what to do
     EXPECT_EQ(std::filesystem::exists(folder / "report/report.png"), drawn);
     EXPECT_TRUE(drawn || e.out.find("no picture: ") != std::string::npos) << e.out;
 }
 
 TEST(Report, BackendAndHandlesCanBeChosen) {
     TemporaryFolder const folder;
-    auto const json = catena({"report", input("random-spherical.yaml"), "--set", "chains[0].generator.random.bodies=20", "--repeat", "1", "--backend", "serial",
-                              "--handles", "full", "--output", folder / "r", "--json", "-"}).json();
+    auto const json = catena({"report", input("random-spherical.yaml"), "--set", "chains[0].generator.random.bodies=20", "--repeat", "1",
+                              "--backend", "serial", "--handles", "full", "--output", folder / "r", "--json", "-"})
+                          .json();
     ASSERT_EQ(json.at("studies").at(0).at("points").size(), 1U);
     EXPECT_EQ(json["studies"][0]["points"][0]["backend"], "serial");
     EXPECT_EQ(json["studies"][0]["points"][0]["handles"], "full");

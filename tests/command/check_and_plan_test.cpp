@@ -9,7 +9,8 @@ namespace {
 TEST(Check, SaysWhatTheSceneIs) {
     Ended const e = catena({"check", input("arm.yaml")});
     expect_good(e);
-    for (std::string const part : {"degrees of freedom   6", "springs on 2 joints, dampers on 1 joint", "rk4, 2000 steps of 0.001 s", "The scene is valid."})
+    for (std::string const part :
+         {"degrees of freedom   6", "springs on 2 joints, dampers on 1 joint", "rk4, 2000 steps of 0.001 s", "The scene is valid."})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 
@@ -22,7 +23,8 @@ TEST(Check, JsonHoldsTheSame) {
     EXPECT_EQ(json.at("dynamics").at("integrator"), "rattle");
     EXPECT_GT(json.at("memory_bytes_per_rank").at("state").get<double>(), 100 * 100 * 8);
     EXPECT_EQ(json.at("valid"), true);
-    auto const links = catena({"check", input("random-link.yaml"), "--set", "chains[0].base=fixed", "--handles", "full", "--json", "-"}).json();
+    auto const links =
+        catena({"check", input("random-link.yaml"), "--set", "chains[0].base=fixed", "--handles", "full", "--json", "-"}).json();
     EXPECT_EQ(links.at("dof"), 2000);
     EXPECT_EQ(links.at("handles").at("beads"), 3);
 }
@@ -44,8 +46,8 @@ TEST(Check, TheLogGoesToStandardError) {
 TEST(Plan, SaysWhatRunsAndWhatIsLeftOut) {
     Ended const e = catena({"plan", input("random-revolute.yaml"), "--backend", "serial", "--handles", "full"});
     expect_good(e);
-    for (std::string const part : {"serial (asked for)", "6x6, every direction", "runs of 1, 1000 of them, then 10 levels", "left out\n  - ",
-                                   "no prediction of times in this version"})
+    for (std::string const part : {"serial (asked for)", "6x6, every direction", "runs of 1, 1000 of them, then 10 levels",
+                                   "left out\n  - ", "no prediction of times in this version"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 

@@ -21,11 +21,12 @@ std::string refusal(std::vector<char const*> words) {
 }
 
 TEST(CommandLine, OptionsBecomeOverridesOfTheScene) {
-    auto const r = std::get<SolveRequest>(
-        parsed({"solve", "--set", "a.b=1", "s.yaml", "--set", "chains[0].count=10", "--backend", "openmp", "--threads", "3", "--handles", "full", "--repeat", "1e2"}));
+    auto const r = std::get<SolveRequest>(parsed({"solve", "--set", "a.b=1", "s.yaml", "--set", "chains[0].count=10", "--backend", "openmp",
+                                                  "--threads", "3", "--handles", "full", "--repeat", "1e2"}));
     EXPECT_EQ(r.scene, "s.yaml");
     EXPECT_EQ(r.repeat, 100);
-    EXPECT_EQ(overrides_of(r), (std::vector<std::string>{"a.b=1", "chains[0].count=10", "solver.backend=openmp", "solver.handles=full", "solver.threads=3"}));
+    EXPECT_EQ(overrides_of(r), (std::vector<std::string>{"a.b=1", "chains[0].count=10", "solver.backend=openmp", "solver.handles=full",
+                                                         "solver.threads=3"}));
     EXPECT_EQ(r.command_line.substr(0, 20), "catena solve --set a");
 }
 
@@ -38,14 +39,16 @@ TEST(CommandLine, RunTakesItsOptions) {
 }
 
 TEST(CommandLine, BenchTakesLists) {
-    auto const r = std::get<BenchRequest>(parsed({"bench", "solve", "--sizes", "1e3,20", "--joints", "link,revolute", "--backend", "serial,segments"}));
+    auto const r = std::get<BenchRequest>(
+        parsed({"bench", "solve", "--sizes", "1e3,20", "--joints", "link,revolute", "--backend", "serial,segments"}));
     EXPECT_EQ(r.sizes, (std::vector<std::int64_t>{1000, 20}));
     EXPECT_EQ(r.joints, (std::vector<std::string>{"link", "revolute"}));
     EXPECT_EQ(r.backends, (std::vector<Backend>{Backend::serial, Backend::segments}));
 }
 
 TEST(CommandLine, ReportTakesSeveralScenesOrNone) {
-    EXPECT_EQ(std::get<ReportRequest>(parsed({"report", "a.yaml", "b.yaml", "--repeat", "3"})).scenes, (std::vector<std::string>{"a.yaml", "b.yaml"}));
+    EXPECT_EQ(std::get<ReportRequest>(parsed({"report", "a.yaml", "b.yaml", "--repeat", "3"})).scenes,
+              (std::vector<std::string>{"a.yaml", "b.yaml"}));
     EXPECT_TRUE(std::get<ReportRequest>(parsed({"report"})).scenes.empty());
 }
 
@@ -70,21 +73,21 @@ TEST(CommandLine, TheNearestKnownWordIsNamed) {
 }
 
 TEST(CommandLine, WhatCannotBeIsRefused) {
-    for (auto const& [words, part] : std::vector<std::pair<std::vector<char const*>, std::string>>{
-             {{}, "no command"},
-             {{"solve"}, "no scene"},
-             {{"solve", "a", "b"}, "one argument too many"},
-             {{"solve", "a", "--repeat", "0"}, "below 1 (--repeat)"},
-             {{"solve", "a", "--repeat", "1.5"}, "not a whole number (--repeat)"},
-             {{"solve", "a", "--threads", "-1"}, "(--threads)"},
-             {{"solve", "a", "--json"}, "--json"},
-             {{"solve", "a", "--quiet=perhaps"}, "quiet"},
-             {{"solve", "a", "--log-level", "loud"}, "--log-level"},
-             {{"run", "a", "--steps", "nan"}, "(--steps)"},
-             {{"run", "a", "--overwrite", "--restart", "c"}, "--overwrite"},
-             {{"bench", "solve", "--sizes", "10,,20"}, "(--sizes)"},
-             {{"bench", "solve", "--joints", "weld"}, "--joints"},
-             {{"--frob"}, "not an option"}}) {
+    for (auto const& [words, part] :
+         std::vector<std::pair<std::vector<char const*>, std::string>>{{{}, "no command"},
+                                                                       {{"solve"}, "no scene"},
+                                                                       {{"solve", "a", "b"}, "one argument too many"},
+                                                                       {{"solve", "a", "--repeat", "0"}, "below 1 (--repeat)"},
+                                                                       {{"solve", "a", "--repeat", "1.5"}, "not a whole number (--repeat)"},
+                                                                       {{"solve", "a", "--threads", "-1"}, "(--threads)"},
+                                                                       {{"solve", "a", "--json"}, "--json"},
+                                                                       {{"solve", "a", "--quiet=perhaps"}, "quiet"},
+                                                                       {{"solve", "a", "--log-level", "loud"}, "--log-level"},
+                                                                       {{"run", "a", "--steps", "nan"}, "(--steps)"},
+                                                                       {{"run", "a", "--overwrite", "--restart", "c"}, "--overwrite"},
+                                                                       {{"bench", "solve", "--sizes", "10,,20"}, "(--sizes)"},
+                                                                       {{"bench", "solve", "--joints", "weld"}, "--joints"},
+                                                                       {{"--frob"}, "not an option"}}) {
         EXPECT_NE(refusal(words).find(part), std::string::npos) << refusal(words);
         EXPECT_EQ(refusal(words).find('\n'), std::string::npos) << refusal(words);
     }

@@ -37,7 +37,8 @@ TEST(Errors, FilesThatCannotBe) {
 
 TEST(Errors, AFullDiskIsAFailedComputation) {
     expect_refused(catena({"check", input("arm.yaml"), "--quiet", "--json", "/dev/full"}), 1, "/dev/full");
-    expect_refused(run_program({"sh", "-c", program() + " check " + input("arm.yaml") + " > /dev/full"}), 1, "cannot write to standard output");
+    expect_refused(run_program({"sh", "-c", program() + " check " + input("arm.yaml") + " > /dev/full"}), 1,
+                   "cannot write to standard output");
 }
 
 TEST(Errors, AComputationThatFailsIsStatusOne) {

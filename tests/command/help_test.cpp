@@ -12,7 +12,8 @@ TEST(Help, EveryCommandExplainsItselfWithExamples) {
         expect_good(one);
         EXPECT_NE(one.out.find("Usage: catena " + command), std::string::npos) << one.out;
         EXPECT_NE(one.out.find("Examples:\n  "), std::string::npos) << one.out;
-        for (std::string const option : {"--backend", "--handles", "--threads", "--gpu-levels", "--set", "--json", "--quiet", "--log-level"})
+        for (std::string const option :
+             {"--backend", "--handles", "--threads", "--gpu-levels", "--set", "--json", "--quiet", "--log-level"})
             EXPECT_NE(one.out.find(option), std::string::npos) << command << " " << option;
     }
 }
@@ -21,7 +22,8 @@ TEST(Help, VersionSaysWhatIsInTheBuild) {
     Ended const e = catena({"--version"});
     expect_good(e);
     EXPECT_TRUE(e.out.starts_with("catena ")) << e.out;
-    for (std::string const part : {"MPI", "OpenMP", "OpenMM", "HDF5", "CUDA    none"}) EXPECT_NE(e.out.find("  " + part), std::string::npos) << e.out;
+    for (std::string const part : {"MPI", "OpenMP", "OpenMM", "HDF5", "CUDA    none"})
+        EXPECT_NE(e.out.find("  " + part), std::string::npos) << e.out;
 }
 
 }  // namespace

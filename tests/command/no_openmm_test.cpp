@@ -4,7 +4,8 @@ namespace catena::test {
 namespace {
 
 TEST(NoOpenMm, SaysSo) {
-    for (std::string const command : {"check", "plan", "solve"}) expect_refused(catena({command, input("alpha-synuclein.yaml")}), 2, "built without OpenMM");
+    for (std::string const command : {"check", "plan", "solve"})
+        expect_refused(catena({command, input("alpha-synuclein.yaml")}), 2, "built without OpenMM");
     EXPECT_NE(catena({"--version"}).out.find("OpenMM  none"), std::string::npos);
 }
 

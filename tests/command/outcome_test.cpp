@@ -15,7 +15,8 @@ namespace catena::command {
 namespace {
 
 TEST(JsonText, NumbersReadBackToTheSameDoubles) {
-    std::vector<double> const values{0.1, -1.0 / 3, 1e-310, 1.7976931348623157e308, 5e-324, -0.0, 123456789.123456789, std::nextafter(1.0, 2.0)};
+    std::vector<double> const values{
+        0.1, -1.0 / 3, 1e-310, 1.7976931348623157e308, 5e-324, -0.0, 123456789.123456789, std::nextafter(1.0, 2.0)};
     Json const json{{"values", values}};
     auto const back = Json::parse(json_text(json)).at("values").get<std::vector<double>>();
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -67,8 +68,10 @@ TEST(Text, DurationsAndBytesAsPeopleReadThem) {
 }
 
 TEST(Describe, EqualNeighboursAreOneRow) {
-    Scene const scene = parse_scene("chains:\n  - {name: a, count: 1000, generator: {freely_jointed: {beads: 5, length: 1}}}\n"
-                                    "  - {name: b, generator: {freely_jointed: {beads: 6, length: 1}}}\n", "test");
+    Scene const scene = parse_scene(
+        "chains:\n  - {name: a, count: 1000, generator: {freely_jointed: {beads: 5, length: 1}}}\n"
+        "  - {name: b, generator: {freely_jointed: {beads: 6, length: 1}}}\n",
+        "test");
     std::string const table = chain_table(scene).text("");
     EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
     EXPECT_NE(table.find("a-1 .. a-1000"), std::string::npos) << table;
@@ -78,7 +81,8 @@ TEST(Describe, EqualNeighboursAreOneRow) {
 /// The estimate against what a solver of this size reports.
 TEST(Describe, MemoryFollowsTheSolversOwnCount) {
     for (char const* const joint : {"link", "spherical", "revolute"}) {
-        Scene const scene = parse_scene(std::string("units: si\nchains: [{generator: {random: {bodies: 5000, joint: ") + joint + "}}}]", "test");
+        Scene const scene =
+            parse_scene(std::string("units: si\nchains: [{generator: {random: {bodies: 5000, joint: ") + joint + "}}}]", "test");
         auto const alone = serial_communicator();
         ChainSystem const system(scene, Axes::joint, *alone);
         auto const counted = static_cast<double>(system.solver_reports().front().memory_bytes);

@@ -50,7 +50,8 @@ Ended run_program(Words const& words, std::string const& folder, Words const& en
     ::posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), O_WRONLY | O_CREAT, 0600);
     ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), O_WRONLY | O_CREAT, 0600);
     pid_t child = -1;
-    int const failed = ::posix_spawnp(&child, all_words.front().c_str(), &actions, nullptr, pointers(all_words).data(), pointers(all_environment).data());
+    int const failed =
+        ::posix_spawnp(&child, all_words.front().c_str(), &actions, nullptr, pointers(all_words).data(), pointers(all_environment).data());
     ::posix_spawn_file_actions_destroy(&actions);
     int status = 0;
     if (failed != 0 || ::waitpid(child, &status, 0) != child) return {};
@@ -67,7 +68,8 @@ Ended catena_on(int ranks, Words const& words, std::string const& folder) {
     Words all = split(CATENA_MPIRUN);
     all.insert(all.end(), {"-n", std::to_string(ranks), program()});
     all.insert(all.end(), words.begin(), words.end());
-    return run_program(all, folder, {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_btl_vader_single_copy_mechanism=none"});
+    return run_program(all, folder,
+                       {"OMPI_ALLOW_RUN_AS_ROOT=1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1", "OMPI_MCA_btl_vader_single_copy_mechanism=none"});
 }
 
 std::string program() { return CATENA_PROGRAM; }

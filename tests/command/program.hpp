@@ -10,7 +10,7 @@
 namespace catena::test {
 
 struct Ended {
-    int status = -1;   // -1: did not start, or was killed
+    int status = -1;  // -1: did not start, or was killed
     std::string out, err;
     nlohmann::json json() const { return nlohmann::json::parse(out); }
 };

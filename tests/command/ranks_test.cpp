@@ -11,13 +11,14 @@ namespace {
 TEST(Ranks, EveryCommandPrintsOnce) {
     TemporaryFolder const folder;
     std::string const arm = input("arm.yaml");
-    for (auto const& [words, part] : std::vector<std::pair<Words, std::string>>{{{"--version"}, "catena "},
-                                                                                {{"solve", "--help"}, "Usage:"},
-                                                                                {{"check", arm}, "The scene is valid."},
-                                                                                {{"plan", arm}, "left out"},
-                                                                                {{"solve", arm, "--repeat", "1"}, "\nVALID"},
-                                                                                {{"bench", "solve", "--sizes", "9", "--joints", "link", "--backend", "segments", "--repeat", "1"}, " VALID"},
-                                                                                {{"report", arm, "--repeat", "1", "--backend", "segments"}, "\nVALID"}}) {
+    for (auto const& [words, part] : std::vector<std::pair<Words, std::string>>{
+             {{"--version"}, "catena "},
+             {{"solve", "--help"}, "Usage:"},
+             {{"check", arm}, "The scene is valid."},
+             {{"plan", arm}, "left out"},
+             {{"solve", arm, "--repeat", "1"}, "\nVALID"},
+             {{"bench", "solve", "--sizes", "9", "--joints", "link", "--backend", "segments", "--repeat", "1"}, " VALID"},
+             {{"report", arm, "--repeat", "1", "--backend", "segments"}, "\nVALID"}}) {
         Ended const e = catena_on(3, words, folder.path());
         EXPECT_EQ(e.status, 0) << words[0] << e.err;
         EXPECT_EQ(count(e.out, part), 1U) << words[0] << ":\n" << e.out;
@@ -38,7 +39,8 @@ TEST(Ranks, InputErrorsAreOneLineAndStatusTwo) {
 
 TEST(Ranks, AFailureThatEveryRankMeetsIsOneLineAndStatusOne) {
     TemporaryFolder const folder;
-    Ended const e = catena_on(3, {"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50", "--steps", "2", "--quiet"}, folder.path());
+    Ended const e =
+        catena_on(3, {"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50", "--steps", "2", "--quiet"}, folder.path());
     EXPECT_EQ(e.status, 1);
     EXPECT_EQ(count(e.err, "catena: "), 1U) << e.err;
 }
@@ -49,16 +51,18 @@ TEST(Ranks, AFullDiskOnRankZeroEndsAllInGoodOrder) {
 }
 
 TEST(Ranks, TheSameNumbersInTheFile) {
-    for (auto const& [scene, bodies] : {std::pair{"random-link.yaml", "10000"}, {"random-spherical.yaml", "256"}, {"random-revolute.yaml", "257"}}) {
+    for (auto const& [scene, bodies] :
+         {std::pair{"random-link.yaml", "10000"}, {"random-spherical.yaml", "256"}, {"random-revolute.yaml", "257"}}) {
         nlohmann::json expected;
         for (int const ranks : {1, 2, 3, 5, 6}) {
-            Ended const e = catena_on(ranks, {"solve", input(scene), "--set", std::string("chains[0].generator.random.bodies=") + bodies, "--repeat", "1", "--backend",
-                                              "segments", "--json", "-"});
+            Ended const e = catena_on(ranks, {"solve", input(scene), "--set", std::string("chains[0].generator.random.bodies=") + bodies,
+                                              "--repeat", "1", "--backend", "segments", "--json", "-"});
             ASSERT_EQ(e.status, 0) << e.err;
             nlohmann::json const json = e.json();
             EXPECT_EQ(json.at("ranks"), ranks);
             if (ranks == 1) expected = json;
-            for (char const* const key : {"joint_accelerations", "joint_forces"}) EXPECT_EQ(json.at(key).dump(), expected.at(key).dump()) << scene << " on " << ranks;
+            for (char const* const key : {"joint_accelerations", "joint_forces"})
+                EXPECT_EQ(json.at(key).dump(), expected.at(key).dump()) << scene << " on " << ranks;
         }
     }
 }

@@ -28,7 +28,8 @@ TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
     expect_good(first);
     EXPECT_EQ(first.out, "");
     std::string const made = folder / "spherical-chain-run/";
-    for (char const* const file : {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
+    for (char const* const file :
+         {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
         EXPECT_TRUE(fs::exists(made + file)) << file;
     auto const summary = nlohmann::json::parse(std::ifstream(folder / "summary.json"));
     EXPECT_EQ(summary.at("valid"), true);
@@ -38,7 +39,7 @@ TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
     expect_refused(with({"--steps", "10", "--restart", made + "checkpoint.h5"}), 2, "step 20");
     expect_refused(with({"--restart", "missing.h5"}), 2, "missing.h5");
     expect_good(with({"--steps", "40", "--restart", made + "checkpoint.h5"}));
-    EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 5);   // steps 0, 10, .. 40
+    EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 5);  // steps 0, 10, .. 40
     expect_good(with({"--steps", "10", "--overwrite"}));
     EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 2);
 }

@@ -14,7 +14,8 @@ namespace {
 Scene scene_of(std::string const& chains) { return parse_scene("units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n" + chains, "test"); }
 
 std::string random_chain(std::string const& joint, int bodies, bool fixed) {
-    return "  - {base: " + std::string(fixed ? "fixed" : "free") + ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 5}}}\n";
+    return "  - {base: " + std::string(fixed ? "fixed" : "free") + ", generator: {random: {bodies: " + std::to_string(bodies) +
+           ", joint: " + joint + ", seed: 5}}}\n";
 }
 
 Solution solve(Scene scene, Backend backend, Handles handles, int threads, Communicator const& communicator) {
@@ -42,7 +43,8 @@ void expect_same_bits(Scene const& scene, std::string const& what, bool with_thr
             auto const expect = [&](Backend other, int threads) {
                 Solution const found = solve(scene, other, handles, threads, world);
                 if (world.rank() != 0) return;
-                std::string const name = what + ", " + name_of(other) + ", " + name_of(handles) + ", " + std::to_string(threads) + " threads";
+                std::string const name =
+                    what + ", " + name_of(other) + ", " + name_of(handles) + ", " + std::to_string(threads) + " threads";
                 EXPECT_TRUE(same_bits(found.acceleration, expected.acceleration)) << name;
                 EXPECT_TRUE(same_bits(found.joint_force, expected.joint_force)) << name;
             };
@@ -56,7 +58,8 @@ void expect_same_bits(Scene const& scene, std::string const& what, bool with_thr
 TEST(SameBits, OneChain) {
     for (char const* const joint : {"link", "spherical", "revolute"})
         for (int const bodies : {1, 2, 3, 255, 256, 257, 10000})
-            expect_same_bits(scene_of(random_chain(joint, bodies, bodies % 2 == 1)), std::string(joint) + " " + std::to_string(bodies), threads_fit());
+            expect_same_bits(scene_of(random_chain(joint, bodies, bodies % 2 == 1)), std::string(joint) + " " + std::to_string(bodies),
+                             threads_fit());
 }
 
 TEST(SameBits, SeveralChainsOfDifferentKinds) {

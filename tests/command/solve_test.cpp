@@ -22,15 +22,33 @@ Json solved(Words words) {
 
 TEST(Solve, JsonHoldsWhatTheContractNames) {
     Json const json = solved({input("arm.yaml"), "--backend", "segments"});
-    for (char const* const key : {"scene", "chains", "bodies", "dof", "backend", "ranks", "threads", "gpu_levels", "handles", "seconds", "phases", "residual",
-                                  "residual_bound", "rnea_residual", "valid", "potential_energy", "joint_accelerations", "bead_accelerations", "bead_forces", "joint_forces"})
+    for (char const* const key : {"scene",
+                                  "chains",
+                                  "bodies",
+                                  "dof",
+                                  "backend",
+                                  "ranks",
+                                  "threads",
+                                  "gpu_levels",
+                                  "handles",
+                                  "seconds",
+                                  "phases",
+                                  "residual",
+                                  "residual_bound",
+                                  "rnea_residual",
+                                  "valid",
+                                  "potential_energy",
+                                  "joint_accelerations",
+                                  "bead_accelerations",
+                                  "bead_forces",
+                                  "joint_forces"})
         EXPECT_TRUE(json.contains(key)) << key;
     EXPECT_EQ(json["chains"], Json::parse(R"([{"name": "arm", "bodies": 4, "kind": "revolute", "base": "fixed"}])"));
     for (char const* const key : {"median", "min", "max", "repeat"}) EXPECT_TRUE(json["seconds"].contains(key)) << key;
     EXPECT_LE(json["residual"].get<double>(), json["residual_bound"].get<double>());
     EXPECT_TRUE(json["valid"].get<bool>());
-    EXPECT_TRUE(json["joint_accelerations"][0].is_number());          // revolute
-    EXPECT_EQ(json["joint_accelerations"][1].size(), 3U);             // spherical
+    EXPECT_TRUE(json["joint_accelerations"][0].is_number());  // revolute
+    EXPECT_EQ(json["joint_accelerations"][1].size(), 3U);     // spherical
     for (Json const& wrench : json["joint_forces"]) EXPECT_EQ(wrench.size(), 6U);
     EXPECT_EQ(json["bead_accelerations"], Json::array());
 }
@@ -49,7 +67,8 @@ TEST(Solve, AccelerationsAreThoseOfTheOracle) {
             difference = std::max(difference, std::abs(value - (found.is_number() ? found : found[i]).get<double>()));
         }
         for (int i = 0; i < 3; ++i) {
-            auto const force = static_cast<double>(expected.constraint_force[k].force[i]), torque = static_cast<double>(expected.constraint_force[k].torque[i]);
+            auto const force = static_cast<double>(expected.constraint_force[k].force[i]),
+                       torque = static_cast<double>(expected.constraint_force[k].torque[i]);
             EXPECT_NEAR(json["joint_forces"][k][3 + i].get<double>(), force, 1e-12 * 200) << k;
             EXPECT_NEAR(json["joint_forces"][k][i].get<double>(), torque, 1e-12 * 200) << k;
         }
@@ -69,8 +88,9 @@ TEST(Solve, AFreeBaseHasTwoAccelerations) {
 TEST(Solve, TensionIsPositiveWhereALinkPulls) {
     TemporaryFolder const folder;
     std::ofstream(folder / "hanging.csv") << "0,0,-1\n0,0,-2\n";
-    std::ofstream(folder / "hanging.yaml") << "units: si\nforces: {gravity: [0, 0, -10]}\nchains: [{base: fixed, anchor: [0, 0, 0], positions: hanging.csv, "
-                                              "generator: {freely_jointed: {beads: 2, length: 1, mass: 2}}}]\n";
+    std::ofstream(folder / "hanging.yaml")
+        << "units: si\nforces: {gravity: [0, 0, -10]}\nchains: [{base: fixed, anchor: [0, 0, 0], positions: hanging.csv, "
+           "generator: {freely_jointed: {beads: 2, length: 1, mass: 2}}}]\n";
     for (std::string const handles : {"projected", "full"}) {
         Json const json = solved({folder / "hanging.yaml", "--handles", handles});
         EXPECT_NEAR(json["joint_forces"][0].get<double>(), 40, 1e-13);

@@ -13,7 +13,7 @@
 namespace catena::test {
 namespace {
 
-constexpr double allowed = 1e-12;   // of the largest acceleration, the project's goal for these chains; their conditions reach 4e6
+constexpr double allowed = 1e-12;  // of the largest acceleration, the project's goal for these chains; their conditions reach 4e6
 
 struct Deviation {
     double acceleration = 0, pin_force = 0, residual = 0, bound = 0;
@@ -61,12 +61,16 @@ void print_others(ReferenceChain const& r) {
 TEST(ThirdParty, AccelerationsAndPinForces) {
     bool const root = testing::world().rank() == 0;
     for (ReferenceChain const& r : reference_chains()) {
-        if (root) std::printf("%s: %zu bodies, condition %.1e\n  %-28s %10s %10s %10s\n", r.name.c_str(), r.chain.size(), r.condition, "", "q''", "pin force", "residual");
+        if (root)
+            std::printf("%s: %zu bodies, condition %.1e\n  %-28s %10s %10s %10s\n", r.name.c_str(), r.chain.size(), r.condition, "", "q''",
+                        "pin force", "residual");
         for (Backend const backend : cpu_backends())
             for (Handles const handles : {Handles::projected, Handles::full}) {
                 Deviation const d = deviation(r, backend, handles);
                 std::string const name = std::string("Catena ") + name_of(backend) + " " + name_of(handles);
-                if (root) std::printf("  %-28s %10.1e %10s %10.1e\n", name.c_str(), d.acceleration, r.pin_force.empty() ? "" : fmt::format("{:.1e}", d.pin_force).c_str(), d.residual);
+                if (root)
+                    std::printf("  %-28s %10.1e %10s %10.1e\n", name.c_str(), d.acceleration,
+                                r.pin_force.empty() ? "" : fmt::format("{:.1e}", d.pin_force).c_str(), d.residual);
                 EXPECT_LE(d.residual, d.bound) << r.name << ", " << name;
                 EXPECT_LE(d.acceleration, allowed) << r.name << ", " << name;
                 EXPECT_LE(d.pin_force, allowed) << r.name << ", " << name;

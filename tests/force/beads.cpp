@@ -41,12 +41,14 @@ BeadSystem proteins(std::vector<std::string> const& sequences, int ranks, std::o
 
 std::vector<Vec3> wound(BeadSystem const& beads, std::uint64_t seed) {
     std::vector<Vec3> positions;
-    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
+    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
+        std::size_t const column = c % 3, row = c / 3;
         for (std::int64_t k = 0; k < beads.chain_offset[c + 1] - beads.chain_offset[c]; ++k) {
             double const turn = 0.9 * static_cast<double>(k);
-            positions.push_back({{0.3 * static_cast<double>(k), 1.7 * static_cast<double>(c % 3) + 0.35 * std::cos(turn),
-                                  1.7 * static_cast<double>(c / 3) + 0.35 * std::sin(turn)}});
+            positions.push_back({{0.3 * static_cast<double>(k), 1.7 * static_cast<double>(column) + 0.35 * std::cos(turn),
+                                  1.7 * static_cast<double>(row) + 0.35 * std::sin(turn)}});
         }
+    }
     shake(positions, 0.05, seed);
     return positions;
 }

@@ -93,7 +93,7 @@ TEST_F(Messages, UnreadableSystem) {
     std::string xml = xml_of(*every_force(proteins({random_sequence(60, 1)})));
     EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is cut short (scene.yaml, forces.openmm.system): write the System again"),
               std::string::npos);
-    auto const at = xml.find("\"", xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
+    auto const at = xml.find('"', xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
     xml.replace(at, 1, "9");
     std::string const text = of(with_text(xml));
     EXPECT_TRUE(text.starts_with("OpenMM " + version + " cannot read ")) << text;
