@@ -45,6 +45,9 @@ std::unique_ptr<Communicator> serial_communicator();
 /// Throws InputError when started by mpirun in a build without MPI.
 std::unique_ptr<Communicator> world_communicator(int* argc, char*** argv);
 
+/// Cores this rank may use: those it is bound to, else its share of the host's.
+int cores_of_rank(Communicator const&);
+
 /// Name and version of the message-passing library, "none" without.
 std::string message_passing_library();
 

@@ -1,6 +1,9 @@
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
+#include <thread>
 
 #include "mpi/communicator.hpp"
 
@@ -36,5 +39,12 @@ class SerialCommunicator final : public Communicator {
 }  // namespace
 
 std::unique_ptr<Communicator> serial_communicator() { return std::make_unique<SerialCommunicator>(); }
+
+int cores_of_rank(Communicator const& communicator) {
+    int const usable = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));  // respects the rank's binding
+    long const online = sysconf(_SC_NPROCESSORS_ONLN);
+    int const share = std::max(1, static_cast<int>(online) / std::max(1, communicator.ranks_on_host()));
+    return online > usable ? usable : share;
+}
 
 }  // namespace catena

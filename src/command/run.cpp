@@ -5,7 +5,7 @@
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "integrate/simulation.hpp"
-#include "report/start_velocities.hpp"
+#include "integrate/start_velocities.hpp"
 
 namespace catena::command {
 namespace {

@@ -11,8 +11,8 @@
 #include "dca/oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
+#include "integrate/start_velocities.hpp"
 #include "report/solution.hpp"
-#include "report/start_velocities.hpp"
 #include "report/timing.hpp"
 
 namespace catena::command {

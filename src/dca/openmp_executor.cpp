@@ -6,14 +6,17 @@
 namespace catena {
 namespace {
 
+/// Starting threads costs as much as some tens of merges.
+constexpr std::int64_t worth_a_thread = 64;
+
 class OpenMpExecutor final : public Executor {
   public:
     explicit OpenMpExecutor(int threads) : threads_(threads) {}
 
     void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
         if (count <= 0) return;
-        std::int64_t const ranges = std::min<std::int64_t>(count, threads_);
-        if (ranges == 1) return body(0, count);
+        std::int64_t const ranges = std::min<std::int64_t>(count / worth_a_thread, threads_);
+        if (ranges <= 1) return body(0, count);
         std::exception_ptr error;
 #pragma omp parallel for num_threads(threads_) schedule(static, 1)
         for (std::int64_t i = 0; i < ranges; ++i) try {

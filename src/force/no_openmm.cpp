@@ -12,11 +12,11 @@ char const* const remedy = "install OpenMM (pip install openmm, or Debian's libo
 }  // namespace
 
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads, Communicator const&) {
-    throw built_without("OpenMM", beads.scene_file + ", forces.openmm", remedy);
+    throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
 }
 
 ImportedSystem import_openmm_system(std::string const&, std::string const&, std::string const& scene_file) {
-    throw built_without("OpenMM", scene_file + ", forces.openmm", remedy);
+    throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
 }
 
 std::string openmm_version() { return "none"; }

@@ -25,7 +25,7 @@ void for_each_bead(BeadSystem const& beads, Visit visit) {
 }
 
 std::string chain_key(BeadSystem const& beads, Place const& at) {
-    return fmt::format("{}, chain {}, body {}", beads.scene_file, at.chain, at.k + 1);
+    return fmt::format("{}: chain {}, body {}", beads.scene_file, at.chain, at.k + 1);
 }
 
 Calvados2Residue const& residue_of(BeadSystem const& beads, std::int64_t bead, Place const& at) {
@@ -51,7 +51,7 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
             if ((*beads.box)[i] < 2 * calvados2::yukawa_cutoff)
                 throw InputError(
                     fmt::format("box edge {} nm is less than twice the cutoff of {} nm", (*beads.box)[i], calvados2::yukawa_cutoff),
-                    beads.scene_file + ", box.periodic", "take a larger box or none");
+                    beads.scene_file + ": box.periodic", "take a larger box or none");
 }
 
 /// Half of sigma and lambda are the particles' parameters, so that a pair's arithmetic means are sums.

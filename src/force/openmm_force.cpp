@@ -210,7 +210,7 @@ void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& wh
 }
 
 std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
-    std::string const where = beads.scene_file + ", forces.openmm";
+    std::string const where = beads.scene_file + ": forces.openmm";
     if (beads.size() == 0)
         throw InputError("OpenMM has nothing to act on", where, "give the scene a chain of beads, or leave forces.openmm out");
     if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))

@@ -35,7 +35,7 @@ std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std:
 /// particles (thermostats, barostats, removal of the centre of mass's motion), by name.
 void refuse_movers(OpenMM::System const&, std::string const& where);
 
-/// "scene.yaml, forces.openmm.system"
-inline std::string openmm_key(std::string const& scene_file, std::string const& key) { return scene_file + ", forces.openmm." + key; }
+/// "scene.yaml: forces.openmm.system"
+inline std::string openmm_key(std::string const& scene_file, std::string const& key) { return scene_file + ": forces.openmm." + key; }
 
 }  // namespace catena

@@ -23,7 +23,7 @@ PathChoice::PathChoice(std::string const& asked, bool may_compare, std::string c
     : trying_(asked == "auto" && may_compare), worker_(asked != "inline"), asked_(asked) {
     if (asked == "device") throw not_in_this_version("forces.openmm.path: device (" + scene_file + ")");
     if (asked != "auto" && asked != "host" && asked != "inline")
-        throw InputError(fmt::format("OpenMM's forces have no path \"{}\"", asked), scene_file + ", forces.openmm.path",
+        throw InputError(fmt::format("OpenMM's forces have no path \"{}\"", asked), scene_file + ": forces.openmm.path",
                          "take auto, host or inline");
 }
 

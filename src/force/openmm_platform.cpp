@@ -2,12 +2,10 @@
 
 #include <dlfcn.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <thread>
 
 #include "error.hpp"
 #include "force/openmm_model.hpp"
@@ -71,13 +69,6 @@ std::string refused_plugins(std::vector<std::string> const& failures) {
 std::vector<std::string> const& load_openmm_plugins() {
     static std::vector<std::string> const failures = load_plugins();
     return failures;
-}
-
-int cores_of_rank(Communicator const& communicator) {
-    int const usable = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));  // respects the rank's binding
-    long const online = sysconf(_SC_NPROCESSORS_ONLN);
-    int const share = std::max(1, static_cast<int>(online) / std::max(1, communicator.ranks_on_host()));
-    return online > usable ? usable : share;
 }
 
 OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {

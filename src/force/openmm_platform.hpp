@@ -30,7 +30,4 @@ std::vector<std::string> const& load_openmm_plugins();
 /// those present.
 OpenMmPlatform choose_platform(OpenMmSpec const&, BeadSystem const&, Communicator const&);
 
-/// Cores that this rank may use: those it is bound to, else an equal share of the host's.
-int cores_of_rank(Communicator const&);
-
 }  // namespace catena

@@ -229,7 +229,7 @@ void settle_box(System& system, BeadSystem const& beads, std::vector<std::string
     for (int i = 0; i < 3 && same; ++i)
         for (int j = 0; j < 3; ++j) same = same && std::abs(edge[i][j] - (i == j ? (*beads.box)[i] : 0)) <= same_length;
     if (!same)
-        throw InputError("the System's forces are periodic and its box is not the scene's", beads.scene_file + ", box.periodic",
+        throw InputError("the System's forces are periodic and its box is not the scene's", beads.scene_file + ": box.periodic",
                          fmt::format("give the System's, [{}, {}, {}]; it must be rectangular", edge[0][0], edge[1][1], edge[2][2]));
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <thread>
 
 #include "chain/gather.hpp"
 #include "error.hpp"
@@ -28,6 +27,7 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
     if (asked == Backend::cuda || asked == Backend::cuda_levels)
         throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments or openmp)");
+    if (scene.solver.gpu_levels != "auto") throw not_in_this_version("solver.gpu_levels: " + scene.solver.gpu_levels);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
@@ -37,7 +37,7 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
 
 int choose_threads(Scene const& scene, Communicator const& communicator) {
     if (scene.solver.threads > 0) return scene.solver.threads;
-    return std::max(1, static_cast<int>(std::thread::hardware_concurrency()) / communicator.ranks_on_host());
+    return cores_of_rank(communicator);
 }
 
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
@@ -79,6 +79,7 @@ void ChainSystem::make_openmm() {
     system.first_of_rank = beads_->group().first_of_rank();
     system.box = scene_.box;
     system.scene_file = scene_.file;
+    openmm_force_ = Field<3>(beads_->group().size);
     openmm_ = make_openmm_force(*scene_.forces.openmm, system, communicator_);
 }
 
@@ -93,7 +94,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     double const assembled = seconds_now();
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
-    if (openmm_) openmm_->finish(beads_->bead_forces());
+    if (openmm_) add_openmm_forces();
     double const finished = seconds_now();
     note("matrix sweep", "catena", begun, assembled);
     note("simple forces", "catena", assembled, simple);
@@ -108,6 +109,14 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     note("forces", "openmm", ran.begin, ran.end);
     seconds_["forces"] += ran.end - ran.begin;
     seconds_["waiting for forces"] += (finished - simple) + (begun - start);
+}
+
+void ChainSystem::add_openmm_forces() {
+    std::int64_t const n = beads_->group().size;
+    for (std::int64_t k = 0; k < n; ++k) openmm_force_.set(k, Vec3::zero());
+    openmm_->finish(openmm_force_.view());
+    View<3> const forces = beads_->bead_forces();
+    for (std::int64_t k = 0; k < n; ++k) forces.store(k, forces.load(k) + openmm_force_[k]);
 }
 
 void ChainSystem::evaluate() {
@@ -210,24 +219,32 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
     return terms;
 }
 
+std::vector<Vector<double, 6>> ChainSystem::joint_forces() {
+    std::vector<double> all(communicator_.rank() == 0 ? static_cast<std::size_t>(6 * scene_.bodies()) : 0);
+    auto const add = [&](ChainGroup const& group, BodyResults const& r) {
+        std::vector<double> own;
+        for (Vector<double, 6> const& w : r.joint_force) own.insert(own.end(), w.data, w.data + 6);
+        gather_to_scene(communicator_, group, 6, own, all);
+    };
+    for (auto const& group : absolute_) add(group->group(), group->results());
+    for (auto const& group : joint_) add(group->group(), group->results());
+    std::vector<Vector<double, 6>> forces(all.size() / 6);
+    for (std::size_t i = 0; i < all.size(); ++i) forces[i / 6][static_cast<int>(i % 6)] = all[i];
+    return forces;
+}
+
 ChainSystem::Accelerations ChainSystem::accelerations() {
     std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
-    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), force(6 * n), bead_force;
+    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), bead_force;
     if (openmm_) bead_force.resize(3 * n);
     auto const add = [&](ChainGroup const& group, BodyResults const& r) {
         gather_to_scene(communicator_, group, 3, flat(r.acceleration), body);
-        std::vector<double> wrench;
-        for (Vector<double, 6> const& w : r.joint_force) wrench.insert(wrench.end(), w.data, w.data + 6);
-        gather_to_scene(communicator_, group, 6, wrench, force);
     };
     for (auto const& group : absolute_) {
         add(group->group(), group->results());
         gather_to_scene(communicator_, group->group(), 3, flat(group->results().acceleration), joint);
         if (group.get() != beads_ || !openmm_) continue;
-        Field<3> own(group->group().size);
-        openmm_->begin(beads_->bead_positions());
-        openmm_->finish(own.view());
-        gather_to_scene(communicator_, group->group(), 3, to_array<3>("", std::as_const(own).view()).values, bead_force);
+        gather_to_scene(communicator_, group->group(), 3, to_array<3>("", std::as_const(openmm_force_).view()).values, bead_force);
     }
     for (std::size_t i = 0; i < joint_.size(); ++i) {
         ChainGroup const& group = joint_[i]->group();
@@ -238,13 +255,7 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
             if (group.pieces[p].starts) of_base[group.pieces[p].local] = joint_rates_[i].base_acceleration[p];
         gather_to_scene(communicator_, group, 3, flat(of_base), base);
     }
-    Accelerations a{triples(joint), triples(body), triples(bead_force), triples(base), {}};
-    for (std::size_t i = 0; i < n; ++i) {
-        Vector<double, 6> w;
-        for (int c = 0; c < 6; ++c) w[c] = force[6 * i + c];
-        a.joint_force.push_back(w);
-    }
-    return a;
+    return {triples(joint), triples(body), triples(bead_force), triples(base), joint_forces()};
 }
 
 std::map<std::string, std::vector<double>> ChainSystem::state() {

@@ -50,6 +50,8 @@ class ChainSystem {
         std::vector<Vector<double, 6>> joint_force;
     };
     Accelerations accelerations();
+    /// The joint forces alone. Collective.
+    std::vector<Vector<double, 6>> joint_forces();
 
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;
@@ -73,6 +75,7 @@ class ChainSystem {
 
   private:
     void make_openmm();
+    void add_openmm_forces();
     Scene const& scene_;
     Communicator const& communicator_;
     Backend backend_;
@@ -84,6 +87,7 @@ class ChainSystem {
     std::vector<std::unique_ptr<AbsoluteDynamics>> absolute_;
     AbsoluteDynamics* beads_ = nullptr;
     std::unique_ptr<OpenMmForce> openmm_;
+    Field<3> openmm_force_;  // of the last evaluation, own beads
     std::map<std::string, double> seconds_;
     double matrix_seconds_ = 0, hidden_seconds_ = 0;
 };

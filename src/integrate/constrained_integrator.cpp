@@ -52,7 +52,7 @@ double ConstrainedIntegrator::error_after(int sweeps) {
 }
 
 void ConstrainedIntegrator::choose_sweeps() {
-    int constexpr most = 30;
+    int constexpr most = most_sweeps;
     double before = std::numeric_limits<double>::infinity();
     for (int sweeps = 1; sweeps <= most; ++sweeps) {
         double const error = error_after(sweeps);
@@ -65,7 +65,8 @@ void ConstrainedIntegrator::choose_sweeps() {
     }
     std::ostringstream line;
     line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance << " within " << most
-         << " sweeps of a step of " << scheme_.step << " (error " << before << "): choose a smaller dynamics.step";
+         << " sweeps of a step of " << scheme_.step << " (error " << before
+         << "): " << (before < 1e-13 ? "that is rounding, ask for no less than 1e-12" : "choose a smaller dynamics.step");
     throw ComputationError(line.str());
 }
 

@@ -31,6 +31,7 @@ class ConstrainedIntegrator {
     /// Configuration, matrices and forces must be ready; the state is put back. Throws ComputationError when 30 do not suffice.
     void choose_sweeps();
 
+    static constexpr int most_sweeps = 30;
     int sweeps() const { return sweeps_; }
     void set_sweeps(int sweeps) { sweeps_ = sweeps; }
     double pending() const { return pending_; }

@@ -22,14 +22,17 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
     : scene_(scene), communicator_(communicator), root_(communicator.rank() == 0), first_step_(first_step), folder_(options.output) {
     on_root(communicator, [&] {
         bool const exists = fs::exists(folder_);
+        std::error_code ignored;
+        bool const empty = !exists || fs::is_empty(folder_, ignored);
         appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_)) throw InputError("the output is not a folder", folder_, "name another with --output");
-        if (exists && !appends_ && !options.overwrite && !fs::is_empty(folder_))
-            throw InputError(
-                "the output folder exists", folder_,
-                "name another with --output, go on with --restart " + folder_ + "/checkpoint.h5, or replace it with --overwrite");
+        std::string const checkpoint = path("checkpoint.h5");
+        std::string const go_on = options.restart.empty() && fs::exists(checkpoint, ignored) ? ", go on with --restart " + checkpoint : "";
+        if (!empty && !appends_ && !options.overwrite)
+            throw InputError("the output folder exists", folder_,
+                             "name another with --output" + go_on + ", or replace it with --overwrite");
         if (exists && !appends_)
-            for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name);
+            for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name, ignored);
         std::error_code error;
         fs::create_directories(folder_, error);
         if (error) throw InputError("the output folder cannot be made: " + error.message(), folder_, "name another with --output");
@@ -38,7 +41,8 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
 
 void RunFolder::open(Topology const& topology, Frame const& first, std::vector<std::string> const& columns) {
     on_root(communicator_, [&] {
-        std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_) : std::nullopt;
+        // The frame of the checkpoint's step is written anew: it may have been no frame of the run before.
+        std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_ - 1) : std::nullopt;
         if (!appends_) topology_files_ = write_topology(folder_, topology, first);
         trajectory_ = make_trajectory(path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
         observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");

@@ -41,8 +41,6 @@ class RunFolder {
     /// Closes the tables, writes summary, timeline and report.
     void finish(std::string const& summary, std::string const& timeline);
 
-    /// The folder goes on where a run stopped: its frame of the first step is there already.
-    bool appends() const { return appends_; }
     std::string path(std::string const& name) const { return folder_ + "/" + name; }
     std::vector<std::string> const& topology_files() const { return topology_files_; }
 

@@ -6,6 +6,7 @@
 
 #include "error.hpp"
 #include "integrate/run_folder.hpp"
+#include "integrate/start_velocities.hpp"
 #include "integrate/stepper.hpp"
 
 namespace catena {
@@ -16,6 +17,8 @@ using nlohmann::json;
 /// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
 constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
+/// The constraint error is looked at with every output and checkpoint, at the last step, and this often.
+constexpr std::int64_t check_every = 100;
 
 Topology topology_of(Scene const& scene) {
     Topology t;
@@ -65,14 +68,14 @@ std::vector<std::string> gather_texts(Communicator const& communicator, std::str
 
 class Run {
   public:
-    Run(Scene const& scene, Communicator const& communicator, RunOptions const& options)
-        : scene_(scene),
+    Run(Scene scene, Communicator const& communicator, RunOptions const& options)
+        : scene_(std::move(scene)),
           communicator_(communicator),
           options_(options),
           root_(communicator.rank() == 0),
-          last_(options.steps.value_or(scene.dynamics.steps)),
-          system_(scene, scene.dynamics.integrator == Integrator::rk4 ? Axes::joint : Axes::world, communicator) {
-        stepper_ = make_stepper(system_, scene.dynamics);
+          last_(options.steps.value_or(scene_.dynamics.steps)),
+          system_(scene_, scene_.dynamics.integrator == Integrator::rk4 ? Axes::joint : Axes::world, communicator) {
+        stepper_ = make_stepper(system_, scene_.dynamics);
     }
 
     json run() {
@@ -81,20 +84,20 @@ class Run {
             throw InputError(
                 "the checkpoint stands at step " + std::to_string(first) + " and the run ends at step " + std::to_string(last_),
                 options_.restart, "ask for more with --steps");
-        folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, first);
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
         std::int64_t const rounds = communicator_.rounds();
         for (std::int64_t n = first;; ++n) {
             bool const writes = n % scene_.output.every == 0;
+            bool const due = n == last_ || (scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first);
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
-            stepper_->prepare(timeline);
-            if (n == first) open(n);
-            if (writes && !(n == first && folder_->appends())) output(n);
-            bool const due = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
-            if (due || n == last_) checkpoint(n);
+            at_step(n, [&] { stepper_->prepare(timeline); });
+            if (n == first) open(n);  // nothing is written or replaced before the first step has its forces
+            if (writes) output(n);
+            if (due || n % check_every == 0) check(n);
+            if (due) checkpoint(n);
             if (n == last_) break;
-            stepper_->step(n, timeline);
+            at_step(n, [&] { stepper_->step(n, timeline); });
             progress.update(n + 1);
         }
         progress.finish();
@@ -119,13 +122,17 @@ class Run {
         f.time = time(n);
         f.positions = s.position;
         if (scene_.output.velocities) f.velocities = s.velocity;
-        bool const bodies = std::any_of(scene_.chains.begin(), scene_.chains.end(), [](ChainSpec const& c) { return !c.is_beads(); });
-        if (bodies) f.orientations = s.orientation;
-        if (scene_.output.joint_forces) f.joint_forces = system_.accelerations().joint_force;
+        std::size_t site = 0;
+        for (ChainSpec const& chain : scene_.chains)  // of the bodies alone
+            for (std::size_t k = 0; k < chain.size() && !s.orientation.empty(); ++k, ++site)
+                if (!chain.is_beads()) f.orientations.push_back(s.orientation[site]);
+        if (scene_.output.joint_forces) f.joint_forces = system_.joint_forces();
         return f;
     }
 
     void open(std::int64_t n) {
+        first_ = n;
+        folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
         stepper_->observe(scene_.output.joint_forces);
         std::vector<EnergyTerm> const terms = system_.potential_energy();
         observables_ = std::make_unique<Observables>(scene_, terms);
@@ -133,28 +140,38 @@ class Run {
     }
 
     void output(std::int64_t n) {
+        double const error = check(n);
         stepper_->observe(scene_.output.joint_forces);
-        double const error = stepper_->constraint_error();
         ChainSystem::Snapshot const snapshot = system_.snapshot();
         std::vector<EnergyTerm> const terms = system_.potential_energy();
         Frame const f = frame(n, snapshot);
-        check(n, error, snapshot);
         if (!root_) return;
         last_row_ = observables_->row(snapshot, terms, error);
         folder_->write(f, last_row_);
     }
 
-    /// The same decision on every rank: the error is the largest over ranks, and rank 0's look at the state is shared.
-    void check(std::int64_t n, double error, ChainSystem::Snapshot const& snapshot) {
-        double finite = 0;
-        for (std::size_t i = 0; i < snapshot.position.size(); ++i)
-            finite = larger(finite, 0.0 * (norm(snapshot.position[i]) + norm(snapshot.velocity[i])));
-        if (std::isnan(communicator_.max(finite)) || std::isnan(error))
+    /// The constraint error, the largest over ranks: every rank decides the same. A state that is not finite has none.
+    double check(std::int64_t n) {
+        double const error = stepper_->constraint_error();
+        if (!std::isfinite(error))
             throw ComputationError("the state is not finite at step " + std::to_string(n) +
                                    ": choose a smaller dynamics.step, or look at the start");
         worst_error_ = std::max(worst_error_, error);
-        if (error > scene_.dynamics.constraint_tolerance && stepper_->add_sweep())
+        bool const counted = n == checked_ || (n == first_ && !options_.restart.empty());  // seen before, or by the run before
+        checked_ = n;
+        if (error > scene_.dynamics.constraint_tolerance && !counted && stepper_->add_sweep())
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
+        return error;
+    }
+
+    /// What fails within a step says at which.
+    template <class Action>
+    void at_step(std::int64_t n, Action const& action) {
+        try {
+            action();
+        } catch (ComputationError const& error) {
+            throw ComputationError("at step " + std::to_string(n) + ": " + error.what());
+        }
     }
 
     void checkpoint(std::int64_t n) {
@@ -166,6 +183,7 @@ class Run {
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
         stepper_->save(c);
         c.arrays = system_.state();
+        c.arrays["largest_constraint_error"] = {worst_error_};
         folder_->write_checkpoint(c);
     }
 
@@ -184,6 +202,7 @@ class Run {
         share(c);
         system_.set_state(c.arrays);
         stepper_->restore(c);
+        if (auto const found = c.arrays.find("largest_constraint_error"); found != c.arrays.end()) worst_error_ = found->second.at(0);
         return c.step;
     }
 
@@ -256,7 +275,8 @@ class Run {
         }
         s["solver"] = {{"backend", name_of(system_.backend())}, {"tree_table", dca::tree_table_version}, {"groups", solvers}};
         s["solver"].update(stepper_->describe());
-        s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
+        if (!system_.absolute().empty())  // joint coordinates cannot come apart
+            s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (OpenMmForce const* openmm = system_.openmm()) {
             double const matrix = system_.matrix_seconds();
             s["forces"] = {{"openmm", openmm_version()},
@@ -277,7 +297,7 @@ class Run {
         return s;
     }
 
-    Scene const& scene_;
+    Scene scene_;
     Communicator const& communicator_;
     RunOptions options_;
     bool root_;
@@ -290,7 +310,7 @@ class Run {
     std::vector<double> last_row_;
     std::vector<std::string> notes_;
     double worst_error_ = 0, seconds_ = 0;
-    std::int64_t rounds_ = 0;
+    std::int64_t first_ = 0, checked_ = -1, rounds_ = 0;
 };
 
 }  // namespace
@@ -298,6 +318,10 @@ class Run {
 json run_simulation(Scene const& scene, Communicator const& communicator, RunOptions const& options) {
     if (!scene.dynamics.given)
         throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
+    if (!options.steps && scene.dynamics.steps == 0)
+        throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
+    // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
+    if (scene.dynamics.integrator == Integrator::rk4) return Run(with_start_velocities(scene, communicator), communicator, options).run();
     return Run(scene, communicator, options).run();
 }
 

@@ -25,7 +25,16 @@ class JointStepper final : public Stepper {
         for (std::size_t i = 0; i < rk4_.size(); ++i) rk4_[i].step(system_.joint_state(i), h_);
         if (timeline) timeline->phases.push_back({"four evaluations", "catena", 0.0, seconds_now() - start});
     }
-    double constraint_error() override { return 0.0; }  // joint coordinates cannot drift apart
+    /// Joint coordinates cannot come apart: nothing but whether the state is finite.
+    double constraint_error() override {
+        double sum = 0;
+        for (std::size_t i = 0; i < rk4_.size(); ++i) {
+            JointState const& state = system_.joint_state(i);
+            for (std::int64_t k = 0; k < state.q.size(); ++k)
+                sum = larger(sum, 0.0 * (dot(state.q[k], state.q[k]) + dot(state.qd[k], state.qd[k])));
+        }
+        return system_.communicator().max(sum);
+    }
     bool add_sweep() override { return false; }
     void save(Checkpoint&) const override {}
     void restore(Checkpoint const&) override {}
@@ -68,6 +77,7 @@ class ConstrainedStepper final : public Stepper {
         return worst;
     }
     bool add_sweep() override {
+        if (integrator_.sweeps() >= ConstrainedIntegrator::most_sweeps) return false;
         integrator_.set_sweeps(integrator_.sweeps() + 1);
         return true;
     }

@@ -5,8 +5,8 @@
 
 #include "dca/oracle/oracle.hpp"
 #include "error.hpp"
+#include "integrate/start_velocities.hpp"
 #include "report/solution.hpp"
-#include "report/start_velocities.hpp"
 
 namespace catena {
 namespace {
@@ -78,15 +78,20 @@ std::string kinds_of(Scene const& scene) {
     return joined;
 }
 
+bool has_threads() {
+    try {
+        openmp_executor(1);
+        return true;
+    } catch (InputError const&) {
+        return false;
+    }
+}
+
 }  // namespace
 
 std::vector<Backend> cpu_backends() {
     std::vector<Backend> backends{Backend::serial, Backend::segments};
-    try {
-        openmp_executor(1);
-        backends.push_back(Backend::openmp);
-    } catch (InputError const&) {  // built without OpenMP
-    }
+    if (has_threads()) backends.push_back(Backend::openmp);
     return backends;
 }
 

@@ -47,7 +47,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
     if (builder) {
         choice<int>(*builder, {{"calvados2", 0}});
         spec.builder = builder->text;
-        for (Node const* const extra : {topology, map})
+        for (Node const* const extra : {topology, map, fields.find("force_groups")})
             if (extra) fail(*extra, fmt::format("key `{}` means nothing for a builder", extra->key), "leave it out or give `system`");
         return;
     }

@@ -1,5 +1,5 @@
 // What `solve` and `report` take for a thermal start is what `run` draws: the same velocities, though in other coordinates.
-#include "report/start_velocities.hpp"
+#include "integrate/start_velocities.hpp"
 
 #include <gtest/gtest.h>
 

@@ -69,19 +69,19 @@ TEST_F(Import, AlphaSynuclein) {
 TEST_F(Import, Messages) {
     auto const positions = wound(beads, 1);
     EXPECT_EQ(complaint([&] { import(positions); }),
-              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml, forces.openmm.system, chain B, "
+              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml: forces.openmm.system, chain B, "
               "body 2): join "
               "neighbours in a chain, or end the chain between them in the topology (TER)");
     bonds->addBond(4, 5, 0.5, 100);
     std::string const file = scratch_file("import.xml", xml_of(*system));
     EXPECT_EQ(complaint([&] { import_openmm_system(file, scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions)), "scene.yaml"); }),
-              "the topology has 2 atoms and the System 7 particles (scene.yaml, forces.openmm.topology): give one atom a particle, in the "
+              "the topology has 2 atoms and the System 7 particles (scene.yaml: forces.openmm.topology): give one atom a particle, in the "
               "System's order");
     EXPECT_EQ(complaint([&] { import_openmm_system(file, "/nowhere/a.pdb", "scene.yaml"); }),
-              "cannot open /nowhere/a.pdb (scene.yaml, forces.openmm.topology): name a PDB file that can be read");
+              "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB file that can be read");
     system->addForce(new OpenMM::CMMotionRemover);
     EXPECT_TRUE(
-        complaint([&] { import(positions); }).starts_with("the System holds a CMMotionRemover (scene.yaml, forces.openmm.system): "));
+        complaint([&] { import(positions); }).starts_with("the System holds a CMMotionRemover (scene.yaml: forces.openmm.system): "));
 }
 
 }  // namespace

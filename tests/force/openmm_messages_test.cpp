@@ -40,11 +40,11 @@ TEST_F(Messages, Platform) {
     OpenMmSpec spec = on_reference();
     spec.platform = "Abacus";
     EXPECT_TRUE(of(spec).starts_with("OpenMM " + version +
-                                     " has no platform Abacus (scene.yaml, forces.openmm.platform): take one of Reference, CPU"))
+                                     " has no platform Abacus (scene.yaml: forces.openmm.platform): take one of Reference, CPU"))
         << of(spec);
     spec = on_reference();
     spec.precision = "half";
-    EXPECT_EQ(of(spec), "OpenMM knows no precision \"half\" (scene.yaml, forces.openmm.precision): take single, mixed or double");
+    EXPECT_EQ(of(spec), "OpenMM knows no precision \"half\" (scene.yaml: forces.openmm.precision): take single, mixed or double");
     spec = on_reference();
     spec.path = "device";
     EXPECT_EQ(of(spec), "not in this version: forces.openmm.path: device (scene.yaml)");
@@ -52,32 +52,32 @@ TEST_F(Messages, Platform) {
 
 TEST_F(Messages, Builder) {
     EXPECT_EQ(of(on_reference("martini")),
-              "OpenMM's forces have no builder \"martini\" (scene.yaml, forces.openmm): take builder: calvados2, or system: and topology:");
+              "OpenMM's forces have no builder \"martini\" (scene.yaml: forces.openmm): take builder: calvados2, or system: and topology:");
     EXPECT_EQ(of(on_reference("")),
-              "OpenMM's forces have no builder \"\" (scene.yaml, forces.openmm): take builder: calvados2, or system: and topology:");
+              "OpenMM's forces have no builder \"\" (scene.yaml: forces.openmm): take builder: calvados2, or system: and topology:");
     beads = proteins({});
     EXPECT_EQ(of(on_reference()),
-              "OpenMM has nothing to act on (scene.yaml, forces.openmm): give the scene a chain of beads, or leave forces.openmm out");
+              "OpenMM has nothing to act on (scene.yaml: forces.openmm): give the scene a chain of beads, or leave forces.openmm out");
 }
 
 TEST_F(Messages, Calvados2) {
     OpenMmSpec spec = on_reference();
     spec.temperature = 0;
-    EXPECT_EQ(of(spec), "temperature 0 K is not positive (scene.yaml, forces.openmm.temperature): give it in kelvin");
+    EXPECT_EQ(of(spec), "temperature 0 K is not positive (scene.yaml: forces.openmm.temperature): give it in kelvin");
     spec = on_reference();
     spec.ionic_strength = -0.1;
-    EXPECT_EQ(of(spec), "ionic strength -0.1 mol/l is negative (scene.yaml, forces.openmm.ionic_strength): give it in mol/l");
+    EXPECT_EQ(of(spec), "ionic strength -0.1 mol/l is negative (scene.yaml: forces.openmm.ionic_strength): give it in mol/l");
     spec = on_reference();
     spec.switch_width = 2;
     EXPECT_EQ(of(spec),
-              "switch width 2 nm is not between 0 and the shortest cutoff, 2 nm (scene.yaml, forces.openmm.switch_width): take about 0.2");
+              "switch width 2 nm is not between 0 and the shortest cutoff, 2 nm (scene.yaml: forces.openmm.switch_width): take about 0.2");
     beads.box = Vec3{{9, 7.5, 9}};
     EXPECT_EQ(of(on_reference()),
-              "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml, box.periodic): take a larger box or none");
+              "box edge 7.5 nm is less than twice the cutoff of 4 nm (scene.yaml: box.periodic): take a larger box or none");
     beads.box.reset();
     beads.residue[5] = "UNK";
     EXPECT_EQ(of(on_reference()),
-              "CALVADOS 2 has no residue UNK (scene.yaml, chain B, body 2): use the twenty amino acids (sequence and model: calvados2), or "
+              "CALVADOS 2 has no residue UNK (scene.yaml: chain B, body 2): use the twenty amino acids (sequence and model: calvados2), or "
               "give the forces "
               "as a System (forces.openmm.system)");
 }
@@ -85,20 +85,20 @@ TEST_F(Messages, Calvados2) {
 TEST_F(Messages, UnreadableSystem) {
     OpenMmSpec spec = on_reference("");
     spec.system = "/nowhere/system.xml";
-    EXPECT_EQ(of(spec), "cannot open /nowhere/system.xml (scene.yaml, forces.openmm.system): name a serialised System that can be read");
-    EXPECT_NE(of(with_text("hello")).find(" is no serialised System (scene.yaml, forces.openmm.system): "), std::string::npos);
+    EXPECT_EQ(of(spec), "cannot open /nowhere/system.xml (scene.yaml: forces.openmm.system): name a serialised System that can be read");
+    EXPECT_NE(of(with_text("hello")).find(" is no serialised System (scene.yaml: forces.openmm.system): "), std::string::npos);
     EXPECT_NE(of(with_text("<?xml version=\"1.0\" ?>\n<State type=\"State\" version=\"1\"></State>")).find(" is no serialised System ("),
               std::string::npos);
 
     std::string xml = xml_of(*every_force(proteins({random_sequence(60, 1)})));
-    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is cut short (scene.yaml, forces.openmm.system): write the System again"),
+    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is cut short (scene.yaml: forces.openmm.system): write the System again"),
               std::string::npos);
     auto const at = xml.find('"', xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
     xml.replace(at, 1, "9");
     std::string const text = of(with_text(xml));
     EXPECT_TRUE(text.starts_with("OpenMM " + version + " cannot read ")) << text;
     EXPECT_NE(text.find("messages.xml, written by OpenMM " + version +
-                        ": Unsupported version number (scene.yaml, forces.openmm.system): build Catena"),
+                        ": Unsupported version number (scene.yaml: forces.openmm.system): build Catena"),
               std::string::npos)
         << text;
     EXPECT_EQ(text.find('\n'), std::string::npos);
@@ -114,7 +114,7 @@ TEST_F(Messages, ReferenceSystemOnOpenMm7) {
 }
 
 TEST_F(Messages, WhatMovesParticles) {
-    std::string const where = " (scene.yaml, forces.openmm.system): ";
+    std::string const where = " (scene.yaml: forces.openmm.system): ";
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::CMMotionRemover); }),
               "the System holds a CMMotionRemover" + where + "remove it: Catena's own integrators move the beads (dynamics.integrator)");
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::AndersenThermostat(300, 1)); }),
@@ -130,7 +130,7 @@ TEST_F(Messages, WhatMovesParticles) {
 }
 
 TEST_F(Messages, ConstraintsThatAreNoLinks) {
-    std::string const where = " (scene.yaml, forces.openmm.system): ";
+    std::string const where = " (scene.yaml: forces.openmm.system): ";
     EXPECT_EQ(of_system([](auto& s) { s.addConstraint(0, 2, 0.5); }),
               "the constraint between particles 0 and 2 (from 0) is no link of the scene" + where +
                   "constrain neighbours in a chain only, or make it a bond");
@@ -169,7 +169,7 @@ TEST_F(Messages, BondsOfOtherLengthsThanTheirLinks) {
 }
 
 TEST_F(Messages, CountsAndMasses) {
-    std::string const where = " (scene.yaml, forces.openmm.system): ";
+    std::string const where = " (scene.yaml: forces.openmm.system): ";
     OpenMmSpec const longer = with_system([](auto& s) { s.addParticle(1); });
     EXPECT_EQ(of(longer), "the System has 7 particles and the scene 6 beads" + where + "let every particle of " + longer.system +
                               " be a bead of the scene");
@@ -182,11 +182,11 @@ TEST_F(Messages, Topology) {
     OpenMmSpec spec = with_system([](auto&) {});
     std::vector<Vec3> const anywhere(6, Vec3::zero());
     spec.topology = scratch_file("short.pdb", pdb_of(proteins({"KDE", "GG"}), anywhere));
-    EXPECT_EQ(of(spec), "the topology has 5 atoms and the System 6 particles (scene.yaml, forces.openmm.topology): let " + spec.topology +
+    EXPECT_EQ(of(spec), "the topology has 5 atoms and the System 6 particles (scene.yaml: forces.openmm.topology): let " + spec.topology +
                             " hold one atom a particle, in the System's order");
     spec.topology = scratch_file("other.pdb", pdb_of(proteins({"KDE", "GGG"}), anywhere));
     EXPECT_EQ(of(spec),
-              "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml, forces.openmm.topology): give the chains in the "
+              "chain 1 has 4 beads in the scene and 3 atoms in the topology (scene.yaml: forces.openmm.topology): give the chains in the "
               "topology's order, or say which particles are whose with forces.openmm.map");
     spec.topology = scratch_file("one.pdb", pdb_of(proteins({"KDEKGG"}), anywhere));
     EXPECT_TRUE(of(spec).starts_with("chain 1 has 4 beads in the scene and 6 atoms in the topology"));
@@ -195,7 +195,7 @@ TEST_F(Messages, Topology) {
 }
 
 TEST_F(Messages, Map) {
-    std::string const where = " (scene.yaml, forces.openmm.map): ";
+    std::string const where = " (scene.yaml: forces.openmm.map): ";
     OpenMmSpec spec = with_system([](auto&) {});
     spec.map = {{"A", {0, 3}}};
     EXPECT_EQ(of(spec), "chain B is not in the map" + where + "give every chain of beads its first and last particle");
@@ -223,7 +223,7 @@ TEST_F(Messages, Box) {
         s.addForce(pairs);
     };
     std::string const expected =
-        "the System's forces are periodic and its box is not the scene's (scene.yaml, box.periodic): give the System's, [5, 6, 7]; it must "
+        "the System's forces are periodic and its box is not the scene's (scene.yaml: box.periodic): give the System's, [5, 6, 7]; it must "
         "be rectangular";
     EXPECT_EQ(of_system(periodic), expected);
     beads.box = Vec3{{5, 6, 7.5}};
@@ -241,7 +241,7 @@ TEST_F(Messages, TooManyForces) {
     EXPECT_EQ(of_system([](auto& s) {
                   for (int i = 0; i < 33; ++i) s.addForce(new OpenMM::CustomBondForce("r"));
               }),
-              "the System has 33 forces (scene.yaml, forces.openmm.system): merge forces of one kind: OpenMM tells 32 groups apart");
+              "the System has 33 forces (scene.yaml: forces.openmm.system): merge forces of one kind: OpenMM tells 32 groups apart");
     auto const force = make_openmm_force(with_system([](auto& s) {
                                              for (int i = 0; i < 32; ++i) {
                                                  auto* bonds = new OpenMM::CustomBondForce("r");
@@ -287,7 +287,7 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
         return complaint([&] { make_openmm_force(spec, beads, Alone()); });
     };
     std::string const rest =
-        " cannot be split over 2 ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the "
+        " cannot be split over 2 ranks (scene.yaml: forces.openmm): set forces.openmm.replicate: true, so that every rank computes the "
         "whole System, or run "
         "on one rank";
     EXPECT_EQ(refused(new OpenMM::CustomCVForce("1")), "CustomCVForce" + rest);
@@ -309,7 +309,7 @@ TEST_F(Messages, ForcesThatCannotBeSplit) {
 TEST_F(Messages, RefusedByOpenMm) {
     std::string const text = of_system([](auto& s) { s.addForce(new OpenMM::CustomNonbondedForce("1/r")); });  // without its particles
     EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
-    EXPECT_TRUE(text.ends_with(" (scene.yaml, forces.openmm): mend the System, or take another platform")) << text;
+    EXPECT_TRUE(text.ends_with(" (scene.yaml: forces.openmm): mend the System, or take another platform")) << text;
 }
 
 }  // namespace

@@ -149,7 +149,7 @@ TEST_F(Ranks, Replicated) {
         EXPECT_EQ(
             text,
             "NonbondedForce (PME) cannot be split over " + std::to_string(communicator.size()) +
-                " ranks (scene.yaml, forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
+                " ranks (scene.yaml: forces.openmm): set forces.openmm.replicate: true, so that every rank computes the whole System, "
                 "or run on one rank");
     });
 }
@@ -184,7 +184,7 @@ TEST_F(Ranks, OneRanksTroubleIsEverybodysMessage) {
     on_ranks([&](Communicator const& communicator) {
         std::string const text = complaint([&] { make_openmm_force(spec, split(beads, communicator.size()), communicator); });
         EXPECT_TRUE(text.starts_with("OpenMM refuses these forces: ")) << text;
-        EXPECT_NE(text.find(" (scene.yaml, forces.openmm): "), std::string::npos) << text;
+        EXPECT_NE(text.find(" (scene.yaml: forces.openmm): "), std::string::npos) << text;
     });
 }
 

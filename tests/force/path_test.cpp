@@ -38,7 +38,7 @@ TEST(Path, WhatTheSceneSaysIsTaken) {
 TEST(Path, Messages) {
     EXPECT_EQ(complaint([] { PathChoice("device", true, "s.yaml"); }), "not in this version: forces.openmm.path: device (s.yaml)");
     EXPECT_EQ(complaint([] { PathChoice("remote", true, "s.yaml"); }),
-              "OpenMM's forces have no path \"remote\" (s.yaml, forces.openmm.path): take auto, host or inline");
+              "OpenMM's forces have no path \"remote\" (s.yaml: forces.openmm.path): take auto, host or inline");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ std::string atom(int serial, std::string const& residue, char chain, double x) {
 }
 
 std::vector<PdbChain> read(std::string const& text) {
-    return read_pdb_topology(scratch_file("topology.pdb", text), "scene.yaml, topology");
+    return read_pdb_topology(scratch_file("topology.pdb", text), "scene.yaml: topology");
 }
 
 TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
@@ -38,9 +38,9 @@ TEST(PdbTopology, TheFirstModelAloneAndLinesOfOtherSystems) {
 }
 
 TEST(PdbTopology, Messages) {
-    EXPECT_EQ(complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml, topology"); }),
-              "cannot open /nowhere/a.pdb (scene.yaml, topology): name a PDB file that can be read");
-    EXPECT_NE(complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml, topology): "), std::string::npos);
+    EXPECT_EQ(complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml: topology"); }),
+              "cannot open /nowhere/a.pdb (scene.yaml: topology): name a PDB file that can be read");
+    EXPECT_NE(complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml: topology): "), std::string::npos);
     std::string broken = atom(1, "GLY", 'A', 1);
     broken.replace(30, 8, "   1.x  ");
     EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("\"1.x\" is no coordinate ("), std::string::npos);

@@ -29,6 +29,13 @@ inline RunScene const run_scenes[] = {
     {"langevin_bodies",
      "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 60, joint: spherical, seed: 1}}}]\n"
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"rattle_beads_and_bodies",
+     "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 40, length: 0.38}}}, {name: b, base: free, velocities: "
+     "thermal, generator: {random: {bodies: 20, joint: spherical, seed: 1}}}]\n"
+     "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"rk4_thermal",
+     "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 30, joint: spherical, seed: 1}}}]\n"
+     "dynamics: {integrator: rk4, step: 0.001, steps: 20, temperature: 300}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"rk4_revolute",
      "chains: [{name: a, base: fixed, generator: {random: {bodies: 60, joint: revolute, seed: 1}}}, {name: b, base: free, generator: "
      "{random: {bodies: 13, joint: "

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <string>
 
 #include "tests/mpi/world.hpp"
 
@@ -14,15 +15,16 @@ Communicator const* current = nullptr;
 class FailuresOfRank : public ::testing::EmptyTestEventListener {
   public:
     explicit FailuresOfRank(int rank) : rank_(rank) {}
+    void OnTestStart(::testing::TestInfo const& test) override { test_ = std::string(test.test_suite_name()) + "." + test.name(); }
+    // Asking GoogleTest for the present test here would wait for the lock that it holds.
     void OnTestPartResult(::testing::TestPartResult const& result) override {
         if (!result.failed()) return;
-        auto const* const test = ::testing::UnitTest::GetInstance()->current_test_info();
-        std::fprintf(stderr, "[rank %d] %s.%s: %s:%d: %s\n", rank_, test != nullptr ? test->test_suite_name() : "-",
-                     test != nullptr ? test->name() : "-", result.file_name(), result.line_number(), result.message());
+        std::fprintf(stderr, "[rank %d] %s: %s:%d: %s\n", rank_, test_.c_str(), result.file_name(), result.line_number(), result.message());
     }
 
   private:
     int rank_;
+    std::string test_ = "-";
 };
 
 }  // namespace

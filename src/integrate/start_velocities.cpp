@@ -1,4 +1,4 @@
-#include "report/start_velocities.hpp"
+#include "integrate/start_velocities.hpp"
 
 #include <algorithm>
 
