@@ -24,7 +24,7 @@ double number(nlohmann::json const& object, char const* key) {
 
 std::string text_of(Scene const& scene, nlohmann::json const& s) {
     Text text;
-    auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel"), &constraints = s.at("constraints");
+    auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
     text.heading(title_of(scene));
     text.entry("steps", fmt::format("{} to {}, {:.6g} {} in all", run.at("first_step").get<std::int64_t>(),
                                     run.at("last_step").get<std::int64_t>(), number(run, "time"), time_unit(scene)));
@@ -42,8 +42,8 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
     if (run.at("integrator") == name_of(Integrator::rk4))
         text.entry("constraint error", "none: joint coordinates cannot drift apart");
     else
-        text.entry("constraint error",
-                   fmt::format("{:.2e}, tolerance {:.0e}", number(constraints, "largest_error"), number(constraints, "tolerance")));
+        text.entry("constraint error", fmt::format("{:.2e}, tolerance {:.0e}", number(s.at("constraints"), "largest_error"),
+                                                   number(s.at("constraints"), "tolerance")));
     bool first = true;
     if (auto const last = s.find("last_observables"); last != s.end())
         for (auto const& [name, value] : last->items()) {

@@ -176,7 +176,7 @@ forces: {openmm: {builder: calvados2}})y",
      "the force field's temperature is that of the run, 0 (s.yaml: forces.openmm, line 3): add `temperature: 300` here"},
     {"force_group", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, force_groups: [32]}})y",
-     "force_groups 32 is above 31 (s.yaml: forces.openmm.force_groups[0], line 2): give 31 or less"},
+     "key `force_groups` means nothing for a builder (s.yaml: forces.openmm.force_groups, line 2): leave it out or give `system`"},
 };
 INSTANTIATE_TEST_SUITE_P(Sections, Refused, testing::ValuesIn(sections_cases), name_of_case);
 

@@ -19,7 +19,7 @@ box: {periodic: [60, 50, 40]}
 forces:
   gravity: [0, 1, 2]
   openmm: {builder: calvados2, temperature: 310, ionic_strength: 0.1, ph: 7.4, switch_width: 0.2, platform: CPU, precision: mixed, threads: 2, device: 1, path: inline,
-           replicate: true, force_groups: [0, 2]}
+           replicate: true}
 dynamics: {integrator: g-baoab, step: 0.01, steps: 1e4, temperature: 300, friction: 0.5, seed: 12345678901234567890, constraint_tolerance: 1e-9}
 solver: {backend: segments, handles: full, threads: 3, gpu_levels: "4,2"}
 output: {every: 10, checkpoint_every: 1000, observables: [energy, radius_of_gyration], joint_forces: true, velocities: true}
@@ -45,7 +45,6 @@ TEST(Scenes, every_section) {
     EXPECT_EQ(o.device, 1);
     EXPECT_EQ(o.path, "inline");
     EXPECT_TRUE(o.replicate);
-    EXPECT_EQ(o.force_groups, (std::vector<int>{0, 2}));
     DynamicsSpec const& d = s.dynamics;
     EXPECT_TRUE(d.given);
     EXPECT_EQ(d.integrator, Integrator::g_baoab);
@@ -113,7 +112,7 @@ TEST(Hash, tells_what_decides_the_motion) {
          {"dynamics.step=0.011", "dynamics.seed=2", "dynamics.friction=0.4", "dynamics.temperature=301", "dynamics.integrator=rattle",
           "dynamics.constraint_tolerance=1e-8", "box.periodic[0]=61", "box=none", "forces.gravity=[0, 1, 3]", "forces.openmm.ph=7",
           "forces.openmm.temperature=300", "forces.openmm.switch_width=0", "forces.openmm=null", "chains[0].sequence=MDVFMKGLSS",
-          "chains[0].velocities=zero", "chains[0].name=b", "chains[0].conformation=self_avoiding", "forces.openmm.force_groups=[0]"})
+          "chains[0].velocities=zero", "chains[0].name=b", "chains[0].conformation=self_avoiding"})
         EXPECT_NE(hash({other}), plain) << other;
 }
 
