@@ -1,5 +1,6 @@
 #include "chain/chain_group.hpp"
 
+#define EIGEN_DONT_PARALLELIZE  // threads are the executor's
 #include <Eigen/Dense>
 #include <algorithm>
 

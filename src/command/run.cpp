@@ -38,6 +38,8 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
         text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces", 100 * number(*forces, "matrix_sweep_hidden")));
+        for (auto const& line : forces->at("description"))
+            if (line.get<std::string>().starts_with("warning:")) text.note(line.get<std::string>());
     }
     if (run.at("integrator") == name_of(Integrator::rk4))
         text.entry("constraint error", "none: joint coordinates cannot drift apart");

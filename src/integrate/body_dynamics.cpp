@@ -1,3 +1,4 @@
+#define EIGEN_DONT_PARALLELIZE  // threads are the executor's
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
