@@ -1,6 +1,7 @@
 // The local backward residual of forward dynamics in joint coordinates (formulas, "Residuals").
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrate/joint_dynamics.hpp"
 
@@ -80,8 +81,8 @@ double JointDynamics::residual() {
     }
     exchange_from_inboard(communicator_, group_, outboard.view());
 
-    auto const [bias, pitch] = bias_.view();  // -c, with g at a chain's first joint
-    auto const closing = [&, origin = bias, pitch = pitch](std::int64_t k) {
+    ConstDirectionsView const bias = std::as_const(bias_).view();  // -c, with g at a chain's first joint
+    auto const closing = [&, origin = bias.origin, pitch = bias.pitch](std::int64_t k) {
         HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
         Vector<double, 8> const before = group_.is_first[k] ? Vector<double, 8>::zero() : outboard.view().load(k - 1);
         Vec3 const linear_bias{{origin[k], origin[pitch + k], origin[2 * pitch + k]}};
