@@ -25,5 +25,6 @@ class Executor {
 std::unique_ptr<Executor> serial_executor();
 /// `threads` OpenMP threads. Throws "built without OpenMP" where it is absent.
 std::unique_ptr<Executor> openmp_executor(int threads);
+bool openmp_is_built();
 
 }  // namespace catena

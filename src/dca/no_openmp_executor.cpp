@@ -3,6 +3,8 @@
 
 namespace catena {
 
+bool openmp_is_built() { return false; }
+
 std::unique_ptr<Executor> openmp_executor(int) {
     throw built_without("OpenMP", "solver.backend: openmp", "build with OpenMP or use the backend segments");
 }

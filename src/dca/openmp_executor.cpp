@@ -35,6 +35,8 @@ class OpenMpExecutor final : public Executor {
 
 }  // namespace
 
+bool openmp_is_built() { return true; }
+
 std::unique_ptr<Executor> openmp_executor(int threads) { return std::make_unique<OpenMpExecutor>(std::max(threads, 1)); }
 
 }  // namespace catena

@@ -31,8 +31,9 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
-    return choose_threads(scene, communicator) > 1 && scene.bodies() / communicator.size() >= worth_threads ? Backend::openmp
-                                                                                                            : Backend::segments;
+    return openmp_is_built() && choose_threads(scene, communicator) > 1 && scene.bodies() / communicator.size() >= worth_threads
+               ? Backend::openmp
+               : Backend::segments;
 }
 
 int choose_threads(Scene const& scene, Communicator const& communicator) {
