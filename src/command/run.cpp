@@ -5,7 +5,6 @@
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "integrate/simulation.hpp"
-#include "integrate/start_velocities.hpp"
 
 namespace catena::command {
 namespace {
@@ -72,9 +71,7 @@ Outcome run_scene(Scene const& scene, Communicator const& communicator, RunReque
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;
-    // In absolute coordinates the run draws its velocities itself.
-    bool const draws = scene.dynamics.integrator != Integrator::rk4;
-    nlohmann::json const summary = run_simulation(draws ? scene : with_start_velocities(scene, communicator), communicator, options);
+    nlohmann::json const summary = run_simulation(scene, communicator, options);
     Outcome outcome;
     outcome.valid = summary.at("valid").get<bool>();
     if (communicator.rank() != 0) return outcome;

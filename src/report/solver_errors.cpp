@@ -78,20 +78,11 @@ std::string kinds_of(Scene const& scene) {
     return joined;
 }
 
-bool has_threads() {
-    try {
-        openmp_executor(1);
-        return true;
-    } catch (InputError const&) {
-        return false;
-    }
-}
-
 }  // namespace
 
 std::vector<Backend> cpu_backends() {
     std::vector<Backend> backends{Backend::serial, Backend::segments};
-    if (has_threads()) backends.push_back(Backend::openmp);
+    if (openmp_is_built()) backends.push_back(Backend::openmp);
     return backends;
 }
 
