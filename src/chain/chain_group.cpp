@@ -27,8 +27,14 @@ int restricted_directions(JointType type) {
             return 1;
         case JointType::spherical:
             return 3;
+        case JointType::universal:
+            return 4;
         case JointType::revolute:
+        case JointType::prismatic:
+        case JointType::helical:
             return 5;
+        case JointType::weld:
+            return 6;
     }
     return 0;
 }

@@ -53,7 +53,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()),
                                   dca::run_length_for(static_cast<std::int64_t>(chain.size()), k, pairwise));
         double const numbers =
-            chain.is_beads() ? bead_numbers : body_numbers + (scene.dynamics.integrator == Integrator::rk4 ? runge_kutta_numbers : 0);
+            chain.is_beads() ? bead_numbers : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? runge_kutta_numbers : 0);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

@@ -11,7 +11,7 @@ namespace catena::command {
 namespace {
 
 Axes axes_for(Scene const& scene) {
-    return scene.dynamics.given && scene.dynamics.integrator != Integrator::rk4 ? Axes::world : Axes::joint;
+    return scene.dynamics.given && !uses_joint_coordinates(scene.dynamics.integrator) ? Axes::world : Axes::joint;
 }
 
 std::string backend_reason(Scene const& scene, Communicator const& communicator) {
@@ -126,6 +126,8 @@ StepPlan step_of(DynamicsSpec const& d) {
     switch (d.integrator) {
         case Integrator::rk4:
             return {4, 4, 0, "4 evaluations: 4 matrix sweeps, 4 bias sweeps; joint coordinates need no projection"};
+        case Integrator::velocity_verlet:
+            return {1, 1, 0, "1 evaluation: 1 matrix sweep, 1 bias sweep; joint coordinates need no projection"};
         case Integrator::rattle:
             return {
                 1, 1, 1,

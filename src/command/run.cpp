@@ -40,7 +40,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
         for (auto const& line : forces->at("description"))
             if (line.get<std::string>().starts_with("warning:")) text.note(line.get<std::string>());
     }
-    if (run.at("integrator") == name_of(Integrator::rk4))
+    if (!s.contains("constraints"))
         text.entry("constraint error", "none: joint coordinates cannot drift apart");
     else
         text.entry("constraint error", fmt::format("{:.2e}, tolerance {:.0e}", number(s.at("constraints"), "largest_error"),

@@ -74,7 +74,7 @@ class Run {
           options_(options),
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene_.dynamics.steps)),
-          system_(scene_, scene_.dynamics.integrator == Integrator::rk4 ? Axes::joint : Axes::world, communicator) {
+          system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator) {
         stepper_ = make_stepper(system_, scene_.dynamics);
     }
 
@@ -321,7 +321,7 @@ json run_simulation(Scene const& scene, Communicator const& communicator, RunOpt
     if (!options.steps && scene.dynamics.steps == 0)
         throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
     // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
-    if (scene.dynamics.integrator == Integrator::rk4) return Run(with_start_velocities(scene, communicator), communicator, options).run();
+    if (uses_joint_coordinates(scene.dynamics.integrator)) return Run(with_start_velocities(scene, communicator), communicator, options).run();
     return Run(scene, communicator, options).run();
 }
 

@@ -115,7 +115,7 @@ class ConstrainedStepper final : public Stepper {
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(ChainSystem& system, DynamicsSpec const& dynamics) {
-    if (dynamics.integrator == Integrator::rk4) return std::make_unique<JointStepper>(system, dynamics.step);
+    if (uses_joint_coordinates(dynamics.integrator)) return std::make_unique<JointStepper>(system, dynamics.step);
     return std::make_unique<ConstrainedStepper>(system, dynamics);
 }
 

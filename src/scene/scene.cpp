@@ -91,6 +91,14 @@ char const* name_of(JointType type) {
             return "spherical";
         case JointType::revolute:
             return "revolute";
+        case JointType::universal:
+            return "universal";
+        case JointType::weld:
+            return "weld";
+        case JointType::prismatic:
+            return "prismatic";
+        case JointType::helical:
+            return "helical";
     }
     return "?";
 }
@@ -99,6 +107,8 @@ char const* name_of(Integrator integrator) {
     switch (integrator) {
         case Integrator::rk4:
             return "rk4";
+        case Integrator::velocity_verlet:
+            return "velocity-verlet";
         case Integrator::rattle:
             return "rattle";
         case Integrator::g_baoab:

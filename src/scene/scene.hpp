@@ -14,32 +14,93 @@
 
 namespace catena {
 
-enum class JointType : std::uint8_t { free, link, spherical, revolute };
+enum class JointType : std::uint8_t { free, link, spherical, revolute, universal, weld, prismatic, helical };
 enum class Base { free, fixed };
-enum class Tip { free };
+enum class Tip { free, jointed };
 enum class StartVelocities { given, zero, thermal };
 
-/// Rigid bodies of one chain; entry k is body k + 1 and its inboard joint. A body's origin is its inboard joint.
-/// The last five arrays may be empty, which means zero.
+/// A prescribed coordinate: offset + rate t + amplitude sin(2 pi frequency t + phase).
+struct Course {
+    double offset = 0, rate = 0, amplitude = 0, frequency = 0, phase = 0;
+};
+/// A joint that is driven: revolute, prismatic and helical by the first course, universal by both. What the joint's q and qd
+/// say is overwritten by the course at every time; its torque, stiffness and damping mean nothing.
+struct DrivenJoint {
+    std::int64_t body = 0;  // index from 0; ascending in a list
+    std::array<Course, 2> course;
+};
+
+/// Beads (points that OpenMM knows) fixed in bodies. Empty where no body of the chain carries any.
+struct CarriedBeads {
+    std::vector<std::int64_t> offset;  // bodies + 1: body k carries beads [offset[k], offset[k+1])
+    std::vector<Vec3> position;        // from the body's origin, B
+    std::vector<double> mass;          // for the topology and OpenMM; the body's own mass counts in the dynamics
+    std::vector<std::string> residue;
+
+    std::size_t size() const { return position.size(); }
+};
+
+/// Rigid bodies of one chain; entry k is body k + 1 and its inboard joint. A body's origin is its inboard joint (prismatic and
+/// helical: the point that lies on the joint frame's origin at q = 0). Between J and B stands the joint's own motion X(q):
+/// revolute: turn by q about `axis`; prismatic: shift by q along `axis`; helical: turn by q and shift by pitch q;
+/// universal: turn by q[0] about `first_axis`, then by q[1] about `axis`; weld: none.
+/// The arrays from `first_axis` on may be empty, which means zero (first_axis: no universal joint; pitch: no helical joint).
 struct BodyArrays {
     std::vector<double> mass;
     std::vector<Vec3> com;                 // from the origin, B
     std::vector<Sym3> inertia;             // about com, B
     std::vector<JointType> joint;          // entry 0 of a free base: JointType::free
-    std::vector<Vec3> axis;                // revolute: unit axis, B (and J: the same components)
+    std::vector<Vec3> axis;                // unit axis, B (and J: the same components); universal: the second axis, B
     std::vector<Mat3> rotation;            // R of the joint frame in the inboard body's axes (entry 0: ground)
     std::vector<Vec3> translation;         // origin of the joint frame from the inboard body's origin, inboard body's axes
-    std::vector<std::array<double, 4>> q;  // revolute: {angle, 0, 0, 0}; spherical and free: unit quaternion w x y z of B in J (free: in W)
-    std::vector<Vec3> qd;                  // revolute: {rate, 0, 0}; spherical and free: angular velocity relative to the inboard body, B
+    std::vector<std::array<double, 4>> q;  // {angle or shift, 0, 0, 0}; universal {angle 1, angle 2, 0, 0}; spherical and free: unit
+                                           // quaternion w x y z of B in J (free: in W); weld: zeros
+    std::vector<Vec3> qd;                  // rates of q; spherical and free: angular velocity relative to the inboard body, B
     Vec3 free_position = Vec3::zero();     // free base: origin of body 1, W
     Vec3 free_velocity = Vec3::zero();     // free base: its velocity, W
-    std::vector<Vec3> torque;              // joint torque on body k + 1: revolute {t, 0, 0}; spherical: components in B
-    std::vector<Vec3> stiffness;           // revolute {k, 0, 0}; spherical: on the components of the rotation vector from `rest`
+    std::vector<Vec3> first_axis;          // universal: the first axis, J; not parallel to `axis`
+    std::vector<double> pitch;             // helical: shift a radian
+    std::vector<Vec3> torque;              // joint torque (prismatic: force) on body k + 1 along each coordinate; spherical: components in B
+    std::vector<Vec3> stiffness;           // a coordinate; spherical: on the components of the rotation vector from `rest`
     std::vector<Vec3> damping;             // on qd, as stiffness
     std::vector<std::array<double, 4>> rest;    // as q
     std::vector<std::pair<Vec3, Vec3>> wrench;  // external {torque, force} at com, W
+    std::vector<std::array<double, 2>> drag;    // {linear, angular}: force -linear v at com, torque -angular omega
+    std::vector<DrivenJoint> driven;            // sparse
+    CarriedBeads carried;
 
     std::size_t size() const { return mass.size(); }
+};
+
+/// Rigid bodies and point beads joined by links of fixed length, in absolute coordinates; entry k is body k + 1 and the link on
+/// its inboard side, which runs from point `outboard` of the body before to point `inboard` of this one.
+struct LinkedArrays {
+    std::vector<double> mass;
+    std::vector<Sym3> inertia;                       // about com, B; all zero: a point bead
+    std::vector<Vec3> position, velocity;            // of com, W, unwrapped
+    std::vector<std::array<double, 4>> orientation;  // unit quaternion w x y z of B in W
+    std::vector<Vec3> omega;                         // B
+    std::vector<Vec3> inboard, outboard;             // ends of the links from com, B; a point bead: zero
+    std::vector<double> length;                      // of the inboard link; entry 0 counts only for a fixed base (from the anchor)
+    CarriedBeads carried;                            // positions from com, B; a point bead carries itself
+    Vec3 anchor = Vec3::zero();                      // W, fixed base
+
+    bool is_bead(std::size_t k) const { return inertia[k].data[0] == 0; }
+    std::size_t size() const { return mass.size(); }
+};
+
+/// A joint from the last body to the ground. Its joint frame J is fixed in the last body as every joint's in its inboard body;
+/// on the other side stands a frame G at rest in the ground, in the place of an outboard body's. Where G is follows from the
+/// start: G = J X(q). A link instead runs from the last bead to the ground point `anchor`.
+struct TipJoint {
+    JointType type = JointType::spherical;
+    Vec3 axis = Vec3::zero(), first_axis = Vec3::zero();
+    double pitch = 0;
+    Mat3 rotation = Mat3::identity();
+    Vec3 translation = Vec3::zero();
+    std::array<double, 4> q{0, 0, 0, 0};  // as BodyArrays::q
+    std::optional<Vec3> anchor;           // W: where G's origin must be (closure error above 1e-9 of the chain's reach: refused); link: needed
+    double length = 0;                    // link; 0: the distance at the start
 };
 
 /// Point beads on rigid links; entry k is bead k + 1 and the link on its inboard side.
@@ -54,17 +115,20 @@ struct BeadArrays {
     std::size_t size() const { return mass.size(); }
 };
 
-/// One chain. Exactly one of `beads` and `bodies` is filled. A scene's `count: N` becomes N such chains.
+/// One chain. Exactly one of `beads`, `bodies` and `linked` is filled. A scene's `count: N` becomes N such chains.
 struct ChainSpec {
     std::string name;
     Base base = Base::free;
     Tip tip = Tip::free;
+    TipJoint tip_joint;  // of a jointed tip
     StartVelocities velocities = StartVelocities::given;
     BeadArrays beads;
     BodyArrays bodies;
+    LinkedArrays linked;
 
     bool is_beads() const { return beads.size() > 0; }
-    std::size_t size() const { return beads.size() + bodies.size(); }
+    bool is_linked() const { return linked.size() > 0; }
+    std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
 };
 
 struct OpenMmSpec {
@@ -88,10 +152,14 @@ struct OpenMmSpec {
 
 struct ForceSpec {
     Vec3 gravity = Vec3::zero();  // W
+    double linear_drag = 0, angular_drag = 0;  // of every body that has none of its own
     std::optional<OpenMmSpec> openmm;
 };
 
-enum class Integrator { rk4, rattle, g_baoab };
+enum class Integrator { rk4, velocity_verlet, rattle, g_baoab };
+/// Whether the state is in joint coordinates (else: absolute ones).
+inline bool uses_joint_coordinates(Integrator i) { return i == Integrator::rk4 || i == Integrator::velocity_verlet; }
+
 
 struct DynamicsSpec {
     bool given = false;  // the scene has a `dynamics` section

@@ -36,7 +36,7 @@ void check_integrator(Node const& root, DynamicsSpec const& dynamics, Draft cons
     ChainSpec const& chain = draft.chain;
     Node const& section = *root.find("dynamics");
     Node const& at = *section.find("integrator");
-    if (dynamics.integrator == Integrator::rk4) {
+    if (uses_joint_coordinates(dynamics.integrator)) {
         if (chain.is_beads())
             fail(at, fmt::format("integrator rk4 works in joint coordinates, chain `{}` has links", shown(chain.name)),
                  "use `integrator: rattle` or `g-baoab`");
