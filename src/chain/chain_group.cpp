@@ -3,21 +3,39 @@
 #define EIGEN_DONT_PARALLELIZE  // threads are the executor's
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 
 namespace catena {
 namespace {
 
-/// Columns (p, q, axis), right-handed; the identity where all rotations are free.
-Mat3 joint_axes(JointType type, Vec3 const& axis) {
-    if (type != JointType::revolute) return Mat3::identity();
-    Eigen::Vector3d const z(axis[0], axis[1], axis[2]);
-    Eigen::Vector3d const p = z.unitOrthogonal(), q = z.cross(p).normalized();
+Eigen::Vector3d as_eigen(Vec3 const& v) { return {v[0], v[1], v[2]}; }
+Vec3 from_eigen(Eigen::Vector3d const& v) { return {{v[0], v[1], v[2]}}; }
+Mat3 columns(Eigen::Vector3d const& p, Eigen::Vector3d const& q, Vec3 const& axis) {
     Mat3 m;
-    m.set_column(0, {{p[0], p[1], p[2]}});
-    m.set_column(1, {{q[0], q[1], q[2]}});
+    m.set_column(0, from_eigen(p));
+    m.set_column(1, from_eigen(q));
     m.set_column(2, axis);
     return m;
 }
+
+/// Columns (p, q, axis), right-handed; the identity where the joint has no axis. Universal: p is normal to both axes.
+Mat3 joint_axes(JointType type, Vec3 const& axis, Vec3 const& first_axis) {
+    if (type == JointType::free || type == JointType::link || type == JointType::spherical || type == JointType::weld)
+        return Mat3::identity();
+    Eigen::Vector3d const z = as_eigen(axis);
+    Eigen::Vector3d const p = type == JointType::universal ? as_eigen(first_axis).cross(z).normalized() : z.unitOrthogonal();
+    return columns(p, z.cross(p).normalized(), axis);
+}
+
+/// {c, s, rate} of ChainGroup::screw.
+Vec3 screw_of(JointType type, double pitch) {
+    if (type == JointType::prismatic) return {{0, 1, 1}};
+    double const rate = type == JointType::helical ? std::hypot(1.0, pitch) : 1.0;
+    return {{1 / rate, type == JointType::helical ? pitch / rate : 0.0, rate}};
+}
+bool slides(JointType type) { return type == JointType::prismatic || type == JointType::helical; }
 
 int restricted_directions(JointType type) {
     switch (type) {
@@ -53,9 +71,47 @@ Vector<double, 6> inverse(Sym3 const& inertia) {
     return {{i(0, 0), 0.5 * (i(1, 0) + i(0, 1)), i(1, 1), 0.5 * (i(2, 0) + i(0, 2)), 0.5 * (i(2, 1) + i(1, 2)), i(2, 2)}};
 }
 
+/// Of joint `body` (from 0); the number of bodies stands for the tip's.
 JointType joint_type(ChainSpec const& spec, std::int64_t body) {
-    if (!spec.is_beads()) return spec.bodies.joint[body];
+    if (body == static_cast<std::int64_t>(spec.size())) return spec.tip == Tip::jointed ? spec.tip_joint.type : JointType::free;
+    if (spec.bodies.size() > 0) return spec.bodies.joint[body];
     return body == 0 && spec.base == Base::free ? JointType::free : JointType::link;
+}
+bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
+    auto const& driven = spec.bodies.driven;
+    auto const found =
+        std::lower_bound(driven.begin(), driven.end(), body, [](DrivenJoint const& d, std::int64_t k) { return d.body < k; });
+    return found != driven.end() && found->body == body;
+}
+int restricted_at(ChainSpec const& spec, std::int64_t body) {
+    return is_driven_joint(spec, body) ? 6 : restricted_directions(joint_type(spec, body));
+}
+
+/// Whether every axis is that of joint 1 and nothing else moves: all joints revolute on a fixed base, a tip free or of that kind.
+/// Axes count as parallel within a few roundings of rotation matrices.
+bool is_planar(ChainSpec const& spec) {
+    BodyArrays const& b = spec.bodies;
+    if (b.size() == 0 || spec.base != Base::fixed || !b.driven.empty()) return false;
+    auto const parallel = [](Vec3 const& in_body, Mat3 const& rotation, Vec3 const& axis) {
+        return norm(cross(in_body, rotation * axis)) <= 32 * std::numeric_limits<double>::epsilon();
+    };
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        if (b.joint[k] != JointType::revolute) return false;
+        if (k > 0 && !parallel(b.axis[k - 1], b.rotation[k], b.axis[k])) return false;
+    }
+    return spec.tip == Tip::free ||
+           (spec.tip_joint.type == JointType::revolute && parallel(b.axis.back(), spec.tip_joint.rotation, spec.tip_joint.axis));
+}
+
+/// Directions that hold every joint of the chain.
+int smallest_directions(ChainSpec const& spec) {
+    if (spec.bodies.size() == 0) return 1;
+    if (is_planar(spec)) return 2;
+    int most = 3;
+    auto const n = static_cast<std::int64_t>(spec.size());
+    for (std::int64_t k = 0; k <= n; ++k)
+        most = std::max(most, k < n ? restricted_directions(spec.bodies.joint[k]) : restricted_at(spec, k));
+    return spec.bodies.driven.empty() ? most : 6;
 }
 
 void fill_bead(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
@@ -64,27 +120,69 @@ void fill_bead(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     group.length.set(k, {{spec.beads.length[body]}});
 }
 
+void fill_inertia(ChainGroup& group, Sym3 const& inertia, std::int64_t k) {
+    Vector<double, 6> v;
+    for (int i = 0; i < 6; ++i) v[i] = inertia.data[i];
+    group.inertia.set(k, v);
+    group.inverse_inertia.set(k, inverse(inertia));
+}
+
+/// Planar chains turn about the axis alone: a a^T / (a . J a) in the place of the inverse inertia.
+void keep_axis_alone(ChainGroup& group, Sym3 const& inertia, Vec3 const& axis, std::int64_t k) {
+    double const about = dot(axis, inertia * axis);
+    Vector<double, 6> v;
+    for (int i = 0, at = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j) v[at++] = axis[i] * axis[j] / about;
+    group.inverse_inertia.set(k, v);
+}
+
 void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     BodyArrays const& b = spec.bodies;
     group.mass.set(k, {{b.mass[body]}});
     group.inverse_mass.set(k, {{1.0 / b.mass[body]}});
-    Vector<double, 6> inertia;
-    for (int i = 0; i < 6; ++i) inertia[i] = b.inertia[body].data[i];
-    group.inertia.set(k, inertia);
-    group.inverse_inertia.set(k, inverse(b.inertia[body]));
+    fill_inertia(group, b.inertia[body], k);
+    if (group.planar) keep_axis_alone(group, b.inertia[body], b.axis[body], k);
+    auto const axes = [&](std::int64_t joint) {
+        bool const universal = b.joint[joint] == JointType::universal;
+        return joint_axes(b.joint[joint], b.axis[joint], universal ? b.first_axis[joint] : Vec3::zero());
+    };
     group.r1.set(k, -b.com[body]);
-    group.axes1.set(k, flat(joint_axes(b.joint[body], b.axis[body])));
+    group.axes1.set(k, flat(axes(body)));
     Quat const rotation = to_quaternion(b.rotation[body]);
     group.joint_rotation.set(k, {{rotation.w, rotation.x, rotation.y, rotation.z}});
     group.joint_translation.set(k, b.translation[body]);
     bool const last = body + 1 == static_cast<std::int64_t>(b.size());
     group.r2.set(k, last ? Vec3::zero() : b.translation[body + 1] - b.com[body]);
-    group.axes2.set(k, flat(last ? Mat3::identity() : b.rotation[body + 1] * joint_axes(b.joint[body + 1], b.axis[body + 1])));
+    group.axes2.set(k, flat(last ? Mat3::identity() : b.rotation[body + 1] * axes(body + 1)));
+    if (group.has_universal && b.joint[body] == JointType::universal) group.first_axis.set(k, b.first_axis[body]);
+    if (group.has_screws) group.screw.set(k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
+}
+
+void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
+    LinkedArrays const& b = spec.linked;
+    group.mass.set(k, {{b.mass[body]}});
+    group.inverse_mass.set(k, {{1.0 / b.mass[body]}});
+    if (!b.is_bead(static_cast<std::size_t>(body))) fill_inertia(group, b.inertia[body], k);  // a bead: zero
+    group.r1.set(k, b.inboard[body]);
+    group.r2.set(k, b.outboard[body]);
+    group.length.set(k, {{b.length[body]}});
+}
+
+void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
+    TipJoint const& tip = spec.tip_joint;
+    LocalTip local{k, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
+                   std::min(group.directions, restricted_directions(tip.type))};
+    group.jointed_tip[k] = 1;
+    if (!group.beads && !group.linked) {
+        group.r2.set(k, tip.translation - spec.bodies.com.back());
+        group.axes2.set(k, flat(tip.rotation * local.axes));
+    }
+    group.tips.push_back(local);
 }
 
 int directions_of(ChainGroup const& group) {
-    if (group.handles == Handles::full) return group.beads ? 3 : 6;
-    return group.beads ? 1 : group.has_revolute ? 5 : 3;
+    if (group.handles == Handles::full) return group.beads || group.linked ? 3 : 6;
+    return group.smallest_directions;
 }
 
 void allocate(ChainGroup& group) {
@@ -94,18 +192,19 @@ void allocate(ChainGroup& group) {
     group.joint.assign(n, JointType::free);
     group.mass = Field<1>(n);
     group.inverse_mass = Field<1>(n);
-    if (group.beads) {
-        group.length = Field<1>(n);
-        return;
-    }
+    if (group.beads || group.linked) group.length = Field<1>(n);
+    if (group.beads) return;
     group.inertia = Field<6>(n);
     group.inverse_inertia = Field<6>(n);
     group.r1 = Field<3>(n);
     group.r2 = Field<3>(n);
+    if (group.linked) return;
     group.axes1 = Field<9>(n);
     group.axes2 = Field<9>(n);
     group.joint_rotation = Field<4>(n);
     group.joint_translation = Field<3>(n);
+    if (group.has_universal) group.first_axis = Field<3>(n);
+    if (group.has_screws) group.screw = Field<3>(n);
 }
 
 void fill(ChainGroup& group, Scene const& scene) {
@@ -116,20 +215,33 @@ void fill(ChainGroup& group, Scene const& scene) {
             group.joint[k] = joint_type(spec, body);
             group.is_first[k] = body == 0;
             group.is_last[k] = body + 1 == static_cast<std::int64_t>(spec.size());
-            group.beads ? fill_bead(group, spec, body, k) : fill_body(group, spec, body, k);
+            group.beads    ? fill_bead(group, spec, body, k)
+            : group.linked ? fill_linked(group, spec, body, k)
+                           : fill_body(group, spec, body, k);
         }
+        for (DrivenJoint const& driven : spec.bodies.driven)
+            if (driven.body >= piece.body && driven.body < piece.body + piece.count)
+                group.drives.push_back({piece.local + driven.body - piece.body, driven.course});
+        if (piece.ends && spec.tip == Tip::jointed) add_tip(group, spec, piece.local + piece.count - 1);
     }
 }
 
 /// Joints at the boundaries of shared units are eliminated at the top, under another index: their local entries stay 0.
 void fill_restricted(ChainGroup& group, Scene const& scene) {
     dca::Schedule const& s = group.schedule;
+    auto const restricted = [&](int chain, std::int64_t body) {
+        return static_cast<std::uint8_t>(std::min(group.directions, restricted_at(scene.chains[group.chain[chain]], body)));
+    };
     group.restricted_of_joint.assign(static_cast<std::size_t>(s.joints), 0);
-    for (std::int64_t k = 0; k < group.size; ++k)
-        group.restricted_of_joint[k] = static_cast<std::uint8_t>(restricted_directions(group.joint[k]));
+    for (dca::Piece const& piece : group.pieces)
+        for (std::int64_t i = 0; i < piece.count; ++i) group.restricted_of_joint[piece.local + i] = restricted(piece.chain, piece.body + i);
+    for (std::size_t i = 0; i < s.tip_chain.size(); ++i)
+        if (!group.partition.is_split(s.tip_chain[i]))
+            group.restricted_of_joint[s.first_tip() + static_cast<std::int64_t>(i)] =
+                restricted(s.tip_chain[i], group.partition.trees[s.tip_chain[i]].bodies);
     for (std::size_t i = 0; i < s.top_chain_of_joint.size(); ++i)
-        group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] = static_cast<std::uint8_t>(
-            restricted_directions(joint_type(scene.chains[group.chain[s.top_chain_of_joint[i]]], s.top_body_of_joint[i])));
+        group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] =
+            restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
     for (dca::TopCopy const& copy : s.top_copies) group.restricted_of_joint[copy.to] = 0;
 }
 
@@ -141,39 +253,79 @@ void find_neighbours(ChainGroup& group, int rank) {
     if (!group.pieces.back().ends) group.neighbour_outboard = p.owner(end);
 }
 
-ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, bool beads, Axes axes, Handles handles, bool pairwise,
+/// What kinds of joints a group's chains have.
+void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
+    auto const look = [&](JointType type) {
+        group.has_universal = group.has_universal || type == JointType::universal;
+        group.has_screws = group.has_screws || slides(type);
+    };
+    for (JointType const type : spec.bodies.joint) look(type);
+    if (spec.bodies.size() > 0 && spec.tip == Tip::jointed) look(spec.tip_joint.type);
+    group.smallest_directions = std::max(group.smallest_directions, smallest_directions(spec));
+}
+
+ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes, Handles handles, bool pairwise,
                       Communicator const& communicator) {
     ChainGroup group;
-    group.beads = beads;
-    group.axes = beads ? Axes::world : axes;
+    ChainSpec const& any = scene.chains[chains.front()];
+    group.beads = any.is_beads();
+    group.linked = any.is_linked();
+    group.axes = group.beads || group.linked ? Axes::world : axes;
     group.handles = handles;
     group.chain = chains;
+    group.smallest_directions = 1;
     std::vector<std::int64_t> lengths;
+    std::vector<std::uint8_t> tips;
     std::vector<std::int64_t> first_in_scene{0};
     for (ChainSpec const& spec : scene.chains) first_in_scene.push_back(first_in_scene.back() + static_cast<std::int64_t>(spec.size()));
     for (int const chain : chains) {
-        lengths.push_back(static_cast<std::int64_t>(scene.chains[chain].size()));
-        group.name.push_back(scene.chains[chain].name);
-        group.base.push_back(scene.chains[chain].base);
+        ChainSpec const& spec = scene.chains[chain];
+        lengths.push_back(static_cast<std::int64_t>(spec.size()));
+        group.name.push_back(spec.name);
+        group.base.push_back(spec.base);
         group.first_in_scene.push_back(first_in_scene[chain]);
-        auto const& joints = scene.chains[chain].bodies.joint;
-        group.has_revolute = group.has_revolute || std::find(joints.begin(), joints.end(), JointType::revolute) != joints.end();
+        tips.push_back(spec.tip == Tip::jointed);
+        look_at_joints(group, spec);
     }
     group.directions = directions_of(group);
-    group.partition = dca::Partition(lengths, group.directions, pairwise, communicator.size());
+    group.planar = group.directions == 2;
+    group.partition = dca::Partition(lengths, group.directions, pairwise, communicator.size(), tips);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
+    if (std::find(tips.begin(), tips.end(), 1) != tips.end()) group.jointed_tip.assign(static_cast<std::size_t>(group.size), 0);
     allocate(group);
     fill(group, scene);
     fill_restricted(group, scene);
     find_neighbours(group, communicator.rank());
+    if (group.has_screws) exchange_from_outboard(communicator, group, group.screw.view());
     return group;
+}
+
+/// Chains of one number go into one group.
+int group_of(ChainSpec const& spec, Axes axes, Handles handles) {
+    if (spec.is_beads()) return 0;
+    if (spec.is_linked()) return 1;
+    if (handles == Handles::full) return 6;
+    return axes == Axes::world ? 3 : smallest_directions(spec);
 }
 
 }  // namespace
 
-char const* ChainGroup::kind() const { return beads ? "link" : has_revolute ? "revolute" : "spherical"; }
+char const* ChainGroup::kind() const {
+    static char const* const kinds[] = {"", "link", "planar", "spherical", "universal", "revolute", "full"};
+    return kinds[smallest_directions];
+}
+
+bool ChainGroup::is_driven(std::int64_t k) const {
+    auto const found =
+        std::lower_bound(drives.begin(), drives.end(), k, [](LocalDrive const& d, std::int64_t body) { return d.body < body; });
+    return found != drives.end() && found->body == k;
+}
+
+int ChainGroup::restricted(std::int64_t k) const {
+    return std::min(directions, !drives.empty() && is_driven(k) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
+}
 
 std::int64_t ChainGroup::scene_index(std::int64_t k) const {
     auto const piece =
@@ -181,16 +333,26 @@ std::int64_t ChainGroup::scene_index(std::int64_t k) const {
     return first_in_scene[piece->chain] + piece->body + (k - piece->local);
 }
 
+std::vector<LocalUnit> local_units(ChainGroup const& group) {
+    std::vector<LocalUnit> units;
+    for (std::size_t p = 0; p < group.pieces.size(); ++p) {
+        dca::Piece const& piece = group.pieces[p];
+        dca::ChainTree const& tree = group.partition.trees[piece.chain];
+        for (std::int64_t unit = piece.first_unit; unit < piece.first_unit + piece.units; ++unit) {
+            std::int64_t const begin = tree.first_body_of_unit(unit), end = tree.first_body_of_unit(unit + 1);
+            units.push_back({p, piece.local + begin - piece.body, end - begin, unit});
+        }
+    }
+    return units;
+}
+
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,
                                                      Communicator const& communicator) {
+    std::map<int, std::vector<int>> chains;
+    for (std::size_t i = 0; i < scene.chains.size(); ++i) chains[group_of(scene.chains[i], axes, handles)].push_back(static_cast<int>(i));
     std::vector<std::unique_ptr<ChainGroup>> groups;
-    for (bool const beads : {true, false}) {
-        std::vector<int> chains;
-        for (std::size_t i = 0; i < scene.chains.size(); ++i)
-            if (scene.chains[i].is_beads() == beads) chains.push_back(static_cast<int>(i));
-        if (!chains.empty())
-            groups.push_back(std::make_unique<ChainGroup>(make_group(scene, chains, beads, axes, handles, pairwise, communicator)));
-    }
+    for (auto const& [kind, members] : chains)
+        groups.push_back(std::make_unique<ChainGroup>(make_group(scene, members, axes, handles, pairwise, communicator)));
     return groups;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -17,12 +18,33 @@ namespace catena {
 /// Axes of a handle's directions. joint: those of the joint frame (state in joint coordinates). world: ground axes (absolute coordinates).
 enum class Axes { joint, world };
 
+/// A chain's joint from its last body to the ground, where this rank holds that body.
+struct LocalTip {
+    std::int64_t body = 0;  // local
+    TipJoint joint;
+    Mat3 axes;   // its axes in the meeting frame, as ChainGroup::axes1
+    Vec3 screw;  // as ChainGroup::screw
+    int restricted = 0;
+};
+
+/// A joint that follows a prescribed course, on this rank.
+struct LocalDrive {
+    std::int64_t body = 0;  // local: the joint's outboard body
+    std::array<Course, 2> course;
+};
+
+/// Two bodies meet at a joint in its meeting frame M: the joint frame J, but for a universal joint, where it is J turned about the
+/// first axis, and for sliding joints, where it moves with the outboard body along the axis. The last column of a joint's axes
+/// is its axis; of a universal joint the columns are (normal to both axes, -, second axis).
 struct ChainGroup {
-    bool beads = false;
+    bool beads = false;   // point beads on links
+    bool linked = false;  // rigid bodies and point beads on links
+    bool planar = false;  // revolute, all axes parallel: the plane's two directions are enough
     Axes axes = Axes::joint;
     Handles handles = Handles::projected;
-    int directions = 6;  // K: what a handle carries
-    bool has_revolute = false;
+    int directions = 6;           // K: what a handle carries
+    int smallest_directions = 6;  // what would be enough
+    bool has_universal = false, has_screws = false;
     std::vector<int> chain;  // index in the scene of each chain of the group
     std::vector<std::string> name;
     std::vector<Base> base;                    // one a chain
@@ -34,23 +56,37 @@ struct ChainGroup {
     // Local arrays.
     std::int64_t size = 0;
     std::vector<std::uint8_t> is_first, is_last;  // of its chain
-    std::vector<std::uint8_t> restricted;         // restricted directions of the inboard joint (0: none; a free base)
+    std::vector<std::uint8_t> jointed_tip;        // empty where no chain of the group has one
     std::vector<JointType> joint;
     Field<1> mass, inverse_mass;
-    // beads
+    // links
     Field<1> length;  // of the inboard link
     // bodies
-    Field<6> inertia, inverse_inertia;  // about the centre of mass, B (lower triangle: xx yx yy zx zy zz)
-    Field<3> r1, r2;                    // inboard and outboard joint from the centre of mass, B
-    Field<9> axes1;                     // joint's axes (last column: its axis) in J; the same components in B turn with the joint
-    Field<9> axes2;                     // the outboard joint's axes in B
-    Field<4> joint_rotation;            // quaternion of J of the inboard joint in the inboard body's axes (first body: W)
-    Field<3> joint_translation;         // origin of J from the inboard body's origin, its axes (first body: W)
+    Field<6> inertia,
+        inverse_inertia;         // about the centre of mass, B (lower triangle: xx yx yy zx zy zz); planar: the inverse about the axis
+    Field<3> r1, r2;             // inboard and outboard joint from the centre of mass, B (sliding outboard joint: at q = 0)
+    Field<9> axes1;              // joint's axes in M; the same components in B turn with the joint
+    Field<9> axes2;              // the outboard joint's axes in B (universal: at q = 0)
+    Field<4> joint_rotation;     // quaternion of J of the inboard joint in the inboard body's axes (first body: W)
+    Field<3> joint_translation;  // origin of J from the inboard body's origin, its axes (first body: W)
+    Field<3> first_axis;         // of a universal joint, J; empty where there is none
+    Field<3> screw;              // {c, s, rate}: the joint turns by c rate q about its axis and slides by s rate q along it;
+                                 // empty where no joint slides
+    std::vector<LocalDrive> drives;
+    std::vector<LocalTip> tips;
 
     int neighbour_inboard = -1, neighbour_outboard = -1;  // ranks that hold the bodies before and after, where a chain goes on there
-    char const* kind() const;                             // smallest handle kind that holds the chains: link | spherical | revolute
-    /// Restricted directions of joint k of local numbering, those of shared chains' tops included (schedule.joints entries; `none`: 0).
+    char const* kind() const;                             // smallest handle kind: link | planar | spherical | universal | revolute | full
+    /// Restricted directions of joint k of local numbering, tips and those of shared chains' tops included (schedule.joints entries;
+    /// `none`: 0).
     std::vector<std::uint8_t> restricted_of_joint;
+    bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] != 0; }
+    bool has_tips() const { return !jointed_tip.empty(); }
+    /// Whether handle 2 of a body depends on the joint there.
+    bool moving_meeting() const { return has_universal || has_screws; }
+    bool is_driven(std::int64_t k) const;
+    /// Restricted directions of local body k's inboard joint, of those that the handles carry.
+    int restricted(std::int64_t k) const;
     /// Global body index over the scene of local body k.
     std::int64_t scene_index(std::int64_t k) const;
     std::vector<std::int64_t> const& first_of_rank() const { return partition.first_of_rank; }
@@ -74,7 +110,31 @@ void exchange_from_inboard(Communicator const& communicator, ChainGroup const& g
     if (group.neighbour_inboard >= 0) field.store(-1, receive);
 }
 
-/// Groups the scene's chains: all bead chains in one, body chains in one. `pairwise` chooses the chapter's tree.
+/// A canonical unit of the tree on this rank: what composes along a chain does so unit by unit, whatever the number of ranks.
+struct LocalUnit {
+    std::size_t piece = 0;
+    std::int64_t begin = 0, count = 0;  // local bodies
+    std::int64_t index = 0;             // within its chain
+};
+std::vector<LocalUnit> local_units(ChainGroup const&);
+
+/// One collective: a value of every unit of chains that several ranks share, chain after chain, from those of the ranks' own
+/// units (`own`, one a local unit). Empty where no chain is shared.
+template <class Value>
+std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGroup const& group, std::vector<LocalUnit> const& units,
+                                       std::vector<Value> const& own) {
+    std::vector<Value> send, all(group.schedule.shared.size());
+    if (all.empty()) return all;
+    std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator.size()), 0);
+    for (dca::SharedUnit const& unit : group.schedule.shared) bytes[unit.owner] += sizeof(Value);
+    for (std::size_t i = 0; i < units.size(); ++i)
+        if (!group.pieces[units[i].piece].whole()) send.push_back(own[i]);
+    communicator.all_gather(std::as_bytes(std::span(send)), std::as_writable_bytes(std::span(all)), bytes);
+    return all;
+}
+
+/// Groups the scene's chains by the smallest handle kind that holds them (full handles: by what they consist of). `pairwise` chooses
+/// the chapter's tree.
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const&, Axes, Handles, bool pairwise, Communicator const&);
 
 }  // namespace catena

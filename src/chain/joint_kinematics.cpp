@@ -1,29 +1,119 @@
 #include "chain/joint_kinematics.hpp"
 
+#include <cmath>
+#include <numbers>
+
 namespace catena {
 namespace {
-
-Quat as_quaternion(Vector<double, 4> const& v) { return {v[0], v[1], v[2], v[3]}; }
-Vector<double, 4> as_vector(Quat const& q) { return {{q.w, q.x, q.y, q.z}}; }
 
 /// R^T v for the rotation of q.
 Vec3 rotate_back(Quat const& q, Vec3 const& v) { return transposed_times(to_matrix(q), v); }
 
 Motion const still{Quat::identity(), Vec3::zero(), Vec3::zero(), Vec3::zero()};
 
+Vec3 axis_of(ChainGroup const& group, std::int64_t k) {
+    ConstView<9> const axes = group.axes1.view();
+    return {{axes.at(k, 2), axes.at(k, 5), axes.at(k, 8)}};
+}
+/// {c, s, rate} of ChainGroup::screw: the joint turns by c rate q and slides by s rate q.
+Vec3 screw_of(ChainGroup const& group, std::int64_t k) { return group.has_screws ? group.screw.view().load(k) : Vec3{{1, 0, 1}}; }
+
+/// Of B in M.
 Quat turn_of(ChainGroup const& group, JointState const& state, std::int64_t k) {
     Vector<double, 4> const q = state.q.view().load(k);
-    if (group.joint[k] != JointType::revolute) return as_quaternion(q);
-    ConstView<9> const axes = group.axes1.view();
-    return from_axis_angle(Vec3{{axes.at(k, 2), axes.at(k, 5), axes.at(k, 8)}}, q[0]);
+    switch (group.joint[k]) {
+        case JointType::free:
+        case JointType::spherical:
+            return as_quaternion(q);
+        case JointType::universal:
+            return from_axis_angle(axis_of(group, k), q[1]);
+        case JointType::weld:
+        case JointType::link:
+            return Quat::identity();
+        default:
+            Vec3 const screw = screw_of(group, k);
+            return from_axis_angle(axis_of(group, k), screw[0] * screw[2] * q[0]);
+    }
+}
+
+/// Of the meeting frame M of joint k in the inboard body's axes.
+Quat meeting_rotation(ChainGroup const& group, JointState const& state, std::int64_t k) {
+    Quat const frame = as_quaternion(group.joint_rotation.view().load(k));
+    if (group.joint[k] != JointType::universal) return frame;
+    return frame * from_axis_angle(group.first_axis.view().load(k), state.q.view().at(k, 0));
+}
+
+/// Of the meeting point from the inboard body's origin, its axes.
+Vec3 meeting_point(ChainGroup const& group, JointState const& state, std::int64_t k) {
+    Vec3 const point = group.joint_translation.view().load(k);
+    if (!group.has_screws) return point;
+    Vec3 const screw = screw_of(group, k);
+    if (screw[1] == 0) return point;
+    Mat3 const frame = to_matrix(as_quaternion(group.joint_rotation.view().load(k)));
+    return point + frame * ((screw[1] * screw[2] * state.q.view().at(k, 0)) * axis_of(group, k));
 }
 
 }  // namespace
 
+JointRate joint_rate(ChainGroup const& group, JointState const& state, std::int64_t k) {
+    Vec3 const qd = state.qd.view().load(k);
+    switch (group.joint[k]) {
+        case JointType::free:
+        case JointType::spherical:
+            return {to_matrix(turn_of(group, state, k)) * qd, Vec3::zero()};
+        case JointType::universal:
+            return {qd[0] * group.first_axis.view().load(k) + qd[1] * axis_of(group, k), Vec3::zero()};
+        case JointType::weld:
+        case JointType::link:
+            return {Vec3::zero(), Vec3::zero()};
+        default:
+            Vec3 const screw = screw_of(group, k), axis = axis_of(group, k);
+            return {(screw[0] * screw[2] * qd[0]) * axis, (screw[1] * screw[2] * qd[0]) * axis};
+    }
+}
+
+double value_of(Course const& c, double t) {
+    return c.offset + c.rate * t + c.amplitude * std::sin(2 * std::numbers::pi * c.frequency * t + c.phase);
+}
+double rate_of(Course const& c, double t) {
+    double const w = 2 * std::numbers::pi * c.frequency;
+    return c.rate + c.amplitude * w * std::cos(w * t + c.phase);
+}
+double acceleration_of(Course const& c, double t) {
+    double const w = 2 * std::numbers::pi * c.frequency;
+    return -c.amplitude * w * w * std::sin(w * t + c.phase);
+}
+
+void follow_courses(ChainGroup const& group, JointState& state) {
+    for (LocalDrive const& drive : group.drives) {
+        bool const two = group.joint[drive.body] == JointType::universal;
+        Course const& a = drive.course[0];
+        Course const& b = drive.course[1];
+        state.q.set(drive.body, {{value_of(a, state.time), two ? value_of(b, state.time) : 0.0, 0, 0}});
+        state.qd.set(drive.body, {{rate_of(a, state.time), two ? rate_of(b, state.time) : 0.0, 0}});
+    }
+}
+
+template <bool positions>
 Motion compose(Motion const& ab, Motion const& bc) {
-    return {ab.rotation * bc.rotation, rotate_back(bc.rotation, ab.omega) + bc.omega,
-            ab.translation + to_matrix(ab.rotation) * bc.translation,
-            rotate_back(bc.rotation, ab.velocity + cross(ab.omega, bc.translation)) + bc.velocity};
+    Mat3 const turn = to_matrix(bc.rotation);
+    Motion ac{ab.rotation * bc.rotation, transposed_times(turn, ab.omega) + bc.omega, Vec3::zero(), Vec3::zero()};
+    if constexpr (positions) {
+        ac.translation = ab.translation + to_matrix(ab.rotation) * bc.translation;
+        ac.velocity = transposed_times(turn, ab.velocity + cross(ab.omega, bc.translation)) + bc.velocity;
+    }
+    return ac;
+}
+template Motion compose<true>(Motion const&, Motion const&);
+template Motion compose<false>(Motion const&, Motion const&);
+
+BodyMotion make_body_motion(ChainGroup const& group) {
+    std::int64_t const n = group.size;
+    BodyMotion motion{Field<4>(n), Field<4>(n), Field<3>(n), Field<3>(n), Field<3>(n), {}, {}};
+    if (!group.moving_meeting()) return motion;
+    motion.r2 = group.r2;
+    motion.axes2 = group.axes2;
+    return motion;
 }
 
 JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
@@ -38,64 +128,65 @@ JointState make_joint_state(ChainGroup const& group, Scene const& scene) {
         state.base_position.push_back(b.free_position);
         state.base_velocity.push_back(b.free_velocity);
     }
+    follow_courses(group, state);
     return state;
 }
 
 JointKinematics::JointKinematics(ChainGroup const& group, Executor const& executor, Communicator const& communicator)
-    : group_(group), executor_(executor), communicator_(communicator) {
-    for (std::size_t p = 0; p < group.pieces.size(); ++p) {
-        dca::Piece const& piece = group.pieces[p];
-        dca::ChainTree const& tree = group.partition.trees[piece.chain];
-        for (std::int64_t i = 0; i < piece.units; ++i) {
-            std::int64_t const unit = piece.first_unit + i;
-            std::int64_t const begin = tree.first_body_of_unit(unit), end = tree.first_body_of_unit(unit + 1);
-            units_.push_back({p, piece.local + begin - piece.body, end - begin, unit});
-        }
-        composites_needed_ = composites_needed_ || tree.units > 1;
-    }
+    : group_(group), executor_(executor), communicator_(communicator), units_(local_units(group)) {
+    for (dca::Piece const& piece : group.pieces) composites_needed_ = composites_needed_ || group.partition.trees[piece.chain].units > 1;
 }
 
 Motion JointKinematics::joint_motion(JointState const& state, std::size_t piece, std::int64_t k) const {
-    Vec3 const qd = state.qd.view().load(k);
     Quat const turn = turn_of(group_, state, k);
-    if (group_.joint[k] == JointType::free) return {turn, qd, state.base_position[piece], rotate_back(turn, state.base_velocity[piece])};
-    Motion m{as_quaternion(group_.joint_rotation.view().load(k)) * turn, qd, group_.joint_translation.view().load(k), Vec3::zero()};
-    if (group_.joint[k] == JointType::revolute) {
-        ConstView<9> const axes = group_.axes1.view();
-        m.omega = qd[0] * Vec3{{axes.at(k, 2), axes.at(k, 5), axes.at(k, 8)}};
+    if (group_.joint[k] == JointType::free)
+        return {turn, state.qd.view().load(k), state.base_position[piece], rotate_back(turn, state.base_velocity[piece])};
+    Motion m{meeting_rotation(group_, state, k) * turn, Vec3::zero(), meeting_point(group_, state, k), Vec3::zero()};
+    switch (group_.joint[k]) {
+        case JointType::spherical:
+            m.omega = state.qd.view().load(k);
+            break;
+        case JointType::revolute:  // B's axis is M's
+            m.omega = state.qd.view().at(k, 0) * axis_of(group_, k);
+            break;
+        case JointType::weld:
+            break;
+        default:
+            JointRate const rate = joint_rate(group_, state, k);
+            m.omega = rotate_back(turn, rate.angular);
+            m.velocity = rotate_back(turn, rate.linear);
     }
     return m;
 }
 
-Motion JointKinematics::unit_motion(JointState const& state, Unit const& unit) const {
+template <bool positions>
+Motion JointKinematics::unit_motion(JointState const& state, LocalUnit const& unit) const {
     Motion m = still;
-    for (std::int64_t k = unit.begin; k < unit.begin + unit.count; ++k) m = compose(m, joint_motion(state, unit.piece, k));
+    for (std::int64_t k = unit.begin; k < unit.begin + unit.count; ++k) m = compose<positions>(m, joint_motion(state, unit.piece, k));
     m.rotation = normalized(m.rotation);
     return m;
 }
 
+template <bool positions>
 std::vector<Motion> JointKinematics::starts_of_units(JointState const& state) const {
     std::vector<Motion> starts(units_.size(), still);
     if (composites_needed_) {
         std::vector<Motion> own(units_.size());
-        executor_.for_each(static_cast<std::int64_t>(units_.size()), [&](std::int64_t i) { own[i] = unit_motion(state, units_[i]); });
+        executor_.for_each(static_cast<std::int64_t>(units_.size()),
+                           [&](std::int64_t i) { own[i] = unit_motion<positions>(state, units_[i]); });
         for (std::size_t i = 1; i < units_.size(); ++i)
-            if (group_.pieces[units_[i].piece].whole() && units_[i].index > 0) starts[i] = compose(starts[i - 1], own[i - 1]);
-        if (!group_.schedule.shared.empty()) gather_shared(own, starts);
+            if (group_.pieces[units_[i].piece].whole() && units_[i].index > 0) starts[i] = compose<positions>(starts[i - 1], own[i - 1]);
+        if (!group_.schedule.shared.empty()) gather_shared<positions>(own, starts);
     } else if (!group_.schedule.shared.empty()) {
-        gather_shared({}, starts);
+        gather_shared<positions>({}, starts);
     }
     return starts;
 }
 
 /// One collective: the motions of the units of shared chains; every rank then goes along its own shared chains in the same order.
+template <bool positions>
 void JointKinematics::gather_shared(std::vector<Motion> const& own, std::vector<Motion>& starts) const {
-    std::vector<Motion> send, all(group_.schedule.shared.size());
-    std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
-    for (dca::SharedUnit const& unit : group_.schedule.shared) bytes[unit.owner] += sizeof(Motion);
-    for (std::size_t i = 0; i < units_.size(); ++i)
-        if (!group_.pieces[units_[i].piece].whole()) send.push_back(own[i]);
-    communicator_.all_gather(std::as_bytes(std::span(send)), std::as_writable_bytes(std::span(all)), bytes);
+    std::vector<Motion> const all = gather_shared_units(communicator_, group_, units_, own);
     std::size_t next = 0;
     std::size_t first_of_chain = 0;
     for (int chain = 0; chain < group_.partition.chains(); ++chain) {
@@ -104,28 +195,55 @@ void JointKinematics::gather_shared(std::vector<Motion> const& own, std::vector<
         for (std::int64_t unit = 0; unit < group_.partition.trees[chain].units; ++unit) {
             while (next < units_.size() && group_.pieces[units_[next].piece].whole()) ++next;
             if (next < units_.size() && group_.pieces[units_[next].piece].chain == chain && units_[next].index == unit) starts[next++] = m;
-            m = compose(m, all[first_of_chain + static_cast<std::size_t>(unit)]);
+            m = compose<positions>(m, all[first_of_chain + static_cast<std::size_t>(unit)]);
         }
         first_of_chain += static_cast<std::size_t>(group_.partition.trees[chain].units);
     }
 }
 
+/// The inboard sides of universal and sliding joints, seen from the bodies they are in.
+void JointKinematics::set_meetings(JointState const& state, BodyMotion& out) const {
+    Field<12> meeting(group_.size);  // of joint k in the inboard body: point from its origin, axes
+    View<12> const at = meeting.view();
+    executor_.for_each(group_.size, [&](std::int64_t k) {
+        if (group_.joint[k] == JointType::free) return;
+        Vec3 const point = meeting_point(group_, state, k);
+        Mat3 const axes = to_matrix(meeting_rotation(group_, state, k)) * as_matrix(group_.axes1.view().load(k));
+        for (int i = 0; i < 3; ++i) at.at(k, i) = point[i];
+        for (int i = 0; i < 9; ++i) at.at(k, 3 + i) = axes.data[i];
+    });
+    exchange_from_outboard(communicator_, group_, at);
+    executor_.for_each(group_.size, [&](std::int64_t k) {
+        if (group_.is_last[k]) return;
+        Vector<double, 12> const m = at.load(k + 1);
+        out.r2.set(k, Vec3{{m[0], m[1], m[2]}} + group_.r1.view().load(k));
+        out.axes2.set(k, {{m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}});
+    });
+}
+
 void JointKinematics::evaluate(JointState const& state, bool with_positions, BodyMotion& out) const {
-    std::vector<Motion> const starts = starts_of_units(state);
+    with_positions ? evaluate<true>(state, out) : evaluate<false>(state, out);
+    if (group_.moving_meeting()) set_meetings(state, out);
+}
+
+template <bool positions>
+void JointKinematics::evaluate(JointState const& state, BodyMotion& out) const {
+    std::vector<Motion> const starts = starts_of_units<positions>(state);
     View<4> const turn = out.joint_turn.view(), orientation = out.orientation.view();
     View<3> const omega = out.omega.view(), origin = out.origin.view(), velocity = out.velocity.view();
     executor_.for_each(static_cast<std::int64_t>(units_.size()), [&](std::int64_t i) {
-        Unit const& unit = units_[i];
+        LocalUnit const& unit = units_[i];
         Motion m = starts[i];
         for (std::int64_t k = unit.begin; k < unit.begin + unit.count; ++k) {
             turn.store(k, as_vector(turn_of(group_, state, k)));
-            m = compose(m, joint_motion(state, unit.piece, k));
+            m = compose<positions>(m, joint_motion(state, unit.piece, k));
             m.rotation = normalized(m.rotation);
             orientation.store(k, as_vector(m.rotation));
             omega.store(k, m.omega);
-            if (!with_positions) continue;
-            origin.store(k, m.translation);
-            velocity.store(k, m.velocity);
+            if constexpr (positions) {
+                origin.store(k, m.translation);
+                velocity.store(k, m.velocity);
+            }
         }
     });
 }

@@ -15,8 +15,14 @@ struct JointState {
     Field<4> q;
     Field<3> qd;
     std::vector<Vec3> base_position, base_velocity;  // one a piece; counts where the piece starts on a free base: origin of body 1, W
+    double time = 0;
 };
 JointState make_joint_state(ChainGroup const&, Scene const&);
+/// Sets q and qd of driven joints to their courses' at the state's time.
+void follow_courses(ChainGroup const&, JointState&);
+double value_of(Course const&, double time);
+double rate_of(Course const&, double time);
+double acceleration_of(Course const&, double time);
 
 /// The motion of a frame B against a frame A.
 struct Motion {
@@ -25,17 +31,27 @@ struct Motion {
     Vec3 translation;  // of B's origin from A's, A
     Vec3 velocity;     // of B's origin against A, B
 };
-/// Motion of C against A from those of B against A and C against B.
+/// Motion of C against A from those of B against A and C against B. Without `positions` translation and velocity stay zero.
+template <bool positions>
 Motion compose(Motion const& ab, Motion const& bc);
+/// The coordinates' rates as a relative motion of joint k: angular and linear velocity of the outboard side against the inboard one, M.
+struct JointRate {
+    Vec3 angular, linear;
+};
+JointRate joint_rate(ChainGroup const&, JointState const&, std::int64_t k);
 
 /// What a pass over the chain fills. Poses and velocities are left out where nobody asks for them.
 struct BodyMotion {
-    Field<4> joint_turn;   // X: quaternion of B in J
+    Field<4> joint_turn;   // quaternion of B in the meeting frame M of its inboard joint
     Field<4> orientation;  // of B in W
     Field<3> omega;        // of B, B
     Field<3> origin;       // of B, W
     Field<3> velocity;     // of B's origin, B
+    // Where the meeting frames of outboard joints move in their inboard body (else empty): as ConfigurationView.
+    Field<3> r2;
+    Field<9> axes2;
 };
+BodyMotion make_body_motion(ChainGroup const&);
 
 class JointKinematics {
   public:
@@ -44,20 +60,21 @@ class JointKinematics {
     void evaluate(JointState const&, bool with_positions, BodyMotion& out) const;
 
   private:
-    struct Unit {
-        std::size_t piece;
-        std::int64_t begin, count;  // local bodies
-        std::int64_t index;         // within its chain
-    };
     Motion joint_motion(JointState const&, std::size_t piece, std::int64_t k) const;
-    Motion unit_motion(JointState const&, Unit const&) const;
+    template <bool positions>
+    void evaluate(JointState const&, BodyMotion& out) const;
+    template <bool positions>
+    Motion unit_motion(JointState const&, LocalUnit const&) const;
+    template <bool positions>
     std::vector<Motion> starts_of_units(JointState const&) const;
+    template <bool positions>
     void gather_shared(std::vector<Motion> const& own, std::vector<Motion>& starts) const;
+    void set_meetings(JointState const&, BodyMotion& out) const;
 
     ChainGroup const& group_;
     Executor const& executor_;
     Communicator const& communicator_;
-    std::vector<Unit> units_;
+    std::vector<LocalUnit> units_;
     bool composites_needed_ = false;  // a local chain has more than one unit
 };
 

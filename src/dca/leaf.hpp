@@ -17,14 +17,15 @@ struct Handle {
 };
 
 /// Directions at a point `r` from the centre of mass (body axes): first the three forces along the columns of `linear`, then
-/// torques about the columns of `angular` (both 3x3; the same axes, `angular` in body axes, `linear` where forces are kept).
-/// The last column of `angular` is the joint's axis, the free direction of a revolute joint.
+/// torques about the columns of `angular` (the same axes, `angular` in body axes, `linear` where forces are kept).
+/// The last column is the joint's axis, the free direction of a revolute joint. K < 3: the first K forces alone (a link's
+/// direction; the plane of a planar chain).
 template <int K, class Real>
 CATENA_HD Handle<Real, K> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular, Matrix<Real, 3, 3> const& linear) {
-    static_assert(K >= 3 && K <= 6);
+    static_assert(K >= 1 && K <= 6);
     Handle<Real, K> h;
     CATENA_UNROLL
-    for (int j = 0; j < 3; ++j) {
+    for (int j = 0; j < (K < 3 ? K : 3); ++j) {
         h.torque.set_column(j, cross(r, angular.column(j)));
         h.force.set_column(j, linear.column(j));
     }
@@ -36,10 +37,34 @@ CATENA_HD Handle<Real, K> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 
     return h;
 }
 
-/// Precondition: inverse_mass > 0, inverse_inertia (body axes) positive definite. `linear` columns of both handles orthonormal.
-template <class Real, int K>
+/// A joint that slides along its axis a: the free motion is (angular c a, linear s a) with c^2 + s^2 = 1. In the order of
+/// directions above, place 2 holds what is restricted, (angular -s a, linear c a), and place 5 what is free.
+/// Revolute: c = 1, s = 0. Prismatic: c = 0, s = 1. Helical with pitch h: (1, h) / sqrt(1 + h^2).
+template <class Real>
+struct Screw {
+    Real c, s;
+};
+
+/// Mixes places 2 and 5 of directions that were made for a revolute joint with the same axis: a force and a torque along it.
+template <int K, class Real>
+CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular,
+                             Matrix<Real, 3, 3> const& linear, Handle<Real, K>& h) {
+    static_assert(K >= 5);
+    Vector<Real, 3> const arm = cross(r, angular.column(2)), axis = angular.column(2), along = linear.column(2);
+    h.torque.set_column(2, screw.c * arm - screw.s * axis);
+    h.force.set_column(2, screw.c * along);
+    if constexpr (K == 6) {
+        h.torque.set_column(5, screw.s * arm + screw.c * axis);
+        h.force.set_column(5, screw.s * along);
+    }
+}
+
+/// Precondition: inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite. `linear` columns of both handles
+/// orthonormal, unless `any_forces`: then every direction may have a force (screws).
+template <bool any_forces = false, class Real, int K>
 CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, Handle<Real, K> const& h1,
                                              Handle<Real, K> const& h2) {
+    constexpr int forces = any_forces ? K : K < 3 ? K : 3;
     Matrix<Real, 3, K> const j1 = full(inverse_inertia) * h1.torque;
     Matrix<Real, 3, K> const j2 = full(inverse_inertia) * h2.torque;
     SegmentMatrix<Real, K> s;
@@ -54,11 +79,19 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
             s.z12(a, b) = dot(h1.torque.column(a), j2.column(b));
         }
     CATENA_UNROLL
-    for (int a = 0; a < 3; ++a) {
-        s.z11(a, a) = s.z11(a, a) + inverse_mass;
-        s.z22(a, a) = s.z22(a, a) + inverse_mass;
+    for (int a = 0; a < forces; ++a) {
+        if constexpr (any_forces) {
+            CATENA_UNROLL
+            for (int b = 0; b <= a; ++b) {
+                s.z11(a, b) = fused(inverse_mass, dot(h1.force.column(a), h1.force.column(b)), s.z11(a, b));
+                s.z22(a, b) = fused(inverse_mass, dot(h2.force.column(a), h2.force.column(b)), s.z22(a, b));
+            }
+        } else {
+            s.z11(a, a) = s.z11(a, a) + inverse_mass;
+            s.z22(a, a) = s.z22(a, a) + inverse_mass;
+        }
         CATENA_UNROLL
-        for (int b = 0; b < 3; ++b) s.z12(a, b) = fused(inverse_mass, dot(h1.force.column(a), h2.force.column(b)), s.z12(a, b));
+        for (int b = 0; b < forces; ++b) s.z12(a, b) = fused(inverse_mass, dot(h1.force.column(a), h2.force.column(b)), s.z12(a, b));
     }
     return s;
 }

@@ -11,13 +11,29 @@ CATENA_HD Vector<double, D> load_or_zero(ConstView<D> const& view, std::int64_t 
     return view.origin ? view.load(k) : Vector<double, D>::zero();
 }
 
+/// Direction of the link on the outboard side of body k; 0 where there is none.
+inline Vec3 outboard_direction(ChainGroup const& group, ConstView<3> direction, ConstView<3> tip_direction, std::int64_t k) {
+    if (!group.is_last[static_cast<std::size_t>(k)]) return direction.load(k + 1);
+    return group.has_jointed_tip(k) ? tip_direction.load(k) : Vec3::zero();
+}
+
+/// The velocity terms of the inboard joint, and of a jointed tip: the ground's handle 1 there is as good as the body's handle 2.
+template <int K>
+void add_joint_biases(ChainGroup const& group, LoadsView const& loads, std::int64_t k, SegmentBias<double, K>& b) {
+    if (loads.bias) b.b1 = b.b1 + loads.bias.load<K>(k);
+    if (loads.tip_bias && group.has_jointed_tip(k)) b.b2 = b.b2 - loads.tip_bias.load<K>(k);
+}
+
 /// Point beads; K = 1 projected, 3 full.
 template <int K_>
 class BeadLeaf {
   public:
     static constexpr int K = K_;
     explicit BeadLeaf(ChainGroup const& group) : group_(&group) {}
-    void set(ConfigurationView const& c) { direction_ = c.direction; }
+    void set(ConfigurationView const& c) {
+        direction_ = c.direction;
+        tip_direction_ = c.tip_direction;
+    }
 
     SegmentMatrix<double, K> matrix(std::int64_t k) const {
         return bead_matrix(group_->inverse_mass.view().at(k, 0), direction_.load(k), outboard(k), Vector<double, K>{});
@@ -28,7 +44,7 @@ class BeadLeaf {
             Vec3 const a = group_->inverse_mass.view().at(k, 0) * loads.force.load(k);
             b = {along_link(direction_.load(k), a, Vector<double, K>{}), along_link(outboard(k), a, Vector<double, K>{})};
         }
-        if (loads.bias) b.b1 = b.b1 + loads.bias.load<K>(k);
+        add_joint_biases(*group_, loads, k, b);
         return b;
     }
     void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force, Vector<double, K> const& outboard_force,
@@ -40,46 +56,148 @@ class BeadLeaf {
     }
 
   private:
-    Vec3 outboard(std::int64_t k) const { return group_->is_last[static_cast<std::size_t>(k)] ? Vec3::zero() : direction_.load(k + 1); }
+    Vec3 outboard(std::int64_t k) const { return outboard_direction(*group_, direction_, tip_direction_, k); }
     ChainGroup const* group_;
-    ConstView<3> direction_;
+    ConstView<3> direction_, tip_direction_;
 };
 
-/// Rigid bodies; K = 3 spherical, 5 revolute and mixed, 6 full.
-template <int K_, Axes axes>
+/// The two handles of a body, and the rotation from B to the axes in which forces are kept.
+template <int K>
+struct HandlePair {
+    Handle<double, K> h1, h2;
+    Mat3 to_force_axes;
+};
+
+/// Joint coordinates: handles along the axes of the meeting frames, forces in B. `sliding`: prismatic and helical joints too.
+template <int K, bool sliding>
+class MeetingFrames {
+  public:
+    static constexpr bool any_forces = sliding;
+    explicit MeetingFrames(ChainGroup const& group)
+        : group_(&group), axes1_(group.axes1.view()), axes2_(group.axes2.view()), r1_(group.r1.view()), r2_(group.r2.view()) {
+        if constexpr (sliding) screw_ = group.screw.view();
+    }
+    void set(ConfigurationView const& c) {
+        rotation_ = c.rotation;
+        if (c.axes2.origin) axes2_ = c.axes2;
+        if (c.r2.origin) r2_ = c.r2;
+    }
+    Vec3 r1(std::int64_t k) const { return r1_.load(k); }
+    Vec3 r2(std::int64_t k) const { return r2_.load(k); }
+    HandlePair<K> handles(std::int64_t k) const {
+        Vector<double, 4> const q = rotation_.load(k);
+        Mat3 const e1 = transposed_times(to_matrix(as_quaternion(q)), as_matrix(axes1_.load(k)));
+        Mat3 const e2 = as_matrix(axes2_.load(k));
+        HandlePair<K> pair{make_handle<K>(r1(k), e1, e1), make_handle<K>(r2(k), e2, e2), Mat3::identity()};
+        if constexpr (sliding) {
+            Vec3 const s1 = screw_.load(k);
+            turn_to_screw(Screw<double>{s1[0], s1[1]}, r1(k), e1, e1, pair.h1);
+            if (!group_->is_last[static_cast<std::size_t>(k)] || group_->has_jointed_tip(k)) {
+                Vec3 const s2 = outboard_screw(k);
+                turn_to_screw(Screw<double>{s2[0], s2[1]}, r2(k), e2, e2, pair.h2);
+            }
+        }
+        return pair;
+    }
+
+  private:
+    Vec3 outboard_screw(std::int64_t k) const {
+        if (!group_->has_jointed_tip(k)) return screw_.load(k + 1);
+        for (LocalTip const& tip : group_->tips)
+            if (tip.body == k) return tip.screw;
+        return Vec3::zero();
+    }
+    ChainGroup const* group_;
+    ConstView<9> axes1_, axes2_;
+    ConstView<3> r1_, r2_, screw_;
+    ConstView<4> rotation_;
+};
+
+/// Bodies on spherical joints in absolute coordinates: handles along ground axes, forces there too.
+template <int K>
+class GroundFrames {
+  public:
+    static constexpr bool any_forces = false;
+    explicit GroundFrames(ChainGroup const& group) : r1_(group.r1.view()), r2_(group.r2.view()) {}
+    void set(ConfigurationView const& c) { rotation_ = c.rotation; }
+    Vec3 r1(std::int64_t k) const { return r1_.load(k); }
+    Vec3 r2(std::int64_t k) const { return r2_.load(k); }
+    HandlePair<K> handles(std::int64_t k) const {
+        Vector<double, 4> const q = rotation_.load(k);
+        Mat3 const turn = to_matrix(as_quaternion(q)), to_body = transpose(turn), unit = Mat3::identity();
+        return {make_handle<K>(r1(k), to_body, unit), make_handle<K>(r2(k), to_body, unit), turn};
+    }
+
+  private:
+    ConstView<3> r1_, r2_;
+    ConstView<4> rotation_;
+};
+
+/// Bodies and beads on links in absolute coordinates: handles along the links (full handles: and across), forces in ground axes.
+template <int K>
+class LinkFrames {
+  public:
+    static constexpr bool any_forces = false;
+    explicit LinkFrames(ChainGroup const& group) : group_(&group), r1_(group.r1.view()), r2_(group.r2.view()) {}
+    void set(ConfigurationView const& c) {
+        rotation_ = c.rotation;
+        direction_ = c.direction;
+        tip_direction_ = c.tip_direction;
+    }
+    Vec3 r1(std::int64_t k) const { return r1_.load(k); }
+    Vec3 r2(std::int64_t k) const { return r2_.load(k); }
+    HandlePair<K> handles(std::int64_t k) const {
+        Vector<double, 4> const q = rotation_.load(k);
+        Mat3 const turn = to_matrix(as_quaternion(q));
+        Mat3 const e1 = axes(direction_.load(k)), e2 = axes(outboard_direction(*group_, direction_, tip_direction_, k));
+        return {make_handle<K>(r1(k), transposed_times(turn, e1), e1), make_handle<K>(r2(k), transposed_times(turn, e2), e2), turn};
+    }
+
+  private:
+    static Mat3 axes(Vec3 const& direction) {
+        if constexpr (K == 1) {
+            Mat3 m = Mat3::zero();
+            m.set_column(0, direction);
+            return m;
+        } else {
+            return triple(direction);
+        }
+    }
+    ChainGroup const* group_;
+    ConstView<3> r1_, r2_, direction_, tip_direction_;
+    ConstView<4> rotation_;
+};
+
+/// Rigid bodies; K = 1 links, 2 planar, 3 spherical, 4 universal, 5 revolute and sliding, 6 full.
+template <int K_, class Frames>
 class BodyLeaf {
   public:
     static constexpr int K = K_;
     explicit BodyLeaf(ChainGroup const& group)
-        : inverse_mass_(group.inverse_mass.view()),
-          inverse_inertia_(group.inverse_inertia.view()),
-          r1_(group.r1.view()),
-          r2_(group.r2.view()),
-          axes1_(group.axes1.view()),
-          axes2_(group.axes2.view()) {}
-    void set(ConfigurationView const& c) { rotation_ = c.rotation; }
+        : group_(&group), frames_(group), inverse_mass_(group.inverse_mass.view()), inverse_inertia_(group.inverse_inertia.view()) {}
+    void set(ConfigurationView const& c) { frames_.set(c); }
 
     SegmentMatrix<double, K> matrix(std::int64_t k) const {
-        Handles const h = handles(k);
-        return leaf_matrix(inverse_mass_.at(k, 0), inverse_inertia(k), h.h1, h.h2);
+        HandlePair<K> const h = frames_.handles(k);
+        return leaf_matrix<Frames::any_forces>(inverse_mass_.at(k, 0), inverse_inertia(k), h.h1, h.h2);
     }
     SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
-        Handles const h = handles(k);
+        HandlePair<K> const h = frames_.handles(k);
         Vec3 a1 = inverse_mass_.at(k, 0) * load_or_zero(loads.force, k), a2 = a1;
         Vec3 const alpha = loads.torque.origin ? inverse_inertia(k) * loads.torque.load(k) : Vec3::zero();
         if (loads.omega.origin) {
             Vec3 const w = loads.omega.load(k);
-            a1 = a1 + h.to_force_axes * cross(w, cross(w, r1_.load(k)));
-            a2 = a2 + h.to_force_axes * cross(w, cross(w, r2_.load(k)));
+            a1 = a1 + h.to_force_axes * cross(w, cross(w, frames_.r1(k)));
+            a2 = a2 + h.to_force_axes * cross(w, cross(w, frames_.r2(k)));
         }
         SegmentBias<double, K> b{along(h.h1, alpha, a1), along(h.h2, alpha, a2)};
-        if (loads.bias) b.b1 = b.b1 + loads.bias.load<K>(k);
+        add_joint_biases(*group_, loads, k, b);
         return b;
     }
     void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force, Vector<double, K> const& outboard_force,
                     AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
-        Handles const h = handles(k);
+        HandlePair<K> const h = frames_.handles(k);
         Vec3 const torque = load_or_zero(loads.torque, k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
         Vec3 const force = load_or_zero(loads.force, k) + (h.h1.force * inboard_force - h.h2.force * outboard_force);
         out.alpha.store(k, inverse_inertia(k) * torque);
@@ -87,33 +205,12 @@ class BodyLeaf {
     }
 
   private:
-    struct Handles {
-        Handle<double, K> h1, h2;
-        Mat3 to_force_axes;  // from B to the axes of forces
-    };
-    Symmetric<double, 3> inverse_inertia(std::int64_t k) const {
-        Vector<double, 6> const v = inverse_inertia_.load(k);
-        return {{v[0], v[1], v[2], v[3], v[4], v[5]}};
-    }
-    static Mat3 matrix_of(Vector<double, 9> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}; }
-    Handles handles(std::int64_t k) const {
-        Vector<double, 4> const q = rotation_.load(k);
-        Mat3 const turn = to_matrix(Quat{q[0], q[1], q[2], q[3]});
-        Vec3 const r1 = r1_.load(k), r2 = r2_.load(k);
-        if constexpr (axes == Axes::world) {
-            Mat3 const to_body = transpose(turn), unit = Mat3::identity();
-            return {make_handle<K>(r1, to_body, unit), make_handle<K>(r2, to_body, unit), turn};
-        } else {
-            Mat3 const e1 = transposed_times(turn, matrix_of(axes1_.load(k))), e2 = matrix_of(axes2_.load(k));
-            return {make_handle<K>(r1, e1, e1), make_handle<K>(r2, e2, e2), Mat3::identity()};
-        }
-    }
+    Sym3 inverse_inertia(std::int64_t k) const { return as_symmetric(inverse_inertia_.load(k)); }
 
+    ChainGroup const* group_;
+    Frames frames_;
     ConstView<1> inverse_mass_;
     ConstView<6> inverse_inertia_;
-    ConstView<3> r1_, r2_;
-    ConstView<9> axes1_, axes2_;
-    ConstView<4> rotation_;
 };
 
 }  // namespace catena::dca

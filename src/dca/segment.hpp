@@ -16,10 +16,13 @@ template <class Real, int K>
 struct SegmentMatrix {
     Symmetric<Real, K> z11, z22;
     Matrix<Real, K, K> z12;
+    /// The ground: zeta = 0.
+    static CATENA_HD SegmentMatrix zero() { return {Symmetric<Real, K>::zero(), Symmetric<Real, K>::zero(), Matrix<Real, K, K>::zero()}; }
 };
 template <class Real, int K>
 struct SegmentBias {
     Vector<Real, K> b1, b2;
+    static CATENA_HD SegmentBias zero() { return {Vector<Real, K>::zero(), Vector<Real, K>::zero()}; }
 };
 
 /// The matrices of an eliminated joint. With Z = z22^A + z11^B on the restricted directions and Z = L S L^T:

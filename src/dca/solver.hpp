@@ -46,8 +46,13 @@ class DirectionsField {
 
 /// What the matrices depend on.
 struct ConfigurationView {
-    ConstView<3> direction;  // beads: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
-    ConstView<4> rotation;   // bodies: quaternion w x y z: Axes::joint: of B in J of its inboard joint; Axes::world: of B in W
+    ConstView<3> direction;      // links: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
+    ConstView<4> rotation;       // bodies: quaternion w x y z: Axes::joint: of B in the meeting frame of its inboard joint; world: in W
+    ConstView<3> tip_direction;  // links: of the link from last body k to the ground; absent where no tip is jointed
+    /// Where the inboard side of joints moves in the inboard body (ChainGroup::moving_meeting): its handle 2 from the centre of mass and
+    /// the meeting frame's axes; B.
+    ConstView<3> r2;
+    ConstView<9> axes2;
 };
 
 /// What the biases depend on. A view without origin means zero.
@@ -56,12 +61,14 @@ struct LoadsView {
     ConstView<3> force;        // on each body: Axes::joint: B; Axes::world and beads: W
     ConstView<3> omega;        // angular velocity, B: for the centripetal terms at the handles
     ConstDirectionsView bias;  // subtracted velocity terms of joint k along its directions: the solver makes D^T (A_1^B - A_2^A) = -bias
+    ConstDirectionsView tip_bias;  // the same of the joint between last body k and the ground
 };
 
 struct AccelerationsView {
     View<3> alpha;               // angular, B; may be absent
     View<3> acceleration;        // of the centre of mass (bead), axes of LoadsView::force; may be absent
     DirectionsView joint_force;  // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
+    DirectionsView tip_force;    // on the ground at the jointed tip of last body k; may be absent
 };
 
 struct SolverReport {

@@ -25,7 +25,10 @@ int ChainTree::levels() const {
     return level;
 }
 
-Partition::Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks) : first_of_chain{0} {
+Partition::Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks,
+                     std::vector<std::uint8_t> const& jointed_tips)
+    : first_of_chain{0}, jointed_tip(jointed_tips) {
+    jointed_tip.resize(lengths.size(), 0);
     for (std::int64_t const n : lengths) {
         trees.emplace_back(n, run_length_for(n, directions, pairwise));
         first_of_chain.push_back(first_of_chain.back() + n);
@@ -107,7 +110,9 @@ class Builder {
         s_.bodies = partition.first_of_rank[rank + 1] - partition.first_of_rank[rank];
         s_.halo = s_.bodies;
         s_.none = s_.bodies + 1;
-        s_.joints = s_.none + 1;
+        for (Piece const& piece : pieces_)
+            if (piece.ends && partition.jointed_tip[piece.chain]) s_.tip_chain.push_back(piece.chain);
+        s_.joints = s_.first_top_joint();
     }
 
     Schedule build() {
@@ -126,8 +131,14 @@ class Builder {
             std::int64_t const count = std::min(length, piece.count - body);
             std::int64_t const end = piece.local + body + count;
             bool const last = body + count == piece.count;
-            s_.runs.push_back({piece.local + body, count, s_.slots++, !last ? end : piece.ends ? s_.none : s_.halo});
+            s_.runs.push_back({piece.local + body, count, s_.slots++, !last ? end : piece.ends ? after(piece.chain) : s_.halo});
         }
+    }
+
+    /// Storage index of what follows the last body of a chain that ends here.
+    std::int64_t after(int chain) const {
+        auto const found = std::find(s_.tip_chain.begin(), s_.tip_chain.end(), chain);
+        return found == s_.tip_chain.end() ? s_.none : s_.first_tip() + (found - s_.tip_chain.begin());
     }
 
     void add_units(Piece const& piece) {
@@ -150,7 +161,7 @@ class Builder {
             return;
         }
         for (std::size_t level = tree.cut_level; units.size() > 1; ++level) units = pair_up(units, level_of(s_.levels, level), s_.slots);
-        s_.roots.push_back({units.front().slot, units.front().first, units.front().next, piece.chain});
+        s_.roots.push_back({units.front().slot, units.front().first, units.front().next, piece.chain, tip(piece.chain)});
     }
 
     void add_shared(int chain) {
@@ -174,8 +185,18 @@ class Builder {
         }
         if (!mine) return;
         units.back().next = s_.none;
+        if (tip(chain)) add_shared_tip(chain, units.back().next);
         for (std::size_t level = 0; units.size() > 1; ++level) units = pair_up(units, level_of(s_.top_levels, level), s_.slots);
-        s_.top_roots.push_back({units.front().slot, units.front().first, units.front().next, chain});
+        s_.top_roots.push_back({units.front().slot, units.front().first, units.front().next, chain, tip(chain)});
+    }
+
+    bool tip(int chain) const { return partition_.jointed_tip[chain] != 0; }
+    /// Every rank that finishes the top has the tip's joint there; the rank of the last body takes its force over.
+    void add_shared_tip(int chain, std::int64_t& next) {
+        next = s_.joints++;
+        s_.top_chain_of_joint.push_back(chain);
+        s_.top_body_of_joint.push_back(partition_.trees[chain].bodies);
+        if (after(chain) != s_.none) s_.top_copies.push_back({next, after(chain)});
     }
 
     Partition const& partition_;

@@ -39,11 +39,14 @@ class Partition {
   public:
     Partition() = default;
     /// `lengths` of the chains; every rank gets a run of units of about equal numbers of bodies. Ranks may be left without any.
-    Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks);
+    /// `jointed_tips`: one a chain, whether its last body is on a joint to the ground; empty: none is.
+    Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks,
+              std::vector<std::uint8_t> const& jointed_tips = {});
 
     std::vector<ChainTree> trees;              // one a chain
     std::vector<std::int64_t> first_of_chain;  // chains + 1
     std::vector<std::int64_t> first_of_rank;   // ranks + 1
+    std::vector<std::uint8_t> jointed_tip;     // one a chain
 
     std::int64_t bodies() const { return first_of_chain.back(); }
     int chains() const { return static_cast<int>(trees.size()); }
@@ -76,6 +79,7 @@ struct Root {
     std::int64_t slot = 0;
     std::int64_t first = 0, next = 0;
     int chain = 0;
+    bool jointed_tip = false;  // `next` is a joint to the ground
 };
 /// A unit of a chain that several ranks share.
 struct SharedUnit {
@@ -89,7 +93,9 @@ struct TopCopy {
 };
 
 struct Schedule {
-    std::int64_t bodies = 0;  // own; storage [0, bodies): own joints; `halo`: the joint after the last body; `none`: always 0
+    // Storage of joints: [0, bodies): own ones; `halo`: the joint after the last body; `none`: always 0; then the jointed tips of
+    // chains that end here; then the joints at the top of shared chains.
+    std::int64_t bodies = 0;
     std::int64_t halo = 0, none = 0, joints = 0;
     std::int64_t slots = 0;
     std::vector<Run> runs;
@@ -99,9 +105,11 @@ struct Schedule {
     std::vector<std::vector<Merge>> top_levels;  // of the shared chains this rank takes part in
     std::vector<Root> top_roots;
     std::vector<TopCopy> top_copies;
-    std::vector<int> top_chain_of_joint;  // for storage indices > none: the chain and body of that joint
+    std::vector<int> tip_chain;           // of the jointed tips that end here
+    std::vector<int> top_chain_of_joint;  // of the joints at the top: chain and body (a tip: the number of bodies)
     std::vector<std::int64_t> top_body_of_joint;
-    std::int64_t first_top_joint() const { return none + 1; }
+    std::int64_t first_tip() const { return none + 1; }
+    std::int64_t first_top_joint() const { return first_tip() + static_cast<std::int64_t>(tip_chain.size()); }
 };
 Schedule make_schedule(Partition const&, int rank);
 

@@ -33,7 +33,11 @@ class TreeSolver final : public ChainSolver {
         for (auto const& level : schedule_.levels) assemble_level(level);
         if (!schedule_.shared.empty()) gather_shared(matrices_);
         for (auto const& level : schedule_.top_levels) assemble_level(level);
-        for_roots([this](Root const& root) { joints_[root.first].factor = factorize(matrices_[root.slot].z11, restricted(root.first)); });
+        for_roots([this](Root const& root) {
+            Matrices segment = matrices_[root.slot];
+            if (root.jointed_tip) segment = assemble(segment, Matrices::zero(), restricted(root.next), joints_[root.next]);
+            joints_[root.first].factor = factorize(segment.z11, restricted(root.first));
+        });
         ++report_.matrix_sweeps;
         report_.matrix_seconds += now() - start;
         check_definite();
@@ -46,8 +50,12 @@ class TreeSolver final : public ChainSolver {
         if (!schedule_.shared.empty()) gather_shared(biases_);
         for (auto const& level : schedule_.top_levels) assemble_level_bias(level);
         for_roots([this](Root const& root) {
-            // Ground is a segment with zeta = 0: its acceleration stands in the bias of joint 1.
-            forces_[root.first] = solve_upper(joints_[root.first].factor, solve_lower(joints_[root.first].factor, -biases_[root.slot].b1));
+            // Ground is a segment with zeta = 0: its acceleration stands in the biases of the joints to it.
+            Biases segment = biases_[root.slot];
+            if (root.jointed_tip) segment = assemble(segment, Biases::zero(), joints_[root.next], offsets_[root.next]);
+            forces_[root.first] = solve_upper(joints_[root.first].factor, solve_lower(joints_[root.first].factor, -segment.b1));
+            if (root.jointed_tip)
+                forces_[root.next] = disassemble(joints_[root.next], offsets_[root.next], forces_[root.first], Vector<double, K>::zero());
         });
         for (std::size_t l = schedule_.top_levels.size(); l-- > 0;) disassemble_level(schedule_.top_levels[l]);
         for (TopCopy const& copy : schedule_.top_copies) forces_[copy.to] = forces_[copy.from];
@@ -99,6 +107,7 @@ class TreeSolver final : public ChainSolver {
             Vector<double, K> const force = k == run.body ? first : disassemble(joints_[k], offsets_[k], first, next);
             leaf_.accelerate(loads, k, force, next, out);
             if (out.joint_force) out.joint_force.store(k, force);
+            if (out.tip_force && group_.has_jointed_tip(k)) out.tip_force.store(k, next);
             next = force;
         }
     }
@@ -157,12 +166,19 @@ class TreeSolver final : public ChainSolver {
             std::int64_t const global = group_.partition.first_of_rank[communicator_.rank()] + joint;
             chain = group_.partition.chain_of(global);
             body = global - group_.partition.first_of_chain[chain];
+        } else if (joint < schedule_.first_top_joint()) {
+            chain = schedule_.tip_chain[joint - schedule_.first_tip()];
+            body = group_.partition.trees[chain].bodies;
         } else {
             chain = schedule_.top_chain_of_joint[joint - schedule_.first_top_joint()];
             body = schedule_.top_body_of_joint[joint - schedule_.first_top_joint()];
         }
-        throw ComputationError("the matrix of a joint is not positive definite (chain " + group_.name[chain] + ", body " +
-                               std::to_string(body + 1) + "): masses, inertias or positions there are extreme or not finite");
+        bool const tip = body == group_.partition.trees[chain].bodies;
+        throw ComputationError(
+            "the matrix of a joint is not positive definite (chain " + group_.name[chain] +
+            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
+            "): masses, inertias or positions there are extreme or not finite" +
+            (group_.partition.jointed_tip[chain] ? ", or base and tip hold the chain more than once (stretched straight?)" : ""));
     }
 
     ChainGroup const& group_;

@@ -53,7 +53,7 @@ class BeadDynamics final : public AbsoluteDynamics {
             direction_.set(k, (1.0 / norm(d)) * d);
         });
     }
-    void assemble_matrices() override { solver_->assemble_matrices({direction_.view(), {}}); }
+    void assemble_matrices() override { solver_->assemble_matrices({direction_.view(), {}, {}, {}, {}}); }
     void set_simple_forces() override {
         executor_.for_each(group_.size, [&](std::int64_t k) { force_.set(k, group_.mass.view().at(k, 0) * gravity_); });
     }
@@ -68,7 +68,7 @@ class BeadDynamics final : public AbsoluteDynamics {
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             exchange_from_inboard(communicator_, group_, position_.view());
             executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, has_link(k) ? excess(k) : 0.0); });
-            solver_->solve({{}, {}, {}, bias_.view()}, {{}, change_.view(), {}});
+            solver_->solve({{}, {}, {}, bias_.view(), {}}, {{}, change_.view(), {}, {}});
             executor_.for_each(group_.size, [&](std::int64_t k) {
                 Vec3 const change = change_[k];
                 position_.set(k, position_[k] + change);
@@ -118,7 +118,7 @@ class BeadDynamics final : public AbsoluteDynamics {
     void evaluate() override {
         exchange_from_inboard(communicator_, group_, observed_.view());
         executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, has_link(k) ? swing(k) : 0.0); });
-        solver_->solve({{}, force_.view(), {}, bias_.view()}, {{}, change_.view(), joint_force_.view()});
+        solver_->solve({{}, force_.view(), {}, bias_.view(), {}}, {{}, change_.view(), joint_force_.view(), {}});
     }
     BodyResults results() const override {
         BodyResults r;
@@ -186,7 +186,7 @@ class BeadDynamics final : public AbsoluteDynamics {
     void project(double h, View<3> out) {
         executor_.for_each(
             group_.size, [&](std::int64_t k) { momentum_.set(k, plus_scaled(group_.mass.view().at(k, 0) * velocity_[k], h, force_[k])); });
-        solver_->solve({{}, momentum_.view(), {}, {}}, {{}, out, {}});
+        solver_->solve({{}, momentum_.view(), {}, {}, {}}, {{}, out, {}, {}});
     }
 
     ChainGroup const& group_;

@@ -11,10 +11,6 @@
 namespace catena {
 namespace {
 
-Quat as_quaternion(Vector<double, 4> const& v) { return {v[0], v[1], v[2], v[3]}; }
-Vector<double, 4> as_vector(Quat const& q) { return {{q.w, q.x, q.y, q.z}}; }
-Sym3 as_symmetric(Vector<double, 6> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5]}}; }
-
 PrincipalFrame principal_frame(Sym3 const& inertia) {
     Eigen::Matrix3d j;
     for (int a = 0; a < 3; ++a)
@@ -66,7 +62,7 @@ class BodyDynamics final : public AbsoluteDynamics {
     void update_configuration() override {
         if (given_.springs) exchange_from_inboard(communicator_, group_, orientation_.view());
     }
-    void assemble_matrices() override { solver_->assemble_matrices({{}, orientation_.view()}); }
+    void assemble_matrices() override { solver_->assemble_matrices({{}, orientation_.view(), {}, {}, {}}); }
 
     void set_simple_forces() override {
         if (given_.joint_loads) set_joint_torques();
@@ -104,7 +100,7 @@ class BodyDynamics final : public AbsoluteDynamics {
             if (sweep == sweeps) break;
             exchange_from_inboard(communicator_, group_, outboard_point_.view());
             executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, (1.0 / h) * gap(k, trial_position_, trial_orientation_)); });
-            solver_->solve({{}, {}, {}, bias_.view()}, {alpha_.view(), acceleration_.view(), {}});
+            solver_->solve({{}, {}, {}, bias_.view(), {}}, {alpha_.view(), acceleration_.view(), {}, {}});
             executor_.for_each(group_.size, [&](std::int64_t k) {
                 velocity_.set(k, velocity_[k] + acceleration_[k]);
                 omega_.set(k, omega_[k] + alpha_[k]);
@@ -160,8 +156,8 @@ class BodyDynamics final : public AbsoluteDynamics {
             momentum_.set(k, torque_[k] - cross(w, as_symmetric(group_.inertia[k]) * w));
             set_bias(k, Vec3::zero());
         });
-        solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view()},
-                       {alpha_.view(), acceleration_.view(), joint_force_.view()});
+        solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view(), {}},
+                       {alpha_.view(), acceleration_.view(), joint_force_.view(), {}});
     }
     BodyResults results() const override {
         BodyResults r;
@@ -216,8 +212,7 @@ class BodyDynamics final : public AbsoluteDynamics {
     static Mat3 turn(Field<4> const& orientation, std::int64_t k) { return to_matrix(as_quaternion(orientation.view().load(k))); }
 
     void start_from_joint_coordinates(Scene const& scene) {
-        BodyMotion motion{Field<4>(group_.size), Field<4>(group_.size), Field<3>(group_.size), Field<3>(group_.size),
-                          Field<3>(group_.size)};
+        BodyMotion motion = make_body_motion(group_);
         JointKinematics(group_, executor_, communicator_).evaluate(make_joint_state(group_, scene), true, motion);
         for (std::int64_t k = 0; k < group_.size; ++k) {
             Mat3 const r = turn(motion.orientation, k);
@@ -273,7 +268,7 @@ class BodyDynamics final : public AbsoluteDynamics {
             momentum_.set(k, plus_scaled(group_.mass.view().at(k, 0) * velocity_[k], h, force_[k]));
             angular_momentum_.set(k, plus_scaled(as_symmetric(group_.inertia[k]) * omega_[k], h, torque_[k]));
         });
-        solver_->solve({angular_momentum_.view(), momentum_.view(), {}, {}}, {omega, velocity, {}});
+        solver_->solve({angular_momentum_.view(), momentum_.view(), {}, {}, {}}, {omega, velocity, {}, {}});
     }
     /// With the size of what each force and moment on the body, and its turning, adds (chapter, eqs 2.1-2.2).
     HandleAcceleration handle_acceleration(std::int64_t k, Vec3 const& r) const {

@@ -22,6 +22,18 @@ Field<D> field_of(ChainGroup const& group, Scene const& scene, Get const& get) {
 
 Vec3 entry(std::vector<Vec3> const& values, std::int64_t i) { return values.empty() ? Vec3::zero() : values[i]; }
 
+void add_drag(ChainGroup const& group, Scene const& scene, BodyLoads& loads) {
+    std::array<double, 2> const everywhere{scene.forces.linear_drag, scene.forces.angular_drag};
+    loads.dragged = everywhere[0] > 0 || everywhere[1] > 0;
+    for (int const chain : group.chain)
+        for (auto const& d : scene.chains[chain].bodies.drag) loads.dragged = loads.dragged || d[0] > 0 || d[1] > 0;
+    if (!loads.dragged) return;
+    loads.drag = field_of<2>(group, scene, [&](BodyArrays const& b, std::int64_t i) {
+        std::array<double, 2> const d = b.drag.empty() ? everywhere : b.drag[i];
+        return Vector<double, 2>{{d[0], d[1]}};
+    });
+}
+
 }  // namespace
 
 BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
@@ -36,12 +48,13 @@ BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
                                                        [](auto const& w) { return any(std::vector<Vec3>{w.first, w.second}); });
     }
     loads.joint_loads = loads.joint_loads || loads.springs || loads.dampers;
+    add_drag(group, scene, loads);
     if (loads.joint_loads) loads.torque = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return entry(b.torque, i); });
     if (loads.springs) {
         loads.stiffness = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return entry(b.stiffness, i); });
         loads.rest = field_of<4>(group, scene, [](BodyArrays const& b, std::int64_t i) {
             if (!b.rest.empty()) return Vector<double, 4>{{b.rest[i][0], b.rest[i][1], b.rest[i][2], b.rest[i][3]}};
-            return Vector<double, 4>{{b.joint[i] == JointType::revolute ? 0.0 : 1.0, 0, 0, 0}};
+            return Vector<double, 4>{{b.joint[i] == JointType::spherical ? 1.0 : 0.0, 0, 0, 0}};
         });
     }
     if (loads.dampers) loads.damping = field_of<3>(group, scene, [](BodyArrays const& b, std::int64_t i) { return entry(b.damping, i); });

@@ -11,7 +11,8 @@ struct BodyLoads {
     Field<3> torque, stiffness, damping;  // rules of BodyArrays
     Field<4> rest;
     Field<3> wrench_torque, wrench_force;  // W, at the centre of mass
-    bool joint_loads = false, springs = false, dampers = false, wrenches = false;
+    Field<2> drag;                         // {linear, angular}
+    bool joint_loads = false, springs = false, dampers = false, wrenches = false, dragged = false;
 };
 BodyLoads make_body_loads(ChainGroup const&, Scene const&);
 

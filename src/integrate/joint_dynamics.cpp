@@ -3,12 +3,47 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/across_plane.hpp"
+
 namespace catena {
 namespace {
 
-Quat as_quaternion(Vector<double, 4> const& v) { return {v[0], v[1], v[2], v[3]}; }
-Mat3 as_matrix(Vector<double, 9> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}; }
-Sym3 as_symmetric(Vector<double, 6> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5]}}; }
+/// The farthest that a joint of the group can be from its body's centre, summed along the longest chain: a length to compare with.
+double reach_of(ChainGroup const& group, Communicator const& communicator) {
+    double longest = 0;
+    for (std::int64_t k = 0; k < group.size; ++k) longest = std::max({longest, norm(group.r1[k]), norm(group.r2[k])});
+    return communicator.max(longest);
+}
+
+BodyMotion motion_at_start(ChainGroup const& group, Scene const& scene, JointKinematics const& kinematics) {
+    BodyMotion motion = make_body_motion(group);
+    if (group.has_tips()) kinematics.evaluate(make_joint_state(group, scene), true, motion);
+    return motion;
+}
+
+/// The load of joint k on its outboard body from the moments along its coordinates: torque along the joint's axes (universal:
+/// within the plane of its axes) and force along the last one.
+Vector<double, 4> load_along_axes(ChainGroup const& group, std::int64_t k, Vec3 const& along, Mat3 const& axes1, Mat3 const& turn) {
+    switch (group.joint[k]) {
+        case JointType::spherical: {
+            Vec3 const t = transposed_times(axes1, turn * along);
+            return {{t[0], t[1], t[2], 0}};
+        }
+        case JointType::universal: {
+            Vec3 const first = group.first_axis.view().load(k), second = axes1.column(2);
+            double const g = dot(first, second), x = (along[0] - g * along[1]) / (1 - g * g), y = along[1] - g * x;
+            Vec3 const t = transposed_times(axes1, plus_scaled(x * first, y, second));
+            return {{t[0], t[1], t[2], 0}};
+        }
+        case JointType::free:
+        case JointType::link:
+        case JointType::weld:
+            return Vector<double, 4>::zero();
+        default:
+            Vec3 const screw = group.has_screws ? group.screw.view().load(k) : Vec3{{1, 0, 1}};
+            return {{0, 0, screw[0] / screw[2] * along[0], screw[1] / screw[2] * along[0]}};
+    }
+}
 
 }  // namespace
 
@@ -20,60 +55,118 @@ JointDynamics::JointDynamics(ChainGroup const& group, Scene const& scene, Execut
       solver_(std::move(solver)),
       kinematics_(group, executor, communicator),
       given_(make_body_loads(group, scene)),
-      motion_{Field<4>(group.size), Field<4>(group.size), Field<3>(group.size), Field<3>(group.size), Field<3>(group.size)},
-      joint_torque_(given_.joint_loads ? group.size : 0),
+      motion_(motion_at_start(group, scene, kinematics_)),
+      tips_(group, scene, motion_, reach_of(group, communicator)),
+      has_forces_(given_.wrenches || given_.dragged || (given_.joint_loads && group.has_screws)),
+      needs_positions_(given_.dragged || group.has_tips()),
+      joint_load_(given_.joint_loads ? group.size : 0),
       torque_(group.size),
-      force_(given_.wrenches ? group.size : 0),
+      force_(has_forces_ ? group.size : 0),
       alpha_(group.size),
       acceleration_(group.size),
-      alpha_outboard_(group.size),
+      outboard_(group.size),
       bias_(group.size + 1, group.directions),
-      joint_force_(group.size + 1, group.directions) {}
+      joint_force_(group.size + 1, group.directions),
+      tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+      tip_force_(group.has_tips() ? group.size : 0, group.directions) {}
 
 JointRates JointDynamics::make_rates() const { return {Field<3>(group_.size), std::vector<Vec3>(group_.pieces.size(), Vec3::zero())}; }
 
+Screw<double> JointDynamics::screw(std::int64_t k) const {
+    if (!group_.has_screws) return {1, 0};
+    Vec3 const s = group_.screw.view().load(k);
+    return {s[0], s[1]};
+}
+
 BodyMotion const& JointDynamics::motion(JointState const& state) {
     kinematics_.evaluate(state, true, motion_);
+    if (group_.moving_meeting()) tips_.set_meetings(motion_);
     return motion_;
 }
 
 void JointDynamics::evaluate(JointState const& state, JointRates& out) {
-    kinematics_.evaluate(state, false, motion_);
-    solver_->assemble_matrices({{}, motion_.joint_turn.view()});
+    kinematics_.evaluate(state, needs_positions_, motion_);
+    bool const moving = group_.moving_meeting();
+    if (moving) tips_.set_meetings(motion_);
+    auto const& m = motion_;
+    solver_->assemble_matrices(
+        {{}, m.joint_turn.view(), {}, moving ? m.r2.view() : ConstView<3>{}, moving ? m.axes2.view() : ConstView<9>{}});
     if (given_.joint_loads) joint_torques(state);
     loads(state);
-    solver_->solve({torque_.view(), given_.wrenches ? ConstView<3>(force_.view()) : ConstView<3>{}, motion_.omega.view(), bias_.view()},
-                   {alpha_.view(), acceleration_.view(), joint_force_.view()});
+    if (group_.has_tips()) tips_.set_acceleration_bias(motion_, given_.gravity, tip_bias_.view());
+    solver_->solve({torque_.view(), has_forces_ ? ConstView<3>(force_.view()) : ConstView<3>{}, motion_.omega.view(), bias_.view(),
+                    group_.has_tips() ? tip_bias_.view() : DirectionsView{}},
+                   {alpha_.view(), acceleration_.view(), joint_force_.view(), group_.has_tips() ? tip_force_.view() : DirectionsView{}});
     rates(state, out);
 }
 
-/// Known torques along the joint's free directions: given, spring and damper.
+/// Known loads along the joint's free directions: given, spring and damper.
 void JointDynamics::joint_torques(JointState const& state) {
     executor_.for_each(group_.size, [&](std::int64_t k) {
+        if (!group_.drives.empty() && group_.is_driven(k)) return joint_load_.set(k, Vector<double, 4>::zero());
         Vec3 torque = given_.torque.view().load(k);
         Vec3 const qd = state.qd.view().load(k);
         Vector<double, 4> const q = state.q.view().load(k);
-        bool const revolute = group_.joint[k] == JointType::revolute;
         if (given_.springs) {
             Vec3 const stiffness = given_.stiffness.view().load(k);
             Vector<double, 4> const rest = given_.rest.view().load(k);
-            if (revolute)
-                torque[0] -= stiffness[0] * (q[0] - rest[0]);
-            else if (group_.joint[k] == JointType::spherical)
+            if (group_.joint[k] == JointType::spherical)
                 torque = torque + spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
+            else
+                for (int i = 0; i < 2; ++i) torque[i] -= stiffness[i] * (q[i] - rest[i]);
         }
         if (given_.dampers) {
             Vec3 const damping = given_.damping.view().load(k);
             for (int i = 0; i < 3; ++i) torque[i] -= damping[i] * qd[i];
         }
-        if (revolute)
-            torque = {{0, 0, torque[0]}};
-        else
-            torque = transposed_times(as_matrix(group_.axes1.view().load(k)),
-                                      to_matrix(as_quaternion(motion_.joint_turn.view().load(k))) * torque);
-        joint_torque_.set(k, torque);
+        Mat3 const turn = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
+        joint_load_.set(k, load_along_axes(group_, k, torque, as_matrix(group_.axes1.view().load(k)), turn));
     });
-    exchange_from_outboard(communicator_, group_, joint_torque_.view());
+    exchange_from_outboard(communicator_, group_, joint_load_.view());
+}
+
+/// Adds what the joints at both ends of body k do along their free directions; B.
+void JointDynamics::add_joint_loads(std::int64_t k, Mat3 const& turn, Vec3& torque, Vec3& force) const {
+    Vector<double, 4> const in = joint_load_.view().load(k);
+    Mat3 const e1 = transposed_times(turn, as_matrix(group_.axes1.view().load(k)));
+    torque = torque + e1 * Vec3{{in[0], in[1], in[2]}};
+    if (in[3] != 0) {
+        Vec3 const push = in[3] * e1.column(2);
+        force = force + push;
+        torque = torque + cross(group_.r1.view().load(k), push);
+    }
+    if (group_.is_last[k]) return;
+    Vector<double, 4> const out = joint_load_.view().load(k + 1);
+    Mat3 const e2 = axes2(k);
+    torque = torque - e2 * Vec3{{out[0], out[1], out[2]}};
+    if (out[3] != 0) {
+        Vec3 const push = out[3] * e2.column(2);
+        force = force - push;
+        torque = torque - cross(r2(k), push);
+    }
+}
+
+/// The velocity-dependent part c of joint k's relative acceleration (formulas, "Joint bias"), with what a drive prescribes; M.
+Vec3 JointDynamics::joint_velocity_term(JointState const& state, std::int64_t k, Vec3& linear) const {
+    Mat3 const turn = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
+    Vec3 const w = turn * motion_.omega.view().load(k);
+    JointRate const rate = joint_rate(group_, state, k);
+    Vec3 angular = cross(w, rate.angular);  // the outboard body's w does as well as the inboard one's
+    linear = 2.0 * cross(w - rate.angular, rate.linear);
+    bool const universal = group_.joint[k] == JointType::universal;
+    Mat3 const axes = as_matrix(group_.axes1.view().load(k));
+    if (universal) {
+        Vec3 const qd = state.qd.view().load(k);
+        angular = plus_scaled(angular, qd[0] * qd[1], cross(group_.first_axis.view().load(k), axes.column(2)));
+    }
+    if (group_.drives.empty() || !group_.is_driven(k)) return angular;
+    auto const drive =
+        std::lower_bound(group_.drives.begin(), group_.drives.end(), k, [](LocalDrive const& d, std::int64_t b) { return d.body < b; });
+    double const first = acceleration_of(drive->course[0], state.time), second = acceleration_of(drive->course[1], state.time);
+    if (universal) return angular + first * group_.first_axis.view().load(k) + second * axes.column(2);
+    Vec3 const s = group_.has_screws ? group_.screw.view().load(k) : Vec3{{1, 0, 1}};
+    linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));
+    return plus_scaled(angular, s[0] * s[2] * first, axes.column(2));
 }
 
 void JointDynamics::loads(JointState const& state) {
@@ -82,49 +175,101 @@ void JointDynamics::loads(JointState const& state) {
         Vec3 const w = motion_.omega.view().load(k);
         Mat3 const turn = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
         Mat3 const axes1 = as_matrix(group_.axes1.view().load(k));
-        Vec3 torque = -cross(w, as_symmetric(group_.inertia.view().load(k)) * w);
-        if (given_.joint_loads) {
-            torque = torque + transposed_times(turn, axes1 * joint_torque_.view().load(k));
-            if (!group_.is_last[k]) torque = torque - as_matrix(group_.axes2.view().load(k)) * joint_torque_.view().load(k + 1);
-        }
+        Vec3 torque = -cross(w, as_symmetric(group_.inertia.view().load(k)) * w), force = Vec3::zero();
+        if (given_.joint_loads) add_joint_loads(k, turn, torque, force);
         if (given_.wrenches) {
             Mat3 const orientation = to_matrix(as_quaternion(motion_.orientation.view().load(k)));
             torque = torque + transposed_times(orientation, given_.wrench_torque.view().load(k));
-            force_.set(k, transposed_times(orientation, given_.wrench_force.view().load(k)));
+            force = force + transposed_times(orientation, given_.wrench_force.view().load(k));
+        }
+        if (given_.dragged) {
+            Vector<double, 2> const drag = given_.drag.view().load(k);
+            force = plus_scaled(force, -drag[0], motion_.velocity.view().load(k) - cross(w, group_.r1.view().load(k)));
+            torque = plus_scaled(torque, -drag[1], w);
         }
         torque_.set(k, torque);
-        Vector<double, 6> b = Vector<double, 6>::zero();  // -c along the joint's directions
-        if (group_.is_first[k] && group_.joint[k] != JointType::free) {
-            Mat3 const to_ground = to_matrix(as_quaternion(group_.joint_rotation.view().load(k)));
-            Vec3 const g = transposed_times(axes1, transposed_times(to_ground, given_.gravity));  // ground accelerates by -g
-            for (int i = 0; i < 3; ++i) b[i] = g[i];
+        if (group_.planar && has_forces_) {  // nothing moves across the plane
+            Vec3 const axis = axes1.column(2);
+            force = plus_scaled(force, -dot(axis, force), axis);
         }
-        if (group_.joint[k] == JointType::revolute) {
-            Vec3 const c = transposed_times(axes1, turn * cross(w, state.qd.view().load(k)[0] * axes1.column(2)));
-            for (int i = 0; i < 3; ++i) b[3 + i] = -c[i];
+        if (has_forces_) force_.set(k, force);
+
+        Vec3 linear = Vec3::zero(), angular = Vec3::zero();  // -c along the joint's axes
+        JointType const type = group_.joint[k];
+        if (type != JointType::free && type != JointType::spherical && type != JointType::weld && !group_.planar) {
+            angular = -transposed_times(axes1, joint_velocity_term(state, k, linear));
+            linear = -transposed_times(axes1, linear);
         }
+        if (group_.is_first[k] && type != JointType::free) {
+            Mat3 const to_meeting = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
+            Mat3 const orientation = to_matrix(as_quaternion(motion_.orientation.view().load(k)));
+            linear =
+                linear + transposed_times(axes1, to_meeting * transposed_times(orientation, given_.gravity));  // ground accelerates by -g
+        }
+        Screw<double> const s = screw(k);
+        double const b[6] = {linear[0],  linear[1],  s.c * linear[2] - s.s * angular[2],
+                             angular[0], angular[1], s.s * linear[2] + s.c * angular[2]};
         for (int i = 0; i < group_.directions; ++i) bias.origin[i * bias.pitch + k] = b[i];
     });
 }
 
+/// Second derivatives of joint k's coordinates. `relative_alpha`: outboard less inboard angular acceleration along the joint's axes.
+/// `relative_slide`: the same of the meeting points along the last axis.
+Vec3 JointDynamics::rate_of_joint(JointState const& state, std::int64_t k, Vec3 const& relative_alpha, double relative_slide) const {
+    switch (group_.joint[k]) {
+        case JointType::universal: {
+            Mat3 const axes = as_matrix(group_.axes1.view().load(k));
+            Vec3 linear;
+            Vec3 const relative = relative_alpha - transposed_times(axes, joint_velocity_term(state, k, linear));
+            Vec3 const first = transposed_times(axes, group_.first_axis.view().load(k));  // (0, y, z); the second axis is (0, 0, 1)
+            double const u1 = relative[1] / first[1];
+            return {{u1, relative[2] - first[2] * u1, 0}};
+        }
+        case JointType::weld:
+        case JointType::link:
+            return Vec3::zero();
+        default:
+            if (!group_.has_screws) return {{relative_alpha[2], 0, 0}};
+            Vec3 const s = group_.screw.view().load(k);
+            return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], 0, 0}};
+    }
+}
+
 void JointDynamics::rates(JointState const& state, JointRates& out) {
     executor_.for_each(group_.size, [&](std::int64_t k) {
-        alpha_outboard_.set(k, transposed_times(as_matrix(group_.axes2.view().load(k)), alpha_.view().load(k)));
+        Mat3 const e2 = axes2(k);
+        Vec3 const alpha = alpha_.view().load(k), along = transposed_times(e2, alpha);
+        double slide = 0;
+        if (group_.has_screws) {
+            Vec3 const w = motion_.omega.view().load(k), r = r2(k);
+            slide = dot(e2.column(2), acceleration_.view().load(k) + cross(alpha, r) + cross(w, cross(w, r)));
+        }
+        outboard_.set(k, {{along[0], along[1], along[2], slide}});
     });
-    exchange_from_inboard(communicator_, group_, alpha_outboard_.view());
+    exchange_from_inboard(communicator_, group_, outboard_.view());
     executor_.for_each(group_.size, [&](std::int64_t k) {
         Mat3 const axes1 = as_matrix(group_.axes1.view().load(k));
-        Vec3 const alpha = alpha_.view().load(k);
-        Vec3 const inboard = group_.is_first[k] ? Vec3::zero() : alpha_outboard_.view().load(k - 1);
-        if (group_.joint[k] == JointType::revolute) {
-            out.qdd.set(k, {{dot(axes1.column(2), alpha) - inboard[2], 0, 0}});
-        } else if (group_.joint[k] == JointType::spherical) {
-            Mat3 const turn = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
-            out.qdd.set(k, alpha - transposed_times(turn, axes1 * inboard) + cross(state.qd.view().load(k), motion_.omega.view().load(k)));
-        } else {
-            out.qdd.set(k, alpha);
+        Mat3 const turn = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
+        Vec3 const alpha = alpha_.view().load(k), w = motion_.omega.view().load(k);
+        Vector<double, 4> before = Vector<double, 4>::zero();
+        if (!group_.is_first[k]) before = outboard_.view().load(k - 1);
+        Vec3 const inboard{{before[0], before[1], before[2]}};
+        if (group_.joint[k] == JointType::free) return out.qdd.set(k, alpha);
+        if (group_.joint[k] == JointType::spherical)
+            return out.qdd.set(k, alpha - transposed_times(turn, axes1 * inboard) + cross(state.qd.view().load(k), w));
+        double slide = 0;
+        if (group_.has_screws) {
+            Vec3 const r = group_.r1.view().load(k), axis = axes1.column(2);  // the axis is the same in B
+            slide = dot(axis, acceleration_.view().load(k) + cross(alpha, r) + cross(w, cross(w, r))) - before[3];
+            if (group_.is_first[k])
+                slide += dot(axis, transposed_times(to_matrix(as_quaternion(motion_.orientation.view().load(k))), given_.gravity));
         }
+        out.qdd.set(k, rate_of_joint(state, k, transposed_times(axes1, turn * alpha) - inboard, slide));
     });
+    for (LocalDrive const& drive : group_.drives)
+        out.qdd.set(drive.body,
+                    {{acceleration_of(drive.course[0], state.time),
+                      group_.joint[drive.body] == JointType::universal ? acceleration_of(drive.course[1], state.time) : 0.0, 0}});
     for (std::size_t p = 0; p < group_.pieces.size(); ++p) {
         std::int64_t const k = group_.pieces[p].local;
         if (!group_.pieces[p].starts || group_.joint[k] != JointType::free) continue;
@@ -139,17 +284,47 @@ BodyResults JointDynamics::results() const {
     auto const [origin, pitch] = joint_force_.view();
     for (std::int64_t k = 0; k < group_.size; ++k) {
         Mat3 const orientation = to_matrix(as_quaternion(motion_.orientation.view().load(k)));
-        r.alpha.push_back(orientation * alpha_.view().load(k));
-        r.acceleration.push_back(orientation * acceleration_.view().load(k) + given_.gravity);
-        Vec3 force = Vec3::zero(), torque = Vec3::zero();
-        for (int i = 0; i < 3; ++i) force[i] = origin[i * pitch + k];
-        for (int i = 3; i < group_.directions; ++i) torque[i - 3] = origin[i * pitch + k];
         Mat3 const to_ground = orientation * transposed_times(to_matrix(as_quaternion(motion_.joint_turn.view().load(k))),
                                                               as_matrix(group_.axes1.view().load(k)));
-        Vec3 const t = to_ground * torque, f = to_ground * force;
-        r.joint_force.push_back({{t[0], t[1], t[2], f[0], f[1], f[2]}});
+        Vec3 gravity = given_.gravity;
+        if (group_.planar) gravity = plus_scaled(gravity, -dot(to_ground.column(2), gravity), to_ground.column(2));
+        r.alpha.push_back(orientation * alpha_.view().load(k));
+        r.acceleration.push_back(orientation * acceleration_.view().load(k) + gravity);
+        double f[6] = {0, 0, 0, 0, 0, 0};
+        for (int i = 0; i < group_.directions; ++i) f[i] = origin[i * pitch + k];
+        Screw<double> const s = screw(k);
+        Vec3 const force{{f[0], f[1], s.c * f[2] + s.s * f[5]}}, torque{{f[3], f[4], s.c * f[5] - s.s * f[2]}};
+        Vec3 const t = to_ground * torque, v = to_ground * force;
+        r.joint_force.push_back({{t[0], t[1], t[2], v[0], v[1], v[2]}});
     }
+    if (group_.planar && !group_.has_tips()) add_across_plane(r);
     return r;
+}
+
+/// Force along the axis and torque across it, of planar chains. With a jointed tip the ground holds them twice: they stay 0.
+void JointDynamics::add_across_plane(BodyResults& r) const {
+    std::vector<NeededWrench> needed;
+    for (std::int64_t k = 0; k < group_.size; ++k) {
+        Mat3 const to_ground = to_matrix(as_quaternion(motion_.orientation[k]));
+        Vec3 const wrench_force = given_.wrenches ? given_.wrench_force[k] : Vec3::zero();
+        Vec3 drag = Vec3::zero();
+        if (given_.dragged) drag = (-given_.drag[k][0]) * (motion_.velocity[k] - cross(motion_.omega[k], group_.r1[k]));
+        Vec3 const force =
+            group_.mass.view().at(k, 0) * (r.acceleration[static_cast<std::size_t>(k)] - given_.gravity) - wrench_force - to_ground * drag;
+        Vec3 const torque = to_ground * (as_symmetric(group_.inertia[k]) * alpha_[k] - torque_[k]);
+        Vec3 const to_next = group_.is_last[k] ? Vec3::zero() : to_ground * (group_.r2[k] - group_.r1[k]);
+        needed.push_back({force, torque + cross(to_ground * -group_.r1[k], force), to_next});
+    }
+    auto const sums = sums_from_tip(group_, communicator_, needed);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        auto const body = static_cast<std::int64_t>(k);
+        Vec3 const axis = to_matrix(as_quaternion(motion_.orientation[body])) * as_matrix(group_.axes1[body]).column(2);
+        Vec3 const force = dot(axis, sums[k].first) * axis, torque = plus_scaled(sums[k].second, -dot(axis, sums[k].second), axis);
+        for (int i = 0; i < 3; ++i) {
+            r.joint_force[k][i] += torque[i];
+            r.joint_force[k][3 + i] += force[i];
+        }
+    }
 }
 
 PotentialEnergy JointDynamics::potential(JointState const& state, BodyMotion const& motion) const {
@@ -161,11 +336,58 @@ PotentialEnergy JointDynamics::potential(JointState const& state, BodyMotion con
         if (!given_.springs) continue;
         Vec3 const stiffness = given_.stiffness[k];
         Vector<double, 4> const rest = given_.rest[k], q = state.q[k];
-        if (group_.joint[k] == JointType::revolute) e.springs.back() = 0.5 * stiffness[0] * (q[0] - rest[0]) * (q[0] - rest[0]);
         if (group_.joint[k] == JointType::spherical)
             e.springs.back() = spherical_spring_energy(stiffness, as_quaternion(rest), as_quaternion(q));
+        else if (group_.joint[k] != JointType::free)
+            for (int i = 0; i < 2; ++i) e.springs.back() += 0.5 * stiffness[i] * (q[i] - rest[i]) * (q[i] - rest[i]);
     }
     return e;
+}
+
+double JointDynamics::closure_error(JointState const& state) {
+    if (!group_.has_tips()) return 0;
+    return communicator_.max(tips_.error(motion(state)));
+}
+
+/// One Newton step: the solver with openings in the place of accelerations.
+void JointDynamics::correct(JointState& state, bool velocities) {
+    bool const moving = group_.moving_meeting();
+    motion(state);
+    solver_->assemble_matrices({{},
+                                motion_.joint_turn.view(),
+                                {},
+                                moving ? std::as_const(motion_).r2.view() : ConstView<3>{},
+                                moving ? std::as_const(motion_).axes2.view() : ConstView<9>{}});
+    tips_.set_opening(motion_, velocities, tip_bias_.view());
+    solver_->solve({{}, {}, {}, {}, tip_bias_.view()}, {alpha_.view(), acceleration_.view(), {}, {}});
+    // Coordinates of the correction: those of accelerations without velocities and gravity.
+    JointState still = state;
+    still.qd = Field<3>(group_.size);
+    motion_.omega = Field<3>(group_.size);
+    JointRates change = make_rates();
+    Vec3 const gravity = std::exchange(given_.gravity, Vec3::zero());
+    rates(still, change);
+    given_.gravity = gravity;
+    for (LocalDrive const& drive : group_.drives) change.qdd.set(drive.body, Vec3::zero());
+    for (std::int64_t k = 0; k < group_.size; ++k) {
+        Vec3 const d = change.qdd[k];
+        Vector<double, 4> const q = state.q[k];
+        if (velocities)
+            state.qd.set(k, state.qd[k] + d);
+        else if (group_.joint[k] == JointType::spherical || group_.joint[k] == JointType::free)
+            state.q.set(k, as_vector(normalized(as_quaternion(q) * from_rotation_vector(d))));
+        else
+            state.q.set(k, {{q[0] + d[0], q[1] + d[1], q[2], q[3]}});
+    }
+    auto& base = velocities ? state.base_velocity : state.base_position;
+    for (std::size_t p = 0; p < base.size(); ++p) base[p] = base[p] + change.base_acceleration[p];
+}
+
+void JointDynamics::close_tips(JointState& state) {
+    if (!group_.has_tips()) return;
+    int constexpr newton_steps = 2;  // from an error of one step to rounding
+    for (int i = 0; i < newton_steps; ++i) correct(state, false);
+    correct(state, true);
 }
 
 }  // namespace catena

@@ -8,12 +8,13 @@
 #include "dca/solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
 #include "integrate/body_loads.hpp"
+#include "integrate/jointed_tips.hpp"
 
 namespace catena {
 
 /// Time derivatives of JointState's velocities.
 struct JointRates {
-    Field<3> qdd;                         // revolute {qdd, 0, 0}; spherical, free: derivative of the components of qd, B
+    Field<3> qdd;                         // second derivatives of q; spherical, free: derivative of the components of qd, B
     std::vector<Vec3> base_acceleration;  // one a piece: of a free base's origin, W
 };
 
@@ -26,19 +27,32 @@ class JointDynamics {
     void evaluate(JointState const&, JointRates&);
     /// Only the kinematics of a state, positions included. Collective.
     BodyMotion const& motion(JointState const&);
-    /// Of the state and solution evaluated last.
+    /// Of the state and solution evaluated last. Collective.
     BodyResults results() const;
     /// Largest local backward residual of the solution evaluated last: Newton-Euler of every body and the closing of every joint,
     /// each relative to the sizes of its own terms (formulas, "Residuals"). Over all ranks; collective.
     double residual();
     PotentialEnergy potential(JointState const&, BodyMotion const&) const;
+    /// Corrects positions and velocities, each by the least in the metric of the masses, until jointed tips close again; nothing
+    /// happens where there are none. Collective.
+    void close_tips(JointState&);
+    /// Largest opening of a jointed tip over the chains' reach, over all ranks. Collective.
+    double closure_error(JointState const&);
     ChainSolver const& solver() const { return *solver_; }
     ChainGroup const& group() const { return group_; }
 
   private:
     void joint_torques(JointState const&);
     void loads(JointState const&);
+    Vec3 joint_velocity_term(JointState const&, std::int64_t k, Vec3& linear) const;
+    void add_joint_loads(std::int64_t k, Mat3 const& turn, Vec3& torque, Vec3& force) const;
     void rates(JointState const&, JointRates&);
+    Vec3 rate_of_joint(JointState const&, std::int64_t k, Vec3 const& relative_alpha, double relative_slide) const;
+    void correct(JointState&, bool velocities);
+    void add_across_plane(BodyResults&) const;
+    Mat3 axes2(std::int64_t k) const { return as_matrix(group_.moving_meeting() ? motion_.axes2[k] : group_.axes2[k]); }
+    Vec3 r2(std::int64_t k) const { return group_.moving_meeting() ? motion_.r2[k] : group_.r2[k]; }
+    Screw<double> screw(std::int64_t k) const;
 
     ChainGroup const& group_;
     Executor const& executor_;
@@ -47,11 +61,14 @@ class JointDynamics {
     JointKinematics kinematics_;
     BodyLoads given_;
     BodyMotion motion_;
-    Field<3> joint_torque_;  // known torque of joint k on body k, joint axes; halo from outboard
+    JointedTips tips_;
+    bool has_forces_, needs_positions_;
+    Field<4>
+        joint_load_;  // known load of joint k on body k: torque along the joint's axes and force along its last one; halo from outboard
     Field<3> torque_, force_;
     Field<3> alpha_, acceleration_;
-    Field<3> alpha_outboard_;  // of body k along the axes of its outboard joint; halo from inboard
-    DirectionsField bias_, joint_force_;
+    Field<4> outboard_;  // of body k along the axes of its outboard joint: angular acceleration; that of handle 2 along the last axis
+    DirectionsField bias_, joint_force_, tip_bias_, tip_force_;
 };
 
 }  // namespace catena

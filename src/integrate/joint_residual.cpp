@@ -8,9 +8,6 @@
 namespace catena {
 namespace {
 
-Quat as_quaternion(Vector<double, 4> const& v) { return {v[0], v[1], v[2], v[3]}; }
-Mat3 as_matrix(Vector<double, 9> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}; }
-Sym3 as_symmetric(Vector<double, 6> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5]}}; }
 double relative(double difference, double terms) { return terms == 0 ? 0.0 : difference / terms; }
 
 struct BodyTerms {
@@ -41,20 +38,32 @@ double JointDynamics::residual() {
     auto const inboard_axes = [&](std::int64_t k) {
         return transposed_times(to_matrix(as_quaternion(motion_.joint_turn[k])), as_matrix(group_.axes1[k]));
     };
-    auto const wrench_at = [&](std::int64_t k) {  // of joint k: force and torque along its axes
-        std::pair<Vec3, Vec3> w{Vec3::zero(), Vec3::zero()};
-        auto const [origin, pitch] = joint_force_.view();
-        for (int i = 0; i < group_.directions; ++i) (i < 3 ? w.first[i] : w.second[i - 3]) = origin[i * pitch + k];
-        return w;
+    auto const is_tip = [&](std::int64_t k) { return group_.has_jointed_tip(k); };
+    auto const outboard_screw = [&](std::int64_t k) {
+        if (!is_tip(k)) return k + 1 < group_.size || group_.neighbour_outboard >= 0 ? screw(k + 1) : Screw<double>{1, 0};
+        for (LocalTip const& tip : group_.tips)
+            if (tip.body == k) return Screw<double>{tip.screw[0], tip.screw[1]};
+        return Screw<double>{1, 0};
+    };
+    /// Force and torque along a joint's axes.
+    auto const wrench = [&](ConstDirectionsView forces, std::int64_t at, Screw<double> const& s) {
+        double f[6] = {0, 0, 0, 0, 0, 0};
+        for (int i = 0; i < group_.directions; ++i) f[i] = forces.origin[i * forces.pitch + at];
+        return std::pair{Vec3{{f[0], f[1], s.c * f[2] + s.s * f[5]}}, Vec3{{f[3], f[4], s.c * f[5] - s.s * f[2]}}};
+    };
+    auto const outboard_wrench = [&](std::int64_t k) {
+        if (is_tip(k)) return wrench(std::as_const(tip_force_).view(), k, outboard_screw(k));
+        if (group_.is_last[k]) return std::pair{Vec3::zero(), Vec3::zero()};
+        return wrench(std::as_const(joint_force_).view(), k + 1, outboard_screw(k));
     };
     /// Forces on body k, and moments about its centre: applied, of the inboard joint, of the outboard joint; B.
     auto const loads_on = [&](std::int64_t k) {
-        Mat3 const e1 = inboard_axes(k), e2 = as_matrix(group_.axes2[k]);
-        auto const [f1, t1] = wrench_at(k);
-        auto const [f2, t2] = group_.is_last[k] ? std::pair{Vec3::zero(), Vec3::zero()} : wrench_at(k + 1);
+        Mat3 const e1 = inboard_axes(k), e2 = axes2(k);
+        auto const [f1, t1] = wrench(std::as_const(joint_force_).view(), k, screw(k));
+        auto const [f2, t2] = outboard_wrench(k);
         Vec3 const force1 = e1 * f1, force2 = -(e2 * f2);
-        return BodyTerms{{given_.wrenches ? force_[k] : Vec3::zero(), force1, force2},
-                         {torque_[k], cross(group_.r1[k], force1), e1 * t1, cross(group_.r2[k], force2), -(e2 * t2)}};
+        return BodyTerms{{has_forces_ ? force_[k] : Vec3::zero(), force1, force2},
+                         {torque_[k], cross(group_.r1[k], force1), e1 * t1, cross(r2(k), force2), -(e2 * t2)}};
     };
     auto const at_handle = [&](std::int64_t k, Vec3 const& r, Mat3 const& axes) {
         BodyTerms const terms = loads_on(k);
@@ -69,40 +78,59 @@ double JointDynamics::residual() {
         return HandleAcceleration{transposed_times(axes, acceleration_[k] + cross(alpha_[k], r) + centripetal),
                                   transposed_times(axes, alpha_[k]), linear, angular};
     };
+    auto const outboard_handle = [&](std::int64_t k) {
+        HandleAcceleration const h = at_handle(k, r2(k), axes2(k));
+        return Vector<double, 8>{
+            {h.linear[0], h.linear[1], h.linear[2], h.angular[0], h.angular[1], h.angular[2], h.linear_terms, h.angular_terms}};
+    };
     auto const radius_of_gyration = [&](std::int64_t k) {
         Vector<double, 6> const j = group_.inertia[k];
         return std::sqrt(0.5 * (j[0] + j[2] + j[5]) * group_.inverse_mass.view().at(k, 0));
     };
-    Field<8> outboard(group_.size);
-    for (std::int64_t k = 0; k < group_.size; ++k) {
-        HandleAcceleration const h = at_handle(k, group_.r2[k], as_matrix(group_.axes2[k]));
-        outboard.set(k,
-                     {{h.linear[0], h.linear[1], h.linear[2], h.angular[0], h.angular[1], h.angular[2], h.linear_terms, h.angular_terms}});
-    }
-    exchange_from_inboard(communicator_, group_, outboard.view());
-
-    ConstDirectionsView const bias = std::as_const(bias_).view();  // -c, with g at a chain's first joint
-    auto const closing = [&, origin = bias.origin, pitch = bias.pitch](std::int64_t k) {
-        HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
-        Vector<double, 8> const before = group_.is_first[k] ? Vector<double, 8>::zero() : outboard.view().load(k - 1);
-        Vec3 const linear_bias{{origin[k], origin[pitch + k], origin[2 * pitch + k]}};
-        double linear = norm(mine.linear - Vec3{{before[0], before[1], before[2]}} + linear_bias), angular = 0, angular_bias = 0;
-        if (group_.joint[k] == JointType::revolute) {
-            angular_bias = std::hypot(origin[3 * pitch + k], origin[4 * pitch + k]);
-            angular = std::hypot(mine.angular[0] - before[3] + origin[3 * pitch + k], mine.angular[1] - before[4] + origin[4 * pitch + k]);
+    /// |D^T (outboard - inboard) + bias| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
+    /// does not depend on the unit of length.
+    auto const closing = [&](Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView bias, std::int64_t at,
+                             Screw<double> const& s, int restricted, double size) {
+        Vector<double, 8> d;
+        for (int i = 0; i < 8; ++i) d[i] = out[i] - in[i];
+        double e[6] = {d[0], d[1], s.c * d[2] - s.s * d[5], d[3], d[4], s.s * d[2] + s.c * d[5]};
+        double b[6] = {0, 0, 0, 0, 0, 0};
+        for (int i = 0; i < 6; ++i) {
+            if (i < restricted) b[i] = bias.origin[i * bias.pitch + at];
+            e[i] = i < restricted ? e[i] + b[i] : 0.0;
         }
-        // One spatial equation: angles count by the body's size, so that the measure does not depend on the unit of length.
-        double const size = norm(group_.r1[k]) + radius_of_gyration(k);
-        return relative(linear + size * angular,
-                        mine.linear_terms + before[6] + norm(linear_bias) + size * (mine.angular_terms + before[7] + angular_bias));
+        auto const sizes = [&](double const(&v)[6]) {
+            return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) + size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
+        };
+        return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b));
     };
 
+    Field<8> outboard(group_.size);
+    for (std::int64_t k = 0; k < group_.size; ++k) outboard.set(k, outboard_handle(k));
+    exchange_from_inboard(communicator_, group_, outboard.view());
     double worst = 0;
     for (std::int64_t k = 0; k < group_.size; ++k) {
-        BodyTerms const terms = loads_on(k);
-        double const newton = balance(group_.mass.view().at(k, 0) * acceleration_[k], terms.forces);
-        double const euler = balance(as_symmetric(group_.inertia[k]) * alpha_[k], terms.moments);
-        worst = larger(worst, larger(newton, larger(euler, group_.joint[k] == JointType::free ? 0.0 : closing(k))));
+        BodyTerms terms = loads_on(k);
+        worst = larger(worst, balance(group_.mass.view().at(k, 0) * acceleration_[k], terms.forces));
+        Vec3 inertial = as_symmetric(group_.inertia[k]) * alpha_[k];
+        if (group_.planar) {  // the other moments are not solved for
+            Vec3 const axis = inboard_axes(k).column(2);
+            inertial = dot(axis, inertial) * axis;
+            for (Vec3& moment : terms.moments) moment = dot(axis, moment) * axis;
+        }
+        worst = larger(worst, balance(inertial, terms.moments));
+        HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
+        Vector<double, 8> const here{{mine.linear[0], mine.linear[1], mine.linear[2], mine.angular[0], mine.angular[1], mine.angular[2],
+                                      mine.linear_terms, mine.angular_terms}};
+        Vector<double, 8> const before = group_.is_first[k] ? Vector<double, 8>::zero() : outboard.view().load(k - 1);
+        double const size = norm(group_.r1[k]) + radius_of_gyration(k);
+        worst = larger(worst, closing(here, before, std::as_const(bias_).view(), k, screw(k), group_.restricted(k), size));
+        if (!is_tip(k)) continue;
+        int restricted = 0;
+        for (LocalTip const& tip : group_.tips)
+            if (tip.body == k) restricted = tip.restricted;
+        worst = larger(worst, closing(Vector<double, 8>::zero(), outboard[k], std::as_const(tip_bias_).view(), k, outboard_screw(k),
+                                      restricted, norm(r2(k)) + radius_of_gyration(k)));
     }
     return communicator_.max(worst);
 }
