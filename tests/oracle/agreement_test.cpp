@@ -45,6 +45,43 @@ TEST(RandomChains, InLongDouble) { compare<long double>(120, 16); }
 /// With 113 bits conditioning hides nothing: the two derivations are the same mechanics.
 TEST(RandomChains, In113Bits) { compare<Quad>(48, 6); }
 
+/// Every joint type, and every type among the others; driven joints and drag in every other chain.
+class EveryJoint : public ::testing::TestWithParam<RandomJoints> {
+  protected:
+    static Case random_case(std::uint64_t seed, std::size_t largest) {
+        Random random(2'000'000 + seed);
+        RandomChainOptions options;
+        options.bodies = 1 + seed / 2 % largest;
+        options.base = seed % 2 == 0 ? Base::fixed : Base::free;
+        options.joints = GetParam();
+        options.springs = random.chance(0.5);
+        options.drag = random.chance(0.5);
+        options.driven = random.chance(0.5) ? 0.3 : 0;
+        Case c{random_chain(seed, options), {random.vector(10), {}}};
+        c.loads.linear_drag = random.uniform(0, 1);
+        c.loads.angular_drag = random.uniform(0, 0.1);
+        c.loads.time = random.uniform(0, 3);
+        return c;
+    }
+    template <class S>
+    static void compare(int count, std::size_t largest) {
+        Agreement<S> agreement;
+        for (int seed = 0; seed < count; ++seed) {
+            Case const c = random_case(static_cast<std::uint64_t>(seed), largest);
+            ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
+            auto const found = oracle::aba<double>(c.chain, c.loads);
+            double const bound = 4 * static_cast<double>(c.chain.size()) * 0x1p-52 * oracle::condition_estimate(c.chain, c.loads);
+            ASSERT_LE(oracle::rnea_residual(c.chain, c.loads, found.qdd, found.base_acceleration), bound) << "seed " << seed;
+        }
+        agreement.print();
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryJoint,
+                         ::testing::Values(RandomJoints::universal, RandomJoints::weld, RandomJoints::prismatic, RandomJoints::helical,
+                                           RandomJoints::planar, RandomJoints::any));
+TEST_P(EveryJoint, SolversAgree) { compare<double>(240, 12); }
+TEST_P(EveryJoint, SolversAgreeIn113Bits) { compare<Quad>(8, 4); }
+
 TEST(RandomChains, EmptyChain) {
     ChainSpec const chain;
     EXPECT_TRUE(oracle::aba<double>(chain, {}).qdd.empty());

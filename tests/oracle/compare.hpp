@@ -32,24 +32,42 @@ std::vector<Vector<S, 3>> forces(std::vector<oracle::SpatialForce<S>> const& wre
     return result;
 }
 
-/// Largest difference between two results, each quantity relative to its own largest component.
+template <class S>
+S largest(std::vector<Vector<S, 3>> const& values) {
+    S most(0);
+    for (auto const& v : values)
+        for (int i = 0; i < 3; ++i) most = std::max({most, v[i], S(-v[i])});
+    return most;
+}
+
+/// Every quantity of a result.
+template <class S>
+std::vector<std::vector<Vector<S, 3>>> quantities(oracle::OracleResult<S> const& r) {
+    std::vector<Vector<S, 3>> tension;
+    for (S const& t : r.tension) tension.push_back({{t, S(0), S(0)}});
+    return {r.qdd,
+            r.com_acceleration,
+            r.alpha,
+            {r.base_acceleration},
+            torques(r.joint_force),
+            forces(r.joint_force),
+            torques(r.constraint_force),
+            forces(r.constraint_force),
+            tension};
+}
+
+/// Largest difference between two results, each quantity relative to its own largest component; one that the model keeps at
+/// zero (the rotation of a chain of prismatic joints) relative to the largest of all, which is O(1) in these chains' units.
 template <class S>
 S difference(oracle::OracleResult<S> const& a, oracle::OracleResult<S> const& b) {
-    using V = std::vector<Vector<S, 3>>;
-    S worst(0);
-    auto const take = [&](V const& x, V const& y) { worst = std::max(worst, relative_difference(x, y)); };
-    take(a.qdd, b.qdd);
-    take(a.com_acceleration, b.com_acceleration);
-    take(a.alpha, b.alpha);
-    take(V{a.base_acceleration}, V{b.base_acceleration});
-    take(torques(a.joint_force), torques(b.joint_force));
-    take(forces(a.joint_force), forces(b.joint_force));
-    take(torques(a.constraint_force), torques(b.constraint_force));
-    take(forces(a.constraint_force), forces(b.constraint_force));
-    V tension_a, tension_b;
-    for (S const& t : a.tension) tension_a.push_back({{t, S(0), S(0)}});
-    for (S const& t : b.tension) tension_b.push_back({{t, S(0), S(0)}});
-    take(tension_a, tension_b);
+    auto const of_a = quantities(a), of_b = quantities(b);
+    S overall(0), worst(0);
+    for (auto const& q : of_b) overall = std::max(overall, largest(q));
+    for (std::size_t i = 0; i < of_b.size(); ++i) {
+        S const own = largest(of_b[i]);
+        S const error = own > S(0) ? S(relative_difference(of_a[i], of_b[i]) * own) : largest(of_a[i]);
+        if (error > S(0)) worst = std::max(worst, S(error / (own > S(1e-6) * overall ? own : overall)));
+    }
     return worst;
 }
 
@@ -77,7 +95,7 @@ class Agreement {
         ++count_;
         error_ = std::max(error_, error);
         ratio_ = std::max(ratio_, ratio);
-        condition_ratio_ = std::max(condition_ratio_, error / (unit * oracle::condition_estimate(chain)));
+        condition_ratio_ = std::max(condition_ratio_, error / (unit * oracle::condition_estimate(chain, loads)));
         return ratio;
     }
     double error() const { return error_; }

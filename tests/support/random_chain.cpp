@@ -20,34 +20,103 @@ Sym3 random_inertia(Random& random, double mass) {
 
 std::array<double, 4> as_array(Quat const& q) { return {q.w, q.x, q.y, q.z}; }
 
-JointType random_joint(Random& random, RandomChainOptions const& options, std::size_t k) {
-    if (k == 0 && options.base == Base::free) return JointType::free;
-    if (options.joints == RandomJoints::mixed) return random.chance(0.5) ? JointType::revolute : JointType::spherical;
-    return options.joints == RandomJoints::revolute ? JointType::revolute : JointType::spherical;
+JointType one_of(Random& random, std::vector<JointType> const& types) {
+    return types[static_cast<std::size_t>(random.uniform() * static_cast<double>(types.size()))];
 }
 
-/// Three numbers of which a revolute joint takes the first.
-Vec3 of_joint(JointType type, Vec3 const& v) { return type == JointType::revolute ? Vec3{{v[0], 0, 0}} : v; }
+JointType random_joint(Random& random, RandomChainOptions const& options, std::size_t k) {
+    using enum JointType;
+    if (k == 0 && options.base == Base::free) return free;
+    switch (options.joints) {
+        case RandomJoints::mixed:
+            return random.chance(0.5) ? revolute : spherical;
+        case RandomJoints::spherical:
+            return spherical;
+        case RandomJoints::universal:
+            return universal;
+        case RandomJoints::prismatic:
+            return prismatic;
+        case RandomJoints::helical:
+            return helical;
+        case RandomJoints::weld:
+            return random.chance(0.5) ? weld : one_of(random, {revolute, spherical, universal, prismatic, helical});
+        case RandomJoints::any:
+            return one_of(random, {revolute, spherical, universal, weld, prismatic, helical});
+        default:
+            return revolute;
+    }
+}
+
+/// Coordinates of a joint; 3 are those of a rotation.
+int coordinates(JointType type) {
+    if (type == JointType::spherical || type == JointType::free) return 3;
+    return type == JointType::universal ? 2 : type == JointType::weld ? 0 : 1;
+}
+/// Three numbers of which a joint takes as many as it has coordinates.
+Vec3 of_joint(JointType type, Vec3 v) {
+    for (int i = coordinates(type); i < 3; ++i) v[i] = 0;
+    return v;
+}
+/// Coordinates in [-size, size), shifts in a fifth of that.
+std::array<double, 4> random_coordinates(Random& random, JointType type, double size, Quat const& rotation) {
+    if (coordinates(type) == 3) return as_array(rotation);
+    std::array<double, 4> q{0, 0, 0, 0};
+    for (int i = 0; i < coordinates(type); ++i)
+        q[static_cast<std::size_t>(i)] = random.uniform(-size, size) * (type == JointType::prismatic ? 0.2 : 1);
+    return q;
+}
+/// At least some 25 degrees off `axis`.
+Vec3 direction_off(Random& random, Vec3 const& axis) {
+    Vec3 v = random.direction();
+    while (norm(cross(v, axis)) < 0.4) v = random.direction();
+    return v;
+}
+
+Vec3 const planar_axis{{0, 0, 1}};
+
+void append_geometry(Random& random, RandomChainOptions const& options, JointType type, BodyArrays& b) {
+    bool const planar = options.joints == RandomJoints::planar, any_first = type == JointType::universal;
+    b.joint.push_back(type);
+    b.axis.push_back(planar ? planar_axis : random.direction());
+    bool const level = planar && type == JointType::revolute;
+    b.rotation.push_back(to_matrix(level ? from_axis_angle(planar_axis, random.uniform(-3, 3)) : random.orientation()));
+    b.translation.push_back(random.uniform(0.2, 0.6) * random.direction());
+    if (any_first || !b.first_axis.empty()) {
+        b.first_axis.resize(b.joint.size(), Vec3::zero());
+        if (any_first) b.first_axis.back() = direction_off(random, b.axis.back());
+    }
+    if (type == JointType::helical || !b.pitch.empty()) {
+        b.pitch.resize(b.joint.size(), 0);
+        if (type == JointType::helical) b.pitch.back() = (random.chance(0.5) ? 1 : -1) * random.uniform(0.02, 0.2);
+    }
+}
+
+void append_drive(Random& random, RandomChainOptions const& options, BodyArrays& b) {
+    JointType const type = b.joint.back();
+    bool const can = coordinates(type) == 1 || coordinates(type) == 2;
+    if (options.driven == 0 || !can || !random.chance(options.driven)) return;
+    DrivenJoint drive{static_cast<std::int64_t>(b.joint.size() - 1), {}};
+    for (Course& c : drive.course)
+        c = {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(0, 0.3), random.uniform(0, 1), random.uniform(-3, 3)};
+    b.driven.push_back(drive);
+}
 
 void append_joint(Random& random, RandomChainOptions const& options, BodyArrays& b) {
     JointType const type = random_joint(random, options, b.joint.size());
-    bool const revolute = type == JointType::revolute;
-    b.joint.push_back(type);
-    b.axis.push_back(random.direction());
-    b.rotation.push_back(to_matrix(random.orientation()));
-    b.translation.push_back(random.uniform(0.2, 0.6) * random.direction());
+    append_geometry(random, options, type, b);
     Quat const orientation = random.orientation();
-    b.q.push_back(revolute ? std::array<double, 4>{random.uniform(-3, 3), 0, 0, 0} : as_array(orientation));
+    b.q.push_back(random_coordinates(random, type, 3, orientation));
     Vec3 const rate = of_joint(type, random.vector(2));
     b.qd.push_back(options.moving ? rate : Vec3::zero());
-    if (options.loaded) b.torque.push_back(type == JointType::free ? Vec3::zero() : of_joint(type, random.vector(1)));
-    if (!options.springs) return;
     bool const free = type == JointType::free;
+    if (options.loaded) b.torque.push_back(free ? Vec3::zero() : of_joint(type, random.vector(1)));
+    append_drive(random, options, b);
+    if (!options.springs) return;
     Vec3 const positive{{random.uniform(0, 5), random.uniform(0, 5), random.uniform(0, 5)}};
     b.stiffness.push_back(free ? Vec3::zero() : of_joint(type, positive));
     b.damping.push_back(free ? Vec3::zero() : of_joint(type, 0.1 * positive));
     Quat const rest = normalized(orientation * from_rotation_vector(random.vector(1)));
-    b.rest.push_back(revolute ? std::array<double, 4>{random.uniform(-1, 1), 0, 0, 0} : as_array(rest));
+    b.rest.push_back(random_coordinates(random, type, 1, rest));
 }
 
 /// Moves numbers by up to `size` of themselves.
@@ -65,6 +134,9 @@ class Perturbation {
         (*this)(wrench.first);
         (*this)(wrench.second);
     }
+    void operator()(DrivenJoint& drive) {
+        for (Course& c : drive.course) (*this)(c.offset), (*this)(c.rate), (*this)(c.amplitude), (*this)(c.frequency), (*this)(c.phase);
+    }
     void operator()(Mat3& rotation) { rotation = to_matrix(from_rotation_vector(random_.vector(size_))) * rotation; }
 
   private:
@@ -79,6 +151,7 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     BodyArrays& b = chain.bodies;
     move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation), move(b.q), move(b.qd);
     move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness), move(b.damping), move(b.rest), move(b.wrench);
+    move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
     move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity), move(chain.beads.anchor);
     return chain;
 }
@@ -117,10 +190,13 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
             b.wrench.push_back({torque, force});
         }
     }
+    if (!b.first_axis.empty()) b.first_axis.resize(options.bodies, Vec3::zero());
+    if (!b.pitch.empty()) b.pitch.resize(options.bodies, 0);
     if (options.base == Base::free) {
         b.free_position = random.vector(1);
         b.free_velocity = options.moving ? random.vector(1) : Vec3::zero();
     }
+    for (std::size_t k = 0; k < options.bodies && options.drag; ++k) b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});
     return chain;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "scene/scene.hpp"
 
@@ -23,15 +24,20 @@ class Random {
     std::uint64_t state_;
 };
 
-enum class RandomJoints { revolute, spherical, mixed };
+/// mixed: revolute and spherical; weld: welds among any other joints; planar: revolute, every axis parallel to all the others
+/// (a free base: but for body 1's own motion); any: every kind.
+enum class RandomJoints { revolute, spherical, mixed, universal, weld, prismatic, helical, planar, any };
 
 struct RandomChainOptions {
     std::size_t bodies = 8;
     RandomJoints joints = RandomJoints::mixed;
     Base base = Base::fixed;
-    bool moving = true;    // velocities
-    bool loaded = true;    // joint torques and wrenches
-    bool springs = false;  // joint springs (unequal about the three axes) and dampers
+    bool moving = true;                           // velocities
+    bool loaded = true;                           // joint torques and wrenches
+    bool springs = false;                         // joint springs (unequal about the three axes) and dampers
+    bool drag = false;                            // of every body
+    double driven = 0;                            // probability that a joint that can be driven is
+    std::optional<JointType> tip = std::nullopt;  // type of the joint of the last body to ground; velocities are made to fit
 };
 
 /// Rigid bodies of mass 0.3 .. 3, size about 0.3, any shape a real body can have.

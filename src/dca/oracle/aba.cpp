@@ -10,21 +10,20 @@ namespace catena::oracle {
 namespace {
 
 template <class S>
-struct Motion {
-    V3<S> alpha = V3<S>::zero(), linear = V3<S>::zero();
-};
-template <class S>
 struct Inertia {
     M3<S> rot = M3<S>::zero(), cross = M3<S>::zero(), lin = M3<S>::zero();
 };
 template <class S>
 SpatialForce<S> operator*(Inertia<S> const& i, Motion<S> const& a) {
-    return {i.rot * a.alpha + i.cross * a.linear, transposed_times(i.cross, a.alpha) + i.lin * a.linear};
+    return {i.rot * a.angular + i.cross * a.linear, transposed_times(i.cross, a.angular) + i.lin * a.linear};
 }
+
+/// One coordinate as it is eliminated: q'' = (rest - carry . A) / inertia, A the acceleration with it and those outboard locked.
 template <class S>
-SpatialForce<S> operator+(SpatialForce<S> const& a, SpatialForce<S> const& b) {
-    return {a.torque + b.torque, a.force + b.force};
-}
+struct Coordinate {
+    SpatialForce<S> carry;
+    S inertia = S(0), rest = S(0);
+};
 
 template <class S>
 struct Articulated {
@@ -34,6 +33,7 @@ struct Articulated {
     // Behind the joint, as the inboard body feels it: F = behind (A carried over from the inboard body) + bias_behind.
     Inertia<S> behind;
     SpatialForce<S> bias_behind;
+    std::array<Coordinate<S>, 2> coordinate;
 };
 
 [[noreturn]] void not_definite(std::size_t k) {
@@ -54,17 +54,26 @@ void add_rigid_body(Link<S> const& link, Attitude<S> const& at, V3<S> const& gra
     a.bias = a.bias + SpatialForce<S>{gyroscopic + cross(link.com, net), net};
 }
 
-/// I - U D^-1 U^T with U = I P, D = P^T U; the bias behind the joint carries the joint torque.
+/// Coordinates one after the other from the outboard side (a universal joint is two pins with a massless body between):
+/// I - U D^-1 U^T with U = I P, D = P^T U; the bias behind carries the force along the coordinate.
 template <class S>
-void pass_revolute(Link<S> const& link, std::size_t k, Articulated<S>& a) {
-    V3<S> const u_rot = a.inertia.rot * link.axis, u_lin = transposed_times(a.inertia.cross, link.axis);
-    S const d = dot(link.axis, u_rot);
-    if (!(d > S(0))) not_definite(k);
-    S const scale = S(-1) / d, acceleration = dot(link.axis, link.torque - a.bias.torque) / d;
-    a.behind.rot = plus_outer(a.inertia.rot, scale, u_rot, u_rot);
-    a.behind.cross = plus_outer(a.inertia.cross, scale, u_rot, u_lin);
-    a.behind.lin = plus_outer(a.inertia.lin, scale, u_lin, u_lin);
-    a.bias_behind = a.bias + SpatialForce<S>{acceleration * u_rot, acceleration * u_lin};
+void pass_coordinates(Link<S> const& link, std::size_t k, Articulated<S>& a) {
+    a.behind = a.inertia;
+    a.bias_behind = a.bias;
+    for (int i = link.unknown(); i-- > 0;) {
+        Motion<S> const& p = link.free[static_cast<std::size_t>(i)];
+        Coordinate<S>& c = a.coordinate[static_cast<std::size_t>(i)];
+        c.carry = a.behind * p;
+        c.inertia = power(p, c.carry);
+        c.rest = link.effort[i] - power(p, a.bias_behind);
+        if (!(c.inertia > S(0))) not_definite(k);
+        V3<S> const &u_rot = c.carry.torque, &u_lin = c.carry.force;
+        S const scale = S(-1) / c.inertia, acceleration = c.rest / c.inertia;
+        a.behind.rot = plus_outer(a.behind.rot, scale, u_rot, u_rot);
+        a.behind.cross = plus_outer(a.behind.cross, scale, u_rot, u_lin);
+        a.behind.lin = plus_outer(a.behind.lin, scale, u_lin, u_lin);
+        a.bias_behind = a.bias_behind + SpatialForce<S>{acceleration * u_rot, acceleration * u_lin};
+    }
 }
 
 template <class S>
@@ -74,7 +83,7 @@ void pass_spherical(Link<S> const& link, std::size_t k, Articulated<S>& a) {
     M3<S> alpha_per_linear;
     for (int j = 0; j < 3; ++j) alpha_per_linear.set_column(j, d.solve(a.inertia.cross.column(j)));
     a.behind.lin = plus(a.inertia.lin, scaled(S(-1), transposed_times(a.inertia.cross, alpha_per_linear)));
-    a.bias_behind = {link.torque, a.bias.force + transposed_times(alpha_per_linear, link.torque - a.bias.torque)};
+    a.bias_behind = {link.effort, a.bias.force + transposed_times(alpha_per_linear, link.effort - a.bias.torque)};
 }
 
 /// Adds what `outboard` passes through its joint to the inboard body, in the inboard body's axes about its origin.
@@ -112,19 +121,26 @@ Motion<S> solve_free(Articulated<S> const& a) {
     return {{{x[0], x[1], x[2]}}, {{x[3], x[4], x[5]}}};
 }
 
-/// q'' of a joint as a vector in B, given the acceleration the body would have without it.
+/// q'' of a joint; `motion`: the acceleration the body would have without it.
 template <class S>
-V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S> const& locked) {
-    V3<S> const rest = link.torque - a.bias.torque - (a.inertia * locked).torque;
-    if (link.type == JointType::revolute) return S(dot(link.axis, rest) / dot(link.axis, a.inertia.rot * link.axis)) * link.axis;
-    return Cholesky<S, 3>(a.inertia.rot).solve(rest);
+V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S> motion) {
+    if (link.driven) return link.prescribed;
+    if (link.type == JointType::spherical)
+        return Cholesky<S, 3>(a.inertia.rot).solve(link.effort - a.bias.torque - (a.inertia * motion).torque);
+    V3<S> qdd = V3<S>::zero();
+    for (int i = 0; i < link.dof; ++i) {
+        auto const at = static_cast<std::size_t>(i);
+        qdd[i] = (a.coordinate[at].rest - power(motion, a.coordinate[at].carry)) / a.coordinate[at].inertia;
+        motion = motion + Motion<S>{qdd[i] * link.free[at].angular, qdd[i] * link.free[at].linear};
+    }
+    return qdd;
 }
 
 template <class S>
 class Solver {
   public:
     Solver(ChainSpec const& chain, Loads const& loads)
-        : links_(read_links<S>(chain)), attitude_(attitudes(links_)), bodies_(links_.size()), gravity_(lift<S>(loads.gravity)) {
+        : links_(read_links<S>(chain, loads)), attitude_(attitudes(links_)), bodies_(links_.size()), gravity_(lift<S>(loads.gravity)) {
         if (!links_.empty() && links_[0].type == JointType::free) refer_to_com();
     }
 
@@ -150,12 +166,14 @@ class Solver {
         Link<S> const& link = links_[k];
         add_rigid_body(link, attitude_[k], gravity_, a);
         if (link.type == JointType::free) return;
-        V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega;
-        a.closure = {cross(attitude_[k].omega, link.rate), transposed_times(link.rotation, cross(w, cross(w, link.translation)))};
-        if (link.type == JointType::revolute)
-            pass_revolute(link, k, a);
-        else
+        V3<S> const w = k == 0 ? V3<S>::zero() : attitude_[k - 1].omega, w_here = attitude_[k].omega - link.rate;
+        a.closure = {cross(w_here, link.rate) + link.drift,
+                     transposed_times(link.rotation, cross(w, cross(w, link.translation))) + S(2) * cross(w_here, link.slide)};
+        if (link.driven) a.closure = a.closure + along(link, link.prescribed);
+        if (link.type == JointType::spherical)
             pass_spherical(link, k, a);
+        else
+            pass_coordinates(link, k, a);
         a.bias_behind = a.bias_behind + a.behind * a.closure;
         if (k > 0) hand_inboard(link, a, bodies_[k - 1]);
     }
@@ -168,21 +186,22 @@ class Solver {
         if (link.type == JointType::free) {
             Motion<S> const motion = solve_free(a);
             V3<S> const &w = attitude_[k].omega, r = -from_origin_;
-            result.base_acceleration = to_world * (motion.linear + cross(motion.alpha, r) + cross(w, cross(w, r)));
-            report(k, motion, motion.alpha, result);
+            result.base_acceleration = to_world * (motion.linear + cross(motion.angular, r) + cross(w, cross(w, r)));
+            report(k, motion, motion.angular, result);
             return motion;
         }
-        Motion<S> const carried{transposed_times(link.rotation, inboard.alpha),
-                                transposed_times(link.rotation, inboard.linear + cross(inboard.alpha, link.translation))};
-        Motion<S> motion{carried.alpha + a.closure.alpha, carried.linear + a.closure.linear};
+        Motion<S> const carried{transposed_times(link.rotation, inboard.angular),
+                                transposed_times(link.rotation, inboard.linear + cross(inboard.angular, link.translation))};
+        Motion<S> motion = carried + a.closure;
         V3<S> const qdd = joint_acceleration(link, a, motion);
-        motion.alpha = motion.alpha + qdd;
-        bool const revolute = link.type == JointType::revolute;
-        report(k, motion, revolute ? V3<S>{{dot(link.axis, qdd), S(0), S(0)}} : qdd, result);
+        if (!link.driven) motion = motion + along(link, qdd);
+        report(k, motion, qdd, result);
         SpatialForce<S> const f = a.behind * carried + a.bias_behind;
-        V3<S> const constraint = revolute ? f.torque - dot(link.axis, f.torque) * link.axis : V3<S>::zero();
-        result.joint_force[k] = {to_world * (constraint + link.torque), to_world * f.force};
-        result.constraint_force[k] = {to_world * constraint, to_world * f.force};
+        SpatialForce<S> const given = spread(link, link.effort), found = spread(link, efforts(link, f));
+        bool const held = link.unknown() == 0;
+        V3<S> const torque = held ? f.torque : f.torque - found.torque, force = held ? f.force : f.force - found.force;
+        result.constraint_force[k] = {to_world * torque, to_world * force};
+        result.joint_force[k] = {to_world * (torque + given.torque), to_world * (force + given.force)};
         return motion;
     }
 
@@ -190,8 +209,8 @@ class Solver {
         V3<S> const &w = attitude_[k].omega, &c = links_[k].com;
         M3<S> const& to_world = attitude_[k].orientation;
         result.qdd.push_back(qdd);
-        result.alpha.push_back(to_world * motion.alpha);
-        result.com_acceleration.push_back(to_world * (motion.linear + cross(motion.alpha, c) + cross(w, cross(w, c))));
+        result.alpha.push_back(to_world * motion.angular);
+        result.com_acceleration.push_back(to_world * (motion.linear + cross(motion.angular, c) + cross(w, cross(w, c))));
         result.joint_force.emplace_back();
         result.constraint_force.emplace_back();
     }

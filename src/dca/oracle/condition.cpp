@@ -11,7 +11,7 @@ std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
     std::vector<Index> first;
     for (Link<S> const& link : links) {
         first.push_back(dof);
-        dof += link.type == JointType::revolute ? 1 : 3;
+        dof += link.unknown();
     }
     first.push_back(dof);
     return first;
@@ -19,9 +19,9 @@ std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
 
 /// Joint-space inertia: column j holds the joint forces that a unit acceleration of freedom j needs, at rest and unloaded.
 template <class S>
-Dense<S> joint_space_inertia(ChainSpec const& chain) {
-    std::vector<Link<S>> links = read_links<S>(chain);
-    for (Link<S>& link : links) link.rate = link.applied_torque = link.applied_force = V3<S>::zero();
+Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
+    std::vector<Link<S>> links = read_links<S>(chain, loads);
+    for (Link<S>& link : links) link.rate = link.slide = link.drift = link.applied_torque = link.applied_force = V3<S>::zero();
     std::vector<Index> const first = freedoms(links);
     Inverse<S> const inverse(links, V3<S>::zero());
     Dense<S> inertia(first.back(), first.back());
@@ -34,9 +34,8 @@ Dense<S> joint_space_inertia(ChainSpec const& chain) {
         std::vector<InverseBody<S>> const bodies = inverse(qdd, base);
         for (Index i = 0; i < first[0]; ++i) inertia(i, j) = bodies[0].force.sum[static_cast<int>(i)];
         for (std::size_t k = 0; k < links.size(); ++k) {
-            V3<S> torque = inverse.in_body(k, bodies[k].torque.sum);
-            if (links[k].type == JointType::revolute) torque[0] = dot(links[k].axis, torque);
-            for (Index i = first[k]; i < first[k + 1]; ++i) inertia(i, j) = torque[static_cast<int>(i - first[k])];
+            V3<S> const effort = inverse.needed(k, bodies[k]);
+            for (Index i = first[k]; i < first[k + 1]; ++i) inertia(i, j) = effort[static_cast<int>(i - first[k])];
         }
     }
     return inertia;
@@ -61,8 +60,8 @@ Dense<S> link_matrix(ChainSpec const& chain) {
 
 }  // namespace
 
-double condition_estimate(ChainSpec const& chain) {
-    Dense<double> const m = chain.is_beads() ? link_matrix<double>(chain) : joint_space_inertia<double>(chain);
+double condition_estimate(ChainSpec const& chain, Loads const& loads) {
+    Dense<double> const m = chain.is_beads() ? link_matrix<double>(chain) : joint_space_inertia<double>(chain, loads);
     if (m.rows() == 0) return 1;
     Eigen::SelfAdjointEigenSolver<Dense<double>> const eigen((m + m.transpose()) / 2, Eigen::EigenvaluesOnly);
     double const largest = eigen.eigenvalues().maxCoeff(), smallest = eigen.eigenvalues().minCoeff();

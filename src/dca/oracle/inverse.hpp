@@ -40,6 +40,10 @@ class Inverse {
 
     /// Components in body k's axes of a vector given in W.
     V3<S> in_body(std::size_t k, V3<S> const& v) const { return transposed_times(attitude_[k].orientation, v); }
+    /// What the accelerations need along the coordinates of joint k.
+    V3<S> needed(std::size_t k, InverseBody<S> const& b) const {
+        return efforts(links_[k], SpatialForce<S>{in_body(k, b.torque.sum), in_body(k, b.force.sum)});
+    }
 
   private:
     void forward(std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration, std::vector<InverseBody<S>>& bodies) const {
@@ -49,11 +53,12 @@ class Inverse {
             Link<S> const& link = links_[k];
             InverseBody<S>& b = bodies[k];
             M3<S> const& r = attitude_[k].orientation;
-            b.from_inboard = inboard * link.translation;
+            b.from_inboard = inboard * link.translation;  // the joint's shift included
             linear = linear + cross(alpha, b.from_inboard) + cross(omega, cross(omega, b.from_inboard));
             if (link.type == JointType::free) linear = base_acceleration;
-            V3<S> const relative = link.type == JointType::revolute ? qdd[k][0] * link.axis : qdd[k];
-            alpha = alpha + r * relative + cross(omega, r * link.rate);
+            Motion<S> const relative = along(link, qdd[k]);
+            if (link.type != JointType::free) linear = linear + S(2) * cross(omega, r * link.slide) + r * relative.linear;
+            alpha = alpha + r * (relative.angular + link.drift) + cross(omega, r * link.rate);
             omega = r * attitude_[k].omega;
             inboard = r;
             b.omega = omega;

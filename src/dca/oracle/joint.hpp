@@ -1,35 +1,95 @@
 // Inside the oracles: a body and its inboard joint read from ChainSpec in the oracle's scalar.
 #pragma once
 
+#include <array>
+#include <string>
+
 #include "dca/oracle/algebra.hpp"
 #include "dca/oracle/oracle.hpp"
 
 namespace catena::oracle {
 
+/// A direction of a joint or a relative acceleration: of the outboard side against the inboard one, at the body's origin.
+template <class S>
+struct Motion {
+    V3<S> angular = V3<S>::zero(), linear = V3<S>::zero();
+};
+template <class S>
+Motion<S> operator+(Motion<S> const& a, Motion<S> const& b) {
+    return {a.angular + b.angular, a.linear + b.linear};
+}
+template <class S>
+SpatialForce<S> operator+(SpatialForce<S> const& a, SpatialForce<S> const& b) {
+    return {a.torque + b.torque, a.force + b.force};
+}
+/// Power of a wrench along a motion, both about the same point.
+template <class S>
+S power(Motion<S> const& m, SpatialForce<S> const& f) {
+    return dot(m.angular, f.torque) + dot(m.linear, f.force);
+}
+
 /// Body k + 1 and its inboard joint.
 template <class S>
 struct Link {
     JointType type = JointType::free;
-    M3<S> rotation;                // components in B to components in the inboard body's axes (free: W)
-    V3<S> translation;             // from the inboard body's origin to this one's, inboard body's axes (free: W)
-    V3<S> axis = V3<S>::zero();    // revolute: unit axis, B
-    V3<S> rate;                    // angular velocity relative to the inboard body, B
-    V3<S> torque = V3<S>::zero();  // of the joint on this body, springs and dampers included, along the free directions, B
+    bool driven = false;
+    M3<S> rotation;     // components in B to components in the inboard body's axes (free: W)
+    V3<S> translation;  // from the inboard body's origin to this one's, the joint's shift included, inboard body's axes (free: W)
+    std::array<Motion<S>, 3> free;     // the directions of the coordinates, B. Free: of its rotation
+    int dof = 0;                       // how many of them there are
+    V3<S> rate, slide;                 // angular velocity and the origin's velocity relative to the inboard body, B (free: slide in W)
+    V3<S> drift = V3<S>::zero();       // angular acceleration that the rates give beside inboard omega x rate, B (universal)
+    V3<S> prescribed = V3<S>::zero();  // driven: q''
+    V3<S> effort = V3<S>::zero();      // along the coordinates: given force, springs, dampers
     S spring_energy = S(0);
     S mass;
     V3<S> com;                            // from the origin, B
     M3<S> inertia;                        // about com, B
-    V3<S> applied_torque, applied_force;  // at com, W, without gravity
-};
-/// Throws ComputationError for a joint type the oracles do not know.
-template <class S>
-std::vector<Link<S>> read_links(ChainSpec const& chain);
+    V3<S> applied_torque, applied_force;  // at com, W, without gravity: wrench, beads' forces, drag
 
-/// Absolute orientation (B to W) and angular velocity (B) of every body.
+    /// Coordinates whose second derivatives follow from the forces.
+    int unknown() const { return driven ? 0 : dof; }
+};
+/// A joint in the oracle's scalar, as BodyArrays and TipJoint describe it.
+template <class S>
+struct JointShape {
+    JointType type;
+    V3<S> axis, first_axis;  // need not be of unit length
+    S pitch;
+    M3<S> rotation;
+    V3<S> translation;
+    std::array<S, 2> q;
+    std::array<double, 4> quaternion;  // spherical and free
+};
+/// Sets type, rotation, translation and directions. Throws ComputationError naming `where` for a link.
+template <class S>
+void place(JointShape<S> const& shape, std::string const& where, Link<S>& link);
+
+/// Sum of the directions times their coordinates.
+template <class S>
+Motion<S> along(Link<S> const& link, V3<S> const& coordinates);
+/// With P the directions: coordinates of a motion (P^T P)^-1 P^T m, efforts of a wrench along them P^T f, and the wrench in
+/// their span that has given efforts, P (P^T P)^-1 effort (B).
+template <class S>
+V3<S> coordinates(Link<S> const& link, Motion<S> const& motion);
+template <class S>
+V3<S> efforts(Link<S> const& link, SpatialForce<S> const& wrench);
+template <class S>
+SpatialForce<S> spread(Link<S> const& link, V3<S> const& effort);
+/// The directions that the joint leaves no freedom, B; all six when it is driven.
+template <class S>
+std::vector<Motion<S>> restricted(Link<S> const& link);
+
+/// All bodies. Throws ComputationError for a joint that has no place in a chain of bodies.
+template <class S>
+std::vector<Link<S>> read_links(ChainSpec const& chain, Loads const& loads);
+
+/// Where a body is and how it moves.
 template <class S>
 struct Attitude {
-    M3<S> orientation;
-    V3<S> omega;
+    M3<S> orientation;       // B to W
+    V3<S> omega;             // B
+    V3<S> origin, velocity;  // of the body's origin, W
 };
 template <class S>
 std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links);

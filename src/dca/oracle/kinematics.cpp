@@ -21,25 +21,19 @@ Kinematics<S> of_beads(ChainSpec const& chain, Loads const& loads) {
 template <class S>
 Kinematics<S> of_bodies(ChainSpec const& chain, Loads const& loads) {
     Kinematics<S> result;
-    std::vector<Link<S>> const links = read_links<S>(chain);
+    std::vector<Link<S>> const links = read_links<S>(chain, loads);
     std::vector<Attitude<S>> const attitude = attitudes(links);
-    M3<S> r = M3<S>::identity();                // of the inboard body
-    V3<S> x = V3<S>::zero(), v = x, omega = x;  // of the inboard body's origin, W
     for (std::size_t k = 0; k < links.size(); ++k) {
         Link<S> const& link = links[k];
-        V3<S> const to_origin = r * link.translation;
-        x = x + to_origin;
-        v = link.type == JointType::free ? lift<S>(chain.bodies.free_velocity) : v + cross(omega, to_origin);
-        r = attitude[k].orientation;
-        omega = r * attitude[k].omega;
-        V3<S> const to_com = r * link.com;
-        V3<S> const velocity = v + cross(omega, to_com), position = x + to_com;
-        result.orientation.push_back(r);
-        result.origin.push_back(x);
+        Attitude<S> const& at = attitude[k];
+        V3<S> const omega = at.orientation * at.omega, to_com = at.orientation * link.com;
+        V3<S> const velocity = at.velocity + cross(omega, to_com), position = at.origin + to_com;
+        result.orientation.push_back(at.orientation);
+        result.origin.push_back(at.origin);
         result.com_position.push_back(position);
         result.com_velocity.push_back(velocity);
         result.omega.push_back(omega);
-        result.kinetic_energy += (link.mass * dot(velocity, velocity) + dot(attitude[k].omega, link.inertia * attitude[k].omega)) / S(2);
+        result.kinetic_energy += (link.mass * dot(velocity, velocity) + dot(at.omega, link.inertia * at.omega)) / S(2);
         result.potential_energy -= link.mass * dot(lift<S>(loads.gravity), position);
         result.spring_energy += link.spring_energy;
     }

@@ -13,8 +13,10 @@ namespace catena::oracle {
 
 /// What acts on a chain beside the wrenches, torques, springs and dampers that its ChainSpec holds.
 struct Loads {
-    Vec3 gravity = Vec3::zero();    // W
-    std::vector<Vec3> bead_forces;  // bead chains, W, one a bead; empty: zero
+    Vec3 gravity = Vec3::zero();               // W
+    std::vector<Vec3> bead_forces;             // W, one a bead (bodies: one a carried bead, in their order); empty: zero
+    double linear_drag = 0, angular_drag = 0;  // force -linear v, torque -angular omega on every body without a drag of its own
+    double time = 0;                           // at which driven joints are taken
 };
 
 template <class Scalar>
@@ -26,16 +28,18 @@ struct SpatialForce {
 /// Accelerations and joint forces of one chain; entry k belongs to body (bead) k + 1.
 template <class Scalar>
 struct OracleResult {
-    /// Rigid bodies. Revolute: {q'', 0, 0}; spherical and free: time derivative of qd's components, B. Empty for beads.
+    /// Rigid bodies: second derivatives of the coordinates, as qd: {q'', 0, 0}; universal {q1'', q2'', 0}; weld zeros;
+    /// spherical and free: time derivative of qd's components, B; driven: what the course prescribes. Empty for beads.
     std::vector<Vector<Scalar, 3>> qdd;
     /// Free base: acceleration of the origin of body 1 (second time derivative of its position), W. Zero otherwise.
     Vector<Scalar, 3> base_acceleration = Vector<Scalar, 3>::zero();
     std::vector<Vector<Scalar, 3>> com_acceleration;  // centre of mass, or bead, W
     std::vector<Vector<Scalar, 3>> alpha;             // angular acceleration, W. Empty for beads
-    /// Whole wrench that the inboard joint exerts on the body, W, torque about the joint's centre (the body's origin): the
-    /// constraint's and the joint torque's (given torque, spring, damper). A free body 1: zero. Empty for beads.
+    /// Whole wrench that the inboard joint exerts on the body, W, torque about the body's origin: the constraint's (a drive's
+    /// included) and that of the joint's given torque, spring and damper. A free body 1: zero. Empty for beads.
     std::vector<SpatialForce<Scalar>> joint_force;
-    /// The constraint's part alone: joint_force less the joint torque along the free directions.
+    /// The constraint's part D lambda alone. With P the joint's directions it obeys P^T f = 0, and the rest of joint_force,
+    /// P (P^T P)^-1 tau, lies in the span of P (formulas' D^T T = 0). Driven: all of joint_force.
     std::vector<SpatialForce<Scalar>> constraint_force;
     /// Beads: tension of the inboard link, positive when it pulls its two ends together. Free base: entry 0 is zero.
     std::vector<Scalar> tension;
@@ -63,7 +67,7 @@ struct Kinematics {
     std::vector<Vector<Scalar, 3>> omega;           // absolute, W
     Scalar kinetic_energy = Scalar(0);
     Scalar potential_energy = Scalar(0);  // gravity: - sum m g . com
-    Scalar spring_energy = Scalar(0);     // joint springs: 1/2 sum k e^2 in the rotation vector e
+    Scalar spring_energy = Scalar(0);     // joint springs: 1/2 sum k e^2 in the coordinates (spherical: in the rotation vector e)
 };
 
 /// Forward kinematics and energies.
@@ -71,18 +75,18 @@ template <class Scalar>
 Kinematics<Scalar> kinematics(ChainSpec const& chain, Loads const& loads);
 
 /// Recursive Newton-Euler inverse dynamics (Featherstone 2008, section 5.3) of given accelerations: per joint the torque
-/// they need less the torque that acts, over the largest term of that joint's own moment balance; the largest ratio of the
-/// chain. A free base adds the force balance of the whole. Beads: `accelerations` are the beads', and the ratio is the part
-/// of a link's force across the link. Information, no measure of a solver at large n: it grows with the condition number.
-/// Shapes: accelerations[k] as OracleResult::qdd (beads: com_acceleration).
+/// they need less the torque that acts, over the largest term of that joint's own balance (moments; prismatic: forces); the
+/// largest ratio of the chain. Driven joints take whatever they need. A free base adds the force balance of the whole. Beads:
+/// `accelerations` are the beads', and the ratio is the part of a link's force across the link. Information, no measure of a solver at
+/// large n: it grows with the condition number. Shapes: accelerations[k] as OracleResult::qdd (beads: com_acceleration).
 template <class Scalar>
 Scalar rnea_residual(ChainSpec const& chain, Loads const& loads, std::vector<Vector<Scalar, 3>> const& accelerations,
                      Vector<Scalar, 3> const& base_acceleration = Vector<Scalar, 3>::zero());
 
 /// 2-norm condition number of the joint-space inertia, column by column from inverse dynamics and then dense eigenvalues
-/// (rigid bodies; a free base counts with 6), or of the links' matrix G M^-1 G^T (beads). O(n^3): moderate n. In double
-/// precision: trustworthy up to some 1e13, never above 1 / eps.
-double condition_estimate(ChainSpec const& chain);
+/// (rigid bodies, without driven joints; a free base counts with 6), or of the links' matrix G M^-1 G^T (beads). O(n^3): moderate n. In
+/// double precision: trustworthy up to some 1e13, never above 1 / eps.
+double condition_estimate(ChainSpec const& chain, Loads const& loads = {});
 
 #define CATENA_ORACLE(Scalar)                                                                                           \
     extern template OracleResult<Scalar> aba<Scalar>(ChainSpec const&, Loads const&);                                   \

@@ -8,19 +8,25 @@ S ratio(S error, S size) {
     return size > S(0) ? S(error / size) : S(0);
 }
 
+/// Along the coordinates of one joint: what is needed less what is given, over the largest term of its balance (a sliding
+/// coordinate: of the forces; a helical one: of both).
+template <class S>
+S joint_residual(Link<S> const& link, V3<S> const& needed, InverseBody<S> const& body) {
+    S size = norm(link.effort);
+    if (norm(link.free[0].angular) > S(0)) size = std::max(size, body.torque.largest);
+    if (norm(link.free[0].linear) > S(0)) size = std::max(size, S(norm(link.free[0].linear) * body.force.largest));
+    return ratio(norm(needed - link.effort), size);
+}
+
 template <class S>
 S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration) {
     using std::abs;
-    std::vector<Link<S>> const links = read_links<S>(chain);
+    std::vector<Link<S>> const links = read_links<S>(chain, loads);
     Inverse<S> const inverse(links, lift<S>(loads.gravity));
     std::vector<InverseBody<S>> const bodies = inverse(qdd, base_acceleration);
     S worst(0);
     for (std::size_t k = 0; k < links.size(); ++k) {
-        Balance<S> const& torque = bodies[k].torque;
-        V3<S> const error = inverse.in_body(k, torque.sum) - links[k].torque;
-        S const size = std::max(torque.largest, norm(links[k].torque));
-        S const along = links[k].type == JointType::revolute ? S(abs(dot(links[k].axis, error))) : norm(error);
-        worst = std::max(worst, ratio(along, size));
+        if (links[k].unknown() > 0) worst = std::max(worst, joint_residual(links[k], inverse.needed(k, bodies[k]), bodies[k]));
         if (links[k].type == JointType::free) worst = std::max(worst, ratio(norm(bodies[k].force.sum), bodies[k].force.largest));
     }
     return worst;
