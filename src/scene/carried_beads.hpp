@@ -6,13 +6,16 @@
 
 namespace catena::scene {
 
-/// Closes body after body: CarriedBeads grow with the bodies and stay empty until the first bead comes.
+/// The beads of body after body; without any bead CarriedBeads stay empty.
 class CarriedList {
   public:
-    /// The beads of the next body; null: none. Positions are moved by -`origin` (linked chains count from the centre of mass).
+    /// One more bead of the present body.
+    void append(Vec3 const& position, double mass, std::string const& residue);
+    /// The present body has all its beads.
+    void close();
+    /// The whole body: its list in the scene, or null for none. Positions are moved by -`origin` (linked chains count from the centre of
+    /// mass).
     void add(Node const* beads, Vec3 const& origin = Vec3::zero());
-    /// One bead of the next body.
-    void add(Vec3 const& position, double mass, std::string const& residue);
     CarriedBeads take();
 
   private:

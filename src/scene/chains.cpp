@@ -11,8 +11,9 @@
 #include "scene/chain_request.hpp"
 #include "scene/conformation.hpp"
 #include "scene/fields.hpp"
+#include "scene/freedom.hpp"
 #include "scene/generator_entry.hpp"
-#include "scene/pose.hpp"
+#include "scene/linked.hpp"
 #include "scene/sequences.hpp"
 #include "scene/tip.hpp"
 
@@ -22,7 +23,7 @@ namespace {
 
 Fields chain_fields(Node const& entry) {
     return Fields(entry, {"name", "count", "sequence", "fasta", "pdb", "bodies", "generator", "model", "positions", "links", "base", "tip",
-                          "anchor", "conformation", "velocities"});
+                          "anchor", "conformation", "rigid", "velocities"});
 }
 
 /// The one key that says what the chain is made of.
@@ -84,7 +85,7 @@ class ChainReader {
             Fields(source_, {"hdf5"}), fail_later(source_, "bodies from an HDF5 file");
     }
 
-    void append_to(std::vector<Draft>& drafts) const {
+    void append_to(std::vector<Draft>& drafts) {
         Node const* const named = request_.fields.find("name");
         std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
         if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
@@ -100,7 +101,7 @@ class ChainReader {
     }
 
   private:
-    ChainSpec make(std::int64_t copy) const {
+    ChainSpec make(std::int64_t copy) {
         ChainSpec chain;
         chain.base = request_.base;
         Node const* planar = tip_.planar;
@@ -111,10 +112,17 @@ class ChainReader {
         } else if (source_.key != "bodies") {
             chain.beads = read_sequence(request_, copy);
             velocities = false;
+            if (!request_.rigid.empty()) {
+                chain.linked = with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
+                chain.beads = {};
+            }
         } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
             velocities = explicit_beads(request_, source_, chain.beads);
         } else if (kind == BodyList::linked) {
-            fail_later(source_, "links between bodies");
+            request_.allow("bodies on links", {"anchor"});
+            ExplicitLinked made = read_linked(source_, request_.base, request_.anchor());
+            chain.linked = std::move(made.linked);
+            velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});
             ForceSpec const& forces = request_.scene.forces;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/freedom.hpp"
 #include "scene/physics.hpp"
 #include "scene/pose.hpp"
 

@@ -30,11 +30,4 @@ inline double rate_at(Course const& c, double t) {
     return c.rate + c.amplitude * omega * std::cos(omega * t + c.phase);
 }
 
-/// Coordinates of a joint that is not driven: 1, universal 2, spherical 3, free 6; weld 0. A link restricts one direction.
-int coordinates_of(JointType type);
-
-/// Whether the joints' axes are all parallel whatever the coordinates: revolute joints, a weld or a free joint 1 between them. `first_odd`
-/// receives the first body (from 0) whose axis is not parallel to the one before, or whose joint has none; the size: the tip's.
-bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd);
-
 }  // namespace catena::scene

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "scene/freedom.hpp"
 #include "scene/joint_entry.hpp"
 #include "scene/pose.hpp"
 
@@ -107,21 +108,13 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
 
 char const* kind_of(ChainSpec const& chain) { return chain.is_beads() ? "a chain of beads" : "a chain of links"; }
 
-/// Degrees of freedom of the chain without its tip's joint; 1000: that many or more.
-int freedom_of(BodyArrays const& bodies) {
-    int sum = 0;
-    for (JointType const joint : bodies.joint) sum = std::min(sum + coordinates_of(joint), 1000);
-    for (DrivenJoint const& driven : bodies.driven)
-        sum -= coordinates_of(bodies.joint[static_cast<std::size_t>(driven.body)]);
-    return sum;
-}
-
 /// A tip that restricts more than the chain has leaves its forces undetermined.
 void refuse_too_many(ChainSpec const& chain, Node const& node) {
-    std::size_t odd = 0;
-    bool const planar = chain.base == Base::fixed && axes_are_parallel(chain, odd);
-    int const free = freedom_of(chain.bodies), restricted = (planar ? 3 : 6) - coordinates_of(chain.tip_joint.type);
-    if (free >= restricted) return;
+    std::int64_t const with = degrees_of_freedom(chain);
+    if (with >= 0) return;
+    ChainSpec open;
+    open.base = chain.base, open.bodies.joint = chain.bodies.joint, open.bodies.driven = chain.bodies.driven;
+    std::int64_t const free = degrees_of_freedom(open), restricted = free - with;
     fail(node, fmt::format("the tip's joint restricts {} directions, the chain has {} degrees of freedom", restricted, free),
          "give the tip a joint that restricts less, or the chain more joints");
 }
