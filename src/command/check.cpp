@@ -17,8 +17,8 @@ std::vector<std::string> openmm_lines(Scene const& scene, Communicator const& co
 Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
     ForcesOnJoints const found = forces_on_joints(scene);
     Vec3 const& g = scene.forces.gravity;
-    return {{"gravity", {g[0], g[1], g[2]}}, {"springs", found.springs},   {"dampers", found.dampers},
-            {"torques", found.torques},      {"wrenches", found.wrenches}, {"openmm", openmm}};
+    return {{"gravity", {g[0], g[1], g[2]}}, {"springs", found.springs},   {"dampers", found.dampers}, {"torques", found.torques},
+            {"motions", found.motions},      {"wrenches", found.wrenches}, {"drag", found.drag},       {"openmm", openmm}};
 }
 
 Json dynamics_json(Scene const& scene) {
@@ -53,7 +53,7 @@ Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory 
     text.add(chain_table(scene));
     text.heading("solver");
     text.entry("backend", name_of(scene.solver.backend));
-    if (d.beads > 0) text.entry("blocks of beads", block_text(true, d.beads, scene.solver.handles));
+    if (d.beads > 0) text.entry("blocks of links", block_text(true, d.beads, scene.solver.handles));
     if (d.bodies > 0) text.entry("blocks of bodies", block_text(false, d.bodies, scene.solver.handles));
     text.heading("forces");
     text.entry("gravity", vector_text(scene.forces.gravity));

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "report/solution.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena::command {
 namespace {
@@ -13,8 +13,21 @@ bool any(double const* values, int count) {
     return std::any_of(values, values + count, [](double v) { return v != 0; });
 }
 
+char const* contents_of(ChainSpec const& chain) {
+    if (chain.is_beads()) return "beads";
+    if (!chain.is_linked()) return "bodies";
+    std::size_t beads = 0;
+    for (std::size_t k = 0; k < chain.linked.size(); ++k) beads += chain.linked.is_bead(k) ? 1 : 0;
+    return beads == 0 ? "bodies" : "bodies and beads";
+}
+
+std::string tip_name(ChainSpec const& chain) { return chain.tip == Tip::free ? "free" : name_of(chain.tip_joint.type); }
+
+char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
+
 bool alike(ChainSpec const& a, ChainSpec const& b) {
-    return a.size() == b.size() && a.base == b.base && a.is_beads() == b.is_beads() && std::string(kind_of(a)) == kind_of(b);
+    return a.size() == b.size() && a.base == b.base && std::string(contents_of(a)) == contents_of(b) && tip_name(a) == tip_name(b) &&
+           scene::handle_kind(a) == scene::handle_kind(b);
 }
 
 char const* base_name(ChainSpec const& chain) { return chain.base == Base::free ? "free" : "fixed"; }
@@ -30,8 +43,8 @@ Table chain_table(Scene const& scene) {
         std::size_t end = i + 1;
         while (end < scene.chains.size() && alike(first, scene.chains[end])) ++end;
         std::string const name = end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
-        table.add({name, std::to_string(end - i), std::to_string(first.size()), first.is_beads() ? "beads" : "bodies", base_name(first),
-                   "free", kind_of(first)});
+        table.add({name, std::to_string(end - i), std::to_string(first.size()), contents_of(first), base_name(first), tip_name(first),
+                   kind_name(first)});
         i = end;
     }
     return table;
@@ -40,7 +53,8 @@ Table chain_table(Scene const& scene) {
 Json chains_json(Scene const& scene) {
     Json list = Json::array();
     for (ChainSpec const& chain : scene.chains)
-        list.push_back({{"name", chain.name}, {"bodies", chain.size()}, {"kind", kind_of(chain)}, {"base", base_name(chain)}});
+        list.push_back({{"name", chain.name}, {"bodies", chain.size()}, {"kind", kind_name(chain)}, {"base", base_name(chain)},
+                        {"tip", tip_name(chain)}, {"dof", scene::degrees_of_freedom(chain)}});
     return list;
 }
 
@@ -48,6 +62,10 @@ ForcesOnJoints forces_on_joints(Scene const& scene) {
     ForcesOnJoints found;
     for (ChainSpec const& chain : scene.chains) {
         BodyArrays const& b = chain.bodies;
+        bool const everywhere = scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0;
+        found.motions += std::ssize(b.driven);
+        if (b.drag.empty() && everywhere) found.drag += std::ssize(b.mass);
+        for (auto const& drag : b.drag) found.drag += any(drag.data(), 2);
         for (Vec3 const& v : b.stiffness) found.springs += any(v.data, 3);
         for (Vec3 const& v : b.damping) found.dampers += any(v.data, 3);
         for (Vec3 const& v : b.torque) found.torques += any(v.data, 3);
@@ -64,7 +82,9 @@ std::string forces_text(ForcesOnJoints const& found) {
     add(found.springs, "springs", "joint", "joints");
     add(found.dampers, "dampers", "joint", "joints");
     add(found.torques, "torques", "joint", "joints");
+    add(found.motions, "prescribed motions", "joint", "joints");
     add(found.wrenches, "wrenches", "body", "bodies");
+    add(found.drag, "drag", "body", "bodies");
     return text.empty() ? "none" : text;
 }
 
@@ -87,10 +107,11 @@ Directions directions_of(Scene const& scene) {
     bool const full = scene.solver.handles == Handles::full;
     Directions d;
     for (ChainSpec const& chain : scene.chains) {
-        if (chain.is_beads())
+        scene::HandleKind const kind = scene::handle_kind(chain);
+        if (kind == scene::HandleKind::link)
             d.beads = full ? 3 : 1;
         else
-            d.bodies = full ? 6 : std::max(d.bodies, std::string(kind_of(chain)) == "revolute" ? 5 : 3);
+            d.bodies = full ? 6 : std::max(d.bodies, scene::directions_of(kind));
     }
     return d;
 }
@@ -98,9 +119,10 @@ Directions directions_of(Scene const& scene) {
 std::string block_text(bool beads, int directions, Handles handles) {
     std::string const size = fmt::format("{0}x{0}", directions);
     if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
-    return size + (beads             ? ", projected on the links"
-                   : directions == 5 ? ", projected on the restricted directions of revolute joints"
-                                     : ", projected on the restricted directions of spherical joints");
+    if (beads) return size + ", projected on the links";
+    if (directions == 6) return size + ", every direction: welds or driven joints restrict them all";
+    auto const kind = static_cast<scene::HandleKind>(directions - 1);
+    return size + fmt::format(", projected on the restricted directions of {} joints", scene::name_of(kind));
 }
 
 }  // namespace catena::command

@@ -14,12 +14,12 @@ namespace catena::command {
 std::string title_of(Scene const&);
 /// Equal neighbouring chains in one row.
 Table chain_table(Scene const&);
-/// [{"name", "bodies", "kind", "base"}], every chain.
+/// [{"name", "bodies", "kind", "base", "tip", "dof"}], every chain.
 Json chains_json(Scene const&);
 
 /// What acts on the chains.
 struct ForcesOnJoints {
-    std::int64_t springs = 0, dampers = 0, torques = 0, wrenches = 0;  // joints (bodies) that have one
+    std::int64_t springs = 0, dampers = 0, torques = 0, motions = 0, wrenches = 0, drag = 0;  // joints (bodies) that have one
 };
 ForcesOnJoints forces_on_joints(Scene const&);
 /// "springs on 2 joints, ..."; "none"
@@ -31,7 +31,7 @@ std::string dynamics_text(Scene const&);
 char const* time_unit(Scene const&);
 char const* energy_unit(Scene const&);
 
-/// Directions that a handle carries: those of bead chains, and of the scene's body chains together (0 where there are none).
+/// Directions that a handle carries: those of chains of links, and of the scene's body chains together (0 where there are none).
 struct Directions {
     int beads = 0, bodies = 0;
 };

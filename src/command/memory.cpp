@@ -19,8 +19,12 @@ SolverSizes sizes_for(int directions) {
     switch (directions) {
         case 1:
             return sizes<1>();
+        case 2:
+            return sizes<2>();
         case 3:
             return sizes<3>();
+        case 4:
+            return sizes<4>();
         case 5:
             return sizes<5>();
         default:
@@ -37,7 +41,12 @@ double scene_bytes(ChainSpec const& chain) {
     double const bead = sizeof(double) * 8 + sizeof(std::string), body = sizeof(double) * (1 + 3 + 6 + 3 + 9 + 3 + 4 + 3) + 1;
     double const loads = sizeof(double) * (3.0 * static_cast<double>(b.torque.size() + b.stiffness.size() + b.damping.size()) +
                                            4.0 * static_cast<double>(b.rest.size()) + 6.0 * static_cast<double>(b.wrench.size()));
-    return bead * static_cast<double>(chain.beads.size()) + body * static_cast<double>(b.size()) + loads;
+    double const more = sizeof(double) * (3.0 * static_cast<double>(b.first_axis.size()) + static_cast<double>(b.pitch.size()) +
+                                          2.0 * static_cast<double>(b.drag.size()));
+    double const linked = sizeof(double) * (1 + 6 + 6 + 4 + 3 + 6 + 1);
+    double const carried = sizeof(double) * 4 + sizeof(std::string);
+    return bead * static_cast<double>(chain.beads.size()) + body * static_cast<double>(b.size()) + loads + more +
+           linked * static_cast<double>(chain.linked.size()) + carried * static_cast<double>(b.carried.size() + chain.linked.carried.size());
 }
 
 }  // namespace
@@ -47,7 +56,8 @@ Memory memory_of(Scene const& scene, int ranks) {
     bool const pairwise = scene.solver.backend == Backend::serial;
     Memory m;
     for (ChainSpec const& chain : scene.chains) {
-        int const k = chain.is_beads() ? directions.beads : directions.bodies;
+        bool const links = chain.is_beads() || chain.is_linked();
+        int const k = links ? directions.beads : directions.bodies;
         auto const n = static_cast<double>(chain.size());
         SolverSizes const size = sizes_for(k);
         dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()),

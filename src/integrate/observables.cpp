@@ -3,15 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/freedom.hpp"
+
 namespace catena {
 
 std::int64_t degrees_of_freedom(Scene const& scene) {
     std::int64_t dof = 0;
-    for (ChainSpec const& chain : scene.chains) {
-        std::int64_t const links = static_cast<std::int64_t>(chain.beads.size()) - (chain.base == Base::free ? 1 : 0);
-        if (chain.is_beads()) dof += 3 * static_cast<std::int64_t>(chain.beads.size()) - links;
-        for (JointType const joint : chain.bodies.joint) dof += joint == JointType::free ? 6 : joint == JointType::spherical ? 3 : 1;
-    }
+    for (ChainSpec const& chain : scene.chains) dof += scene::degrees_of_freedom(chain);
     return dof;
 }
 

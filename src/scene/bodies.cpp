@@ -5,107 +5,14 @@
 #include <algorithm>
 #include <limits>
 
+#include "scene/carried_beads.hpp"
 #include "scene/fields.hpp"
+#include "scene/joint_entry.hpp"
 #include "scene/physics.hpp"
 
 namespace catena::scene {
 
 namespace {
-
-using Four = std::array<double, 4>;
-
-JointType type_of(Node const& joint) {
-    Node const* const type = joint.find("type");
-    if (!type) fail(joint, "key `type` is missing", "add `type: revolute`");
-    return choice<JointType>(
-        *type,
-        {{"free", JointType::free}, {"link", JointType::link}, {"revolute", JointType::revolute}, {"spherical", JointType::spherical}},
-        {"planar", "universal", "weld", "prismatic", "helical"});
-}
-
-/// What one joint says, with the defaults of what it does not say.
-struct JointEntry {
-    JointType type = JointType::free;
-    Vec3 axis = Vec3::zero(), translation = Vec3::zero(), qd = Vec3::zero(), velocity = Vec3::zero(), position = Vec3::zero();
-    Vec3 torque = Vec3::zero(), stiffness = Vec3::zero(), damping = Vec3::zero();
-    Mat3 rotation = Mat3::identity();
-    Four q{0, 0, 0, 0}, rest{0, 0, 0, 0};
-    bool driven = false, sprung = false, damped = false;
-};
-
-/// Refuses the keys that mean nothing for this type of joint.
-void check_keys(Node const& joint, JointType type, Names allowed) {
-    for (Node const& item : joint.items)
-        if (std::find(allowed.begin(), allowed.end(), item.key) == allowed.end())
-            fail(item, fmt::format("key `{}` means nothing for a {} joint", item.key, name_of(type)), "leave it out or correct `type`");
-}
-
-Vec3 in_first(double value) { return {{value, 0, 0}}; }
-
-/// Stiffness or damping: a number or, for spherical joints, three.
-Vec3 resistance(Node const& node, JointType type) {
-    if (type == JointType::revolute) return in_first(non_negative(node));
-    if (node.kind != Node::Kind::list) {
-        double const all = non_negative(node);
-        return {{all, all, all}};
-    }
-    Vec3 const v = vector3(node);
-    for (double const x : v.data)
-        if (!(x >= 0)) fail(node, fmt::format("{} {} is negative", node.key, x), "give 0 or numbers above it");
-    return v;
-}
-
-void read_free(Fields const& joint, JointEntry& entry) {
-    check_keys(joint.node(), JointType::free, {"type", "q", "qd"});
-    entry.q = entry.rest = {1, 0, 0, 0};
-    if (Node const* const q = joint.find("q")) {
-        Fields const pose(*q, {"position", "quaternion"});
-        if (Node const* const position = pose.find("position")) entry.position = vector3(*position);
-        if (Node const* const quaternion = pose.find("quaternion")) entry.q = unit_quaternion(*quaternion);
-    }
-    if (Node const* const qd = joint.find("qd")) {
-        Fields const rates(*qd, {"omega", "velocity"});
-        if (Node const* const omega = rates.find("omega")) entry.qd = vector3(*omega);
-        if (Node const* const velocity = rates.find("velocity")) entry.velocity = vector3(*velocity);
-    }
-}
-
-void read_revolute(Fields const& joint, JointEntry& entry) {
-    check_keys(joint.node(), JointType::revolute,
-               {"type", "axis", "rotation", "translation", "q", "qd", "torque", "stiffness", "damping", "rest"});
-    entry.axis = direction(joint.need("axis", "axis: [0, 0, 1]"));
-    if (Node const* const q = joint.find("q")) entry.q = {number(*q), 0, 0, 0};
-    if (Node const* const qd = joint.find("qd")) entry.qd = in_first(number(*qd));
-    if (Node const* const torque = joint.find("torque")) entry.torque = in_first(number(*torque));
-    if (Node const* const rest = joint.find("rest")) entry.rest = {number(*rest), 0, 0, 0};
-}
-
-void read_spherical(Fields const& joint, JointEntry& entry) {
-    check_keys(joint.node(), JointType::spherical,
-               {"type", "rotation", "translation", "q", "qd", "torque", "stiffness", "damping", "rest"});
-    entry.q = entry.rest = {1, 0, 0, 0};
-    if (Node const* const q = joint.find("q")) entry.q = unit_quaternion(*q);
-    if (Node const* const qd = joint.find("qd")) entry.qd = vector3(*qd);
-    if (Node const* const torque = joint.find("torque")) entry.torque = vector3(*torque);
-    if (Node const* const rest = joint.find("rest")) entry.rest = unit_quaternion(*rest);
-}
-
-JointEntry read_joint(Node const& node) {
-    Fields const joint(node, {"type", "axis", "rotation", "translation", "q", "qd", "torque", "stiffness", "damping", "rest", "length"},
-                       {"axes", "pitch", "motion"});
-    JointEntry entry;
-    entry.type = type_of(node);
-    if (entry.type == JointType::free) return read_free(joint, entry), entry;
-    entry.type == JointType::revolute ? read_revolute(joint, entry) : read_spherical(joint, entry);
-    if (Node const* const rotation_node = joint.find("rotation")) entry.rotation = rotation(*rotation_node);
-    if (Node const* const translation = joint.find("translation")) entry.translation = vector3(*translation);
-    if (Node const* const stiffness = joint.find("stiffness")) entry.stiffness = resistance(*stiffness, entry.type);
-    if (Node const* const damping = joint.find("damping")) entry.damping = resistance(*damping, entry.type);
-    entry.driven = joint.find("torque");
-    entry.sprung = joint.find("stiffness") || joint.find("rest");
-    entry.damped = joint.find("damping");
-    return entry;
-}
 
 JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
     bool const first = k == 0;
@@ -129,6 +36,8 @@ JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
 void append(BodyArrays& bodies, JointEntry const& entry) {
     bodies.joint.push_back(entry.type);
     bodies.axis.push_back(entry.axis);
+    bodies.first_axis.push_back(entry.first_axis);
+    bodies.pitch.push_back(entry.pitch);
     bodies.rotation.push_back(entry.rotation);
     bodies.translation.push_back(entry.translation);
     bodies.q.push_back(entry.q);
@@ -141,71 +50,110 @@ void append(BodyArrays& bodies, JointEntry const& entry) {
         bodies.free_position = entry.position;
         bodies.free_velocity = entry.velocity;
     }
+    if (entry.motion.empty()) return;
+    DrivenJoint driven;
+    driven.body = static_cast<std::int64_t>(bodies.joint.size()) - 1;
+    std::copy(entry.motion.begin(), entry.motion.end(), driven.course.begin());
+    bodies.driven.push_back(driven);
 }
 
 /// Which of the arrays that may stay empty are needed.
 struct Needed {
-    bool torque = false, spring = false, damping = false, wrench = false;
+    bool torque = false, spring = false, damping = false, wrench = false, drag = false, first_axis = false, pitch = false;
+
+    void take(JointEntry const& joint) {
+        torque = torque || joint.loaded;
+        spring = spring || joint.sprung;
+        damping = damping || joint.damped;
+        first_axis = first_axis || joint.type == JointType::universal;
+        pitch = pitch || joint.type == JointType::helical;
+    }
     void drop_rest(BodyArrays& bodies) const {
         if (!torque) bodies.torque = {};
         if (!spring) bodies.stiffness = {}, bodies.rest = {};
         if (!damping) bodies.damping = {};
         if (!wrench) bodies.wrench = {};
+        if (!drag) bodies.drag = {};
+        if (!first_axis) bodies.first_axis = {};
+        if (!pitch) bodies.pitch = {};
     }
 };
 
-bool is_link(Node const& body) {
+std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
+    std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
+    if (!wrench) return load;
+    Fields const parts(*wrench, {"torque", "force"});
+    if (Node const* const torque = parts.find("torque")) load.first = vector3(*torque);
+    if (Node const* const force = parts.find("force")) load.second = vector3(*force);
+    return load;
+}
+
+Node const* type_of(Node const& body) {
     Node const* const joint = body.find("joint");
-    Node const* const type = joint ? joint->find("type") : nullptr;
-    return type && type->text == "link";
+    return joint ? joint->find("type") : nullptr;
 }
 
 }  // namespace
 
-bool describes_beads(Node const& bodies) {
+BodyList kind_of_list(Node const& bodies) {
     if (list(bodies).items.empty()) fail(bodies, "the list of bodies is empty", "give at least one body");
-    bool links = false, others = false;
+    Node const* other = nullptr;
+    bool links = false, rigid = false;
     for (Node const& body : bodies.items) {
-        bool const link = is_link(body);
+        Node const* const type = type_of(body);
+        bool const link = type && type->text == "link";
         links = links || link;
-        others = others || (!link && body.find("joint"));
+        rigid = rigid || body.find("inertia");
+        if (!link && !other) other = body.find("joint");
     }
-    if (links && others) fail_later(bodies, "links and other joints in one chain");
-    return links;
+    if (links && other) {
+        Node const* const type = other->find("type");
+        fail(*other, fmt::format("a joint {}in a chain of links", type ? fmt::format("of type `{}` ", shown(type->text)) : ""),
+             "make it a link, or give every joint another type");
+    }
+    return !links ? BodyList::bodies : rigid ? BodyList::linked : BodyList::beads;
 }
 
-BodyArrays read_bodies(Node const& node, Base base) {
-    BodyArrays bodies;
+std::array<double, 2> read_drag(Node const& drag) {
+    Fields const parts(drag, {"linear", "angular"});
+    Node const* const linear = parts.find("linear");
+    Node const* const angular = parts.find("angular");
+    return {linear ? non_negative(*linear) : 0, angular ? non_negative(*angular) : 0};
+}
+
+ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> const& scene_drag) {
+    ExplicitBodies made;
+    BodyArrays& bodies = made.bodies;
     Needed needed;
+    CarriedList carried;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
-        Fields const body(node.items[k], {"mass", "com", "inertia", "joint", "wrench"}, {"beads", "drag"});
+        Fields const body(node.items[k], {"mass", "com", "inertia", "joint", "wrench", "drag", "beads"});
         bodies.mass.push_back(positive(body.need("mass", "mass: 1.0")));
         Node const* const com = body.find("com");
         bodies.com.push_back(com ? vector3(*com) : Vec3::zero());
         bodies.inertia.push_back(inertia(body.need("inertia", "inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]")));
         JointEntry const entry = joint_of(body, k, base);
         append(bodies, entry);
-        std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
-        if (Node const* const wrench = body.find("wrench")) {
-            Fields const parts(*wrench, {"torque", "force"});
-            if (Node const* const torque = parts.find("torque")) load.first = vector3(*torque);
-            if (Node const* const force = parts.find("force")) load.second = vector3(*force);
-            needed.wrench = true;
-        }
-        bodies.wrench.push_back(load);
-        needed.torque = needed.torque || entry.driven;
-        needed.spring = needed.spring || entry.sprung;
-        needed.damping = needed.damping || entry.damped;
+        if (entry.planar && !made.planar) made.planar = body.find("joint");
+        needed.take(entry);
+        Node const* const wrench = body.find("wrench");
+        bodies.wrench.push_back(read_wrench(wrench));
+        needed.wrench = needed.wrench || wrench;
+        Node const* const drag = body.find("drag");
+        bodies.drag.push_back(drag ? read_drag(*drag) : scene_drag);
+        needed.drag = needed.drag || drag;
+        carried.add(body.find("beads"));
     }
     needed.drop_rest(bodies);
-    return bodies;
+    bodies.carried = carried.take();
+    return made;
 }
 
 ExplicitBeads read_beads(Node const& node, Base base) {
     ExplicitBeads made;
     for (std::size_t k = 0; k < node.items.size(); ++k) {
         Node const& item = node.items[k];
-        for (char const* const key : {"com", "inertia", "wrench"})
+        for (char const* const key : {"com", "inertia", "wrench", "drag", "beads"})
             if (Node const* const extra = item.find(key))
                 fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key), "leave it out or change `joint`");
         Fields const body(item, {"mass", "position", "velocity", "residue", "joint"});
@@ -219,7 +167,7 @@ ExplicitBeads read_beads(Node const& node, Base base) {
         double length = std::numeric_limits<double>::quiet_NaN();
         Node const* const joint_node = k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
         if (joint_node) {
-            Fields const joint(*joint_node, {"type", "length"}, {"motion"});
+            Fields const joint(*joint_node, {"type", "length"});
             Node const* const given = joint.find("length");
             if (given && k == 0 && base == Base::free)
                 fail(*given, "a link length for bead 1 of a free base, which has no link", "leave it out or write `base: fixed`");

@@ -6,12 +6,19 @@
 
 namespace catena::scene {
 
-/// Whether the list describes point beads on links (its joints are of type link). InputError for an empty list and for a mixture with other
-/// joints.
-bool describes_beads(Node const& bodies);
+/// What the list describes. beads: points on links. linked: links between rigid bodies and beads. bodies: any other joints.
+enum class BodyList { bodies, beads, linked };
 
-/// Rigid bodies on free, spherical and revolute joints; every number checked. InputError names the body.
-BodyArrays read_bodies(Node const& bodies, Base base);
+/// InputError for an empty list and for a mixture of links with other joints.
+BodyList kind_of_list(Node const& bodies);
+
+struct ExplicitBodies {
+    BodyArrays bodies;
+    Node const* planar = nullptr;  // the first joint that is written `planar`
+};
+/// Rigid bodies on any joints but links; every number checked. `scene_drag`: {linear, angular} of bodies that have none of their own.
+/// InputError names the body.
+ExplicitBodies read_bodies(Node const& bodies, Base base, std::array<double, 2> const& scene_drag);
 
 struct ExplicitBeads {
     BeadArrays beads;         // `length`: NaN where none is given
@@ -19,5 +26,8 @@ struct ExplicitBeads {
 };
 /// Beads {mass, position, velocity, residue, joint: {type: link, length}}.
 ExplicitBeads read_beads(Node const& bodies, Base base);
+
+/// `drag: {linear, angular}`.
+std::array<double, 2> read_drag(Node const& drag);
 
 }  // namespace catena::scene

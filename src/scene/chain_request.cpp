@@ -11,7 +11,7 @@
 namespace catena::scene {
 
 void ChainRequest::allow(char const* kind, Names keys) const {
-    for (char const* const key : {"model", "positions", "links", "anchor", "conformation"}) {
+    for (char const* const key : {"model", "positions", "links", "anchor", "conformation", "rigid"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
@@ -49,7 +49,10 @@ std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t bea
 void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const {
     beads.position = positions;
     refuse_coincident(beads, from);
-    links_as_given() ? take_lengths(beads, base) : project_to_lengths(beads, base);
+    if (links_as_given()) return take_lengths(beads, base);
+    for (Domain const& domain : rigid)
+        for (std::size_t k = domain.first + 1; k <= domain.last; ++k) beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
+    project_to_lengths(beads, base);
 }
 
 void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/domains.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
@@ -17,8 +18,9 @@ struct ChainRequest {
     std::size_t index;   // in `chains`, from 0
     Scene const& scene;  // everything but the chains
     Base base = Base::free;
+    std::vector<Domain> rigid = {};  // ascending; of a chain of residues
 
-    /// Refuses those of `model, positions, links, anchor, conformation` that are not in `keys`: they mean nothing for this kind of chain.
+    /// Refuses those of `model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this kind of chain.
     void allow(char const* kind, Names keys) const;
     /// Origin where none is given.
     Vec3 anchor() const;
@@ -29,6 +31,7 @@ struct ChainRequest {
     /// Positions from the table or PDB file that `file` names: one a bead.
     std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
     /// Puts the beads at `positions`, which `from` gave, and fits positions to lengths or, with `links: as_given`, lengths to positions.
+    /// Rigid domains keep their shape.
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
     /// InputError when two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;

@@ -11,8 +11,11 @@
 #include "scene/chain_request.hpp"
 #include "scene/conformation.hpp"
 #include "scene/fields.hpp"
+#include "scene/freedom.hpp"
 #include "scene/generator_entry.hpp"
+#include "scene/linked.hpp"
 #include "scene/sequences.hpp"
+#include "scene/tip.hpp"
 
 namespace catena::scene {
 
@@ -20,7 +23,7 @@ namespace {
 
 Fields chain_fields(Node const& entry) {
     return Fields(entry, {"name", "count", "sequence", "fasta", "pdb", "bodies", "generator", "model", "positions", "links", "base", "tip",
-                          "anchor", "conformation", "velocities"});
+                          "anchor", "conformation", "rigid", "velocities"});
 }
 
 /// The one key that says what the chain is made of.
@@ -38,14 +41,19 @@ Node const& source_of(Fields const& fields) {
 
 Base base_of(Fields const& fields, Node const& source) {
     if (Node const* const base = fields.find("base")) return choice<Base>(*base, {{"free", Base::free}, {"fixed", Base::fixed}});
-    return source.find("pendulum") ? Base::fixed : Base::free;
+    return stands_fixed(source) ? Base::fixed : Base::free;
 }
 
-Tip tip_of(Fields const& fields) {
-    Node const* const tip = fields.find("tip");
-    if (!tip) return Tip::free;
-    if (tip->kind == Node::Kind::map) Fields(*tip, {"joint"}), fail_later(*tip, "a jointed tip");
-    return choice<Tip>(*tip, {{"free", Tip::free}}, {"ring"});
+/// Joints that are written `planar` promise parallel axes.
+void refuse_unparallel(ChainSpec const& chain, Node const& source, Node const& planar) {
+    std::size_t odd = 0;
+    if (axes_are_parallel(chain, odd)) return;
+    bool const body = odd < chain.bodies.size() && source.kind == Node::Kind::list;
+    fail(body ? source.items[odd] : planar,
+         fmt::format("the chain has planar joints, but the {} joint {} is not parallel to those before",
+                     name_of(odd < chain.bodies.size() ? chain.bodies.joint[odd] : chain.tip_joint.type),
+                     odd < chain.bodies.size() ? std::to_string(odd + 1) : "of the tip"),
+         "correct `axis` or `rotation`, or write `type: revolute`");
 }
 
 /// Beads written one by one: lengths as written, else (and with `links: as_given`) as the positions say. Whether velocities are written.
@@ -70,14 +78,14 @@ class ChainReader {
     ChainReader(Node const& entry, std::size_t index, Scene const& scene, bool warm)
         : request_{chain_fields(entry), entry, index, scene}, source_(source_of(request_.fields)), warm_(warm) {
         request_.base = base_of(request_.fields, source_);
-        tip_ = tip_of(request_.fields);
+        tip_ = read_tip(request_.fields);
         if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
         if (source_.key == "generator") generator_.emplace(request_, source_);
         if (source_.key == "bodies" && source_.kind == Node::Kind::map)
             Fields(source_, {"hdf5"}), fail_later(source_, "bodies from an HDF5 file");
     }
 
-    void append_to(std::vector<Draft>& drafts) const {
+    void append_to(std::vector<Draft>& drafts) {
         Node const* const named = request_.fields.find("name");
         std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
         if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
@@ -93,10 +101,10 @@ class ChainReader {
     }
 
   private:
-    ChainSpec make(std::int64_t copy) const {
+    ChainSpec make(std::int64_t copy) {
         ChainSpec chain;
         chain.base = request_.base;
-        chain.tip = tip_;
+        Node const* planar = tip_.planar;
         bool velocities = true;
         if (generator_) {
             generator_->make(chain, copy);
@@ -104,12 +112,26 @@ class ChainReader {
         } else if (source_.key != "bodies") {
             chain.beads = read_sequence(request_, copy);
             velocities = false;
-        } else if (describes_beads(source_)) {
+            if (!request_.rigid.empty()) {
+                chain.linked = with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
+                chain.beads = {};
+            }
+        } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
             velocities = explicit_beads(request_, source_, chain.beads);
+        } else if (kind == BodyList::linked) {
+            request_.allow("bodies on links", {"anchor"});
+            ExplicitLinked made = read_linked(source_, request_.base, request_.anchor());
+            chain.linked = std::move(made.linked);
+            velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});
-            chain.bodies = read_bodies(source_, request_.base);
+            ForceSpec const& forces = request_.scene.forces;
+            ExplicitBodies made = read_bodies(source_, request_.base, {forces.linear_drag, forces.angular_drag});
+            chain.bodies = std::move(made.bodies);
+            if (made.planar) planar = made.planar;
         }
+        join_tip(chain, tip_, request_.node);
+        if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
         return chain;
     }
@@ -123,19 +145,21 @@ class ChainReader {
         std::fill(chain.beads.velocity.begin(), chain.beads.velocity.end(), Vec3::zero());
         std::fill(chain.bodies.qd.begin(), chain.bodies.qd.end(), Vec3::zero());
         chain.bodies.free_velocity = Vec3::zero();
+        std::fill(chain.linked.velocity.begin(), chain.linked.velocity.end(), Vec3::zero());
+        std::fill(chain.linked.omega.begin(), chain.linked.omega.end(), Vec3::zero());
     }
 
     /// Whether copies differ from each other.
     bool is_random() const {
         Node const* const conformation = request_.fields.find("conformation");
-        return (generator_ && !source_.find("pendulum")) || (conformation && conformation->text == "self_avoiding");
+        return (generator_ && generator_->is_random()) || (conformation && conformation->text == "self_avoiding");
     }
     bool movable(ChainSpec const& chain) const {
         if (count_ > 1) return true;
         Node const* const conformation = request_.fields.find("conformation");
         bool const from_file =
             request_.fields.find("positions") || source_.key == "pdb" || (conformation && conformation->kind == Node::Kind::map);
-        return chain.is_beads() && chain.base == Base::free && source_.key != "bodies" && !from_file;
+        return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free && source_.key != "bodies" && !from_file;
     }
     /// What cannot fit is refused before it is tried.
     void refuse_too_large(std::int64_t size, bool beads) const {
@@ -149,7 +173,7 @@ class ChainReader {
     ChainRequest request_;
     Node const& source_;
     bool warm_;
-    Tip tip_ = Tip::free;
+    ReadTip tip_;
     std::int64_t count_ = 1;
     std::optional<GeneratorEntry> generator_;  // refers to request_: a reader is never moved
 };

@@ -96,13 +96,6 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
     return grown.take();
 }
 
-std::vector<Vec3> random_walk(std::int64_t points, double length, std::uint64_t seed) {
-    std::vector<Vec3> at(static_cast<std::size_t>(points), Vec3::zero());
-    for (std::size_t k = 1; k < at.size(); ++k)
-        at[k] = plus_scaled(at[k - 1], length, Draws(seed, static_cast<std::int64_t>(k)).on_sphere());
-    return at;
-}
-
 void project_to_lengths(BeadArrays& beads, Base base) {
     Vec3 given = base == Base::fixed ? beads.anchor : beads.position[0];  // where the inboard end was before the projection
     for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "scene/generators.hpp"
 #include "scene/random.hpp"
 
 namespace catena::scene {
@@ -10,46 +9,106 @@ namespace catena::scene {
 namespace {
 
 Node const& single_entry(Node const& node) {
-    Fields const kinds(node, {"random", "pendulum", "freely_jointed"}, {"coil", "dill", "worm_like"});
+    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "freely_jointed", "worm_like"});
     if (node.items.size() != 1)
-        fail(node, fmt::format("the chain has {} generators", node.items.size()), "give one of `random`, `pendulum`, `freely_jointed`");
+        fail(node, fmt::format("the chain has {} generators", node.items.size()),
+             "give one of `random`, `pendulum`, `coil`, `dill`, `freely_jointed`, `worm_like`");
     return *kinds.find(node.items[0].key);
 }
 
-double positive_or(Fields const& fields, char const* key, double otherwise) {
-    Node const* const node = fields.find(key);
-    return node ? positive(*node) : otherwise;
+void take(Fields const& fields, char const* key, Distribution& value) {
+    if (Node const* const node = fields.find(key)) value = read_distribution(*node);
+}
+
+void take(Fields const& fields, char const* key, double& value) {
+    if (Node const* const node = fields.find(key)) value = number(*node);
+}
+
+RandomJoint random_joint(Node const& node) {
+    return choice<RandomJoint>(node, {{"link", RandomJoint::link},
+                                      {"planar", RandomJoint::planar},
+                                      {"revolute", RandomJoint::revolute},
+                                      {"universal", RandomJoint::universal},
+                                      {"spherical", RandomJoint::spherical},
+                                      {"weld", RandomJoint::weld},
+                                      {"prismatic", RandomJoint::prismatic},
+                                      {"helical", RandomJoint::helical},
+                                      {"mixed", RandomJoint::mixed}});
 }
 
 }  // namespace
 
+bool stands_fixed(Node const& generator) { return generator.find("pendulum") || generator.find("coil") || generator.find("dill"); }
+
 GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node) : request_(request), entry_(single_entry(node)) {
-    if (entry_.key == "random") {
-        Fields const random(entry_, {"bodies", "joint", "seed", "loads"});
-        size_ = whole(random.need("bodies", "bodies: 100"), 1);
-        joint_ = choice<JointType>(random.need("joint", "joint: revolute"),
-                                   {{"link", JointType::link}, {"revolute", JointType::revolute}, {"spherical", JointType::spherical}},
-                                   {"planar", "universal", "weld", "prismatic", "helical"});
-        beads_ = joint_ == JointType::link;
-        if (Node const* const loads = random.find("loads")) loads_ = truth(*loads);
-        velocities_ = true;
-        request.allow("generator `random`", beads_ ? Names{"anchor"} : Names{});
-    } else if (entry_.key == "pendulum") {
-        Fields const rods(entry_, {"links", "mass", "length", "radius"});
-        size_ = whole(rods.need("links", "links: 8"), 1);
-        mass_ = positive_or(rods, "mass", 1), length_ = positive_or(rods, "length", 1),
-        radius_ = positive_or(rods, "radius", 0.05 * length_);
-        velocities_ = true;
-        request.allow("generator `pendulum`", {});
-        if (request.base == Base::free)
-            fail(request.fields.need("base", "base: fixed"), "a pendulum on a free base", "write `base: fixed`");
-    } else {
-        Fields const walk(entry_, {"beads", "length", "mass", "seed"});
-        size_ = whole(walk.need("beads", "beads: 100"), 1);
-        mass_ = positive_or(walk, "mass", 1), length_ = positive(walk.need("length", "length: 1.0"));
-        beads_ = true;
-        request.allow("generator `freely_jointed`", {"positions", "links", "anchor"});
+    if (entry_.key == "random")
+        read_random();
+    else if (entry_.key == "freely_jointed" || entry_.key == "worm_like")
+        read_walk();
+    else
+        read_rods();
+}
+
+void GeneratorEntry::read_random() {
+    Fields const fields(entry_, {"bodies", "joint", "rigid", "mass", "length", "inertia", "seed", "loads"});
+    RandomChain& chain = random_.emplace();
+    size_ = chain.bodies = whole(fields.need("bodies", "bodies: 100"), 1);
+    chain.joint = random_joint(fields.need("joint", "joint: revolute"));
+    chain.base = request_.base;
+    bool const links = chain.joint == RandomJoint::link;
+    request_.allow("generator `random`", links ? Names{"anchor"} : Names{});
+    if (links) chain.anchor = request_.anchor();
+    take(fields, "mass", chain.mass), take(fields, "length", chain.length), take(fields, "inertia", chain.inertia);
+    if (Node const* const rigid = fields.find("rigid")) {
+        if (!links) fail(*rigid, "a fraction of rigid bodies in a chain that has no beads", "leave it out or write `joint: link`");
+        chain.rigid = number(*rigid);
+        if (!(chain.rigid >= 0 && chain.rigid <= 1)) fail(*rigid, fmt::format("the fraction {} is no fraction", chain.rigid), "give 0 to 1");
     }
+    Node const* const loads = fields.find("loads");
+    if (loads) loads_ = truth(*loads);
+    beads_ = links && chain.rigid == 0;
+    velocities_ = true;
+}
+
+void GeneratorEntry::read_rods() {
+    bool const swinging = entry_.key == "pendulum", dill = entry_.key == "dill";
+    char const* const count = swinging ? "links" : "bodies";
+    Fields const fields = swinging ? Fields(entry_, {"links", "mass", "length", "radius", "seed"})
+                          : dill   ? Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "ratio"})
+                                   : Fields(entry_, {"bodies", "mass", "length", "radius", "seed", "turn", "twist"});
+    Rods& rods = rods_.emplace();
+    size_ = rods.bodies = whole(fields.need(count, std::string(count) + ": 8"), 1);
+    take(fields, "mass", rods.mass), take(fields, "length", rods.length);
+    if (Node const* const radius = fields.find("radius")) rods.radius = read_distribution(*radius);
+    velocities_ = true;
+    request_.allow(swinging ? "generator `pendulum`" : dill ? "generator `dill`" : "generator `coil`", {});
+    winding_.base = request_.base;
+    if (swinging) {
+        if (request_.base == Base::free)
+            fail(request_.fields.need("base", "base: fixed"), "a pendulum on a free base", "write `base: fixed`");
+        return;
+    }
+    take(fields, "turn", winding_.turn);
+    if (!dill) return take(fields, "twist", winding_.twist);
+    Node const* const ratio = fields.find("ratio");
+    if (ratio) winding_.ratio = positive(*ratio);
+    if (winding_.ratio > 1) fail(*ratio, fmt::format("ratio {} is above 1", winding_.ratio), "give a number above 0, at most 1");
+}
+
+void GeneratorEntry::read_walk() {
+    bool const worm = entry_.key == "worm_like";
+    char const* const count = worm ? "bodies" : "beads";
+    Fields const fields = worm ? Fields(entry_, {"bodies", "persistence", "length", "mass", "seed"})
+                               : Fields(entry_, {"beads", "length", "mass", "seed"});
+    Walk& walk = walk_.emplace();
+    size_ = walk.beads = whole(fields.need(count, std::string(count) + ": 100"), 1);
+    take(fields, "mass", walk.mass);
+    walk.length = read_distribution(fields.need("length", "length: 1.0"));
+    if (worm) persistence_ = positive(fields.need("persistence", "persistence: 50"));
+    walk.base = request_.base;
+    beads_ = true;
+    request_.allow(worm ? "generator `worm_like`" : "generator `freely_jointed`", {"positions", "links", "anchor"});
+    walk.anchor = request_.anchor();
 }
 
 std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
@@ -59,16 +118,25 @@ std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
 }
 
 void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
-    if (entry_.key == "pendulum") {
-        chain.bodies = pendulum(size_, mass_, length_, radius_);
-    } else if (entry_.key == "freely_jointed") {
-        chain.beads = freely_jointed(size_, length_, mass_, request_.base, request_.anchor(), seed(copy));
+    if (rods_) {
+        Rods rods = *rods_;
+        rods.seed = seed(copy);
+        chain.bodies = entry_.key == "pendulum" ? pendulum(rods) : entry_.key == "coil" ? coil(rods, winding_) : dill(rods, winding_);
+    } else if (walk_) {
+        Walk walk = *walk_;
+        walk.seed = seed(copy);
+        chain.beads = persistence_ > 0 ? worm_like(walk, persistence_) : freely_jointed(walk);
         Node const* const positions = request_.fields.find("positions");
         if (positions) request_.place(chain.beads, request_.positions_from(*positions, chain.size()), *positions);
-    } else if (beads_) {
-        chain.beads = random_beads(size_, request_.base, request_.anchor(), seed(copy));
     } else {
-        chain.bodies = random_bodies(size_, joint_, request_.base, seed(copy));
+        RandomChain random = *random_;
+        random.seed = seed(copy);
+        if (beads_)
+            chain.beads = random_beads(random);
+        else if (random.joint == RandomJoint::link)
+            chain.linked = random_linked(random);
+        else
+            chain.bodies = random_bodies(random);
         if (!loads_) chain.bodies.torque.clear(), chain.bodies.wrench.clear();
     }
 }

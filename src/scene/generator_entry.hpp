@@ -2,30 +2,43 @@
 #pragma once
 
 #include "scene/chain_request.hpp"
+#include "scene/generators.hpp"
 
 namespace catena::scene {
 
 class GeneratorEntry {
   public:
-    /// Throws InputError for a generator that is unknown, incomplete or not in this version.
+    /// Throws InputError for a generator that is unknown or incomplete.
     GeneratorEntry(ChainRequest const& request, Node const& node);
 
     std::int64_t size() const { return size_; }
+    /// Point beads on links: smaller than bodies.
     bool is_beads() const { return beads_; }
     /// Whether the chains it makes have velocities of their own.
     bool gives_velocities() const { return velocities_; }
-    /// Fills `beads` or `bodies` of the chain.
+    /// Whether copies differ from each other.
+    bool is_random() const { return !rods_ || rods_->is_random(); }
+    /// Fills the chain.
     void make(ChainSpec& chain, std::int64_t copy) const;
 
   private:
+    void read_random();
+    void read_rods();
+    void read_walk();
     std::uint64_t seed(std::int64_t copy) const;
 
     ChainRequest const& request_;
     Node const& entry_;
     std::int64_t size_ = 0;
-    JointType joint_ = JointType::link;
-    double mass_ = 1, length_ = 1, radius_ = 0.05;
+    std::optional<RandomChain> random_;  // one of three
+    std::optional<Rods> rods_;
+    std::optional<Walk> walk_;
+    Winding winding_;
+    double persistence_ = 0;  // of a worm-like walk
     bool beads_ = false, velocities_ = false, loads_ = true;
 };
+
+/// Whether the generator's chains stand on a fixed base unless the scene says otherwise.
+bool stands_fixed(Node const& generator);
 
 }  // namespace catena::scene

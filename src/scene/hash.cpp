@@ -87,6 +87,52 @@ std::string content_of(std::string const& path) {
     return text.str();
 }
 
+/// Numbers of their own: those of the enumeration may move.
+int number_of(Integrator integrator) {
+    switch (integrator) {
+        case Integrator::rk4:
+            return 0;
+        case Integrator::rattle:
+            return 1;
+        case Integrator::g_baoab:
+            return 2;
+        case Integrator::velocity_verlet:
+            break;
+    }
+    return 3;
+}
+
+/// What scenes need not have is added under its name where they have it.
+template <class... T>
+void add_named(Fingerprint& print, char const* name, bool there, T const&... values) {
+    if (!there) return;
+    print.add(std::string(name));
+    print.add_each(values...);
+}
+
+void add_carried(Fingerprint& print, CarriedBeads const& c) {
+    add_named(print, "carried", c.size() > 0, c.offset, c.position, c.mass, c.residue);
+}
+
+void add_tip(Fingerprint& print, TipJoint const& t) {
+    print.add_each(t.type, t.axis, t.first_axis, t.pitch, t.rotation, t.translation, t.q);
+    print.add_each(t.anchor.has_value(), t.anchor.value_or(Vec3::zero()), t.length);
+}
+
+void add_driven(Fingerprint& print, std::vector<DrivenJoint> const& driven) {
+    for (DrivenJoint const& joint : driven) {
+        print.add(std::string("driven"));
+        print.add(joint.body);
+        for (Course const& c : joint.course) print.add_each(c.offset, c.rate, c.amplitude, c.frequency, c.phase);
+    }
+}
+
+void add_linked(Fingerprint& print, LinkedArrays const& l) {
+    add_named(print, "linked", l.size() > 0, l.mass, l.inertia, l.position, l.velocity, l.orientation, l.omega, l.inboard, l.outboard,
+              l.length, l.anchor);
+    add_carried(print, l.carried);
+}
+
 void add_chain(Fingerprint& print, ChainSpec const& chain) {
     print.add_each(chain.name, chain.base, chain.tip, chain.velocities);
     BeadArrays const& beads = chain.beads;
@@ -94,6 +140,13 @@ void add_chain(Fingerprint& print, ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
     print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.q, b.qd, b.free_position, b.free_velocity);
     print.add_each(b.torque, b.stiffness, b.damping, b.rest, b.wrench);
+    add_named(print, "first axes", !b.first_axis.empty(), b.first_axis);
+    add_named(print, "pitches", !b.pitch.empty(), b.pitch);
+    add_named(print, "drag", !b.drag.empty(), b.drag);
+    add_driven(print, b.driven);
+    add_carried(print, b.carried);
+    add_linked(print, chain.linked);
+    if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
 }
 
 }  // namespace
@@ -111,7 +164,9 @@ std::string fingerprint(Scene const& scene) {
         print.add(o.force_groups);
     }
     DynamicsSpec const& d = scene.dynamics;
-    print.add_each(d.given, d.integrator, d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
+    ForceSpec const& f = scene.forces;
+    add_named(print, "scene drag", f.linear_drag != 0 || f.angular_drag != 0, f.linear_drag, f.angular_drag);
+    print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
     return print.text();
 }
 

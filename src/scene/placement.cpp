@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "scene/pose.hpp"
+
 namespace catena::scene {
 
 namespace {
@@ -22,37 +24,50 @@ struct Outline {
     double link = 0;
 };
 
+void add_carried(Outline& outline, CarriedBeads const& carried, std::size_t k, Pose const& pose) {
+    if (carried.offset.empty()) return;
+    for (auto b = static_cast<std::size_t>(carried.offset[k]); b < static_cast<std::size_t>(carried.offset[k + 1]); ++b)
+        outline.points.push_back(pose.origin + to_matrix(pose.orientation) * carried.position[b]);
+}
+
 Outline outline_of(BeadArrays const& beads) {
     Outline outline{beads.position, 0};
     for (double const length : beads.length) outline.link = std::max(outline.link, length);
     return outline;
 }
 
-/// Forward kinematics: R_Wk = R_W,k-1 R_joint X(q).
 Outline outline_of(BodyArrays const& bodies) {
     Outline outline;
-    Quat orientation = Quat::identity();  // Q_WB
-    Vec3 origin = Vec3::zero();
+    Pose pose;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
-        auto const& q = bodies.q[k];
-        if (bodies.joint[k] == JointType::free) {
-            origin = bodies.free_position;
-            orientation = {q[0], q[1], q[2], q[3]};
-        } else {
-            origin = origin + to_matrix(orientation) * bodies.translation[k];
-            bool const revolute = bodies.joint[k] == JointType::revolute;
-            Quat const turn = revolute ? from_axis_angle(bodies.axis[k], q[0]) : Quat{q[0], q[1], q[2], q[3]};
-            orientation = normalized(orientation * to_quaternion(bodies.rotation[k]) * turn);
-        }
-        outline.points.push_back(origin);
-        outline.points.push_back(origin + to_matrix(orientation) * bodies.com[k]);
-        outline.link = std::max({outline.link, norm(bodies.com[k]), k > 0 ? norm(bodies.translation[k]) : 0});
+        Pose const next = next_pose(bodies, k, pose);
+        if (k > 0) outline.link = std::max(outline.link, norm(next.origin - pose.origin));
+        pose = next;
+        outline.points.push_back(pose.origin);
+        outline.points.push_back(pose.origin + to_matrix(pose.orientation) * bodies.com[k]);
+        outline.link = std::max(outline.link, norm(bodies.com[k]));
+        add_carried(outline, bodies.carried, k, pose);
+    }
+    return outline;
+}
+
+Outline outline_of(LinkedArrays const& linked) {
+    Outline outline;
+    for (std::size_t k = 0; k < linked.size(); ++k) {
+        auto const& q = linked.orientation[k];
+        Pose const pose{{q[0], q[1], q[2], q[3]}, linked.position[k]};
+        for (Vec3 const& end : {Vec3::zero(), linked.inboard[k], linked.outboard[k]})
+            outline.points.push_back(pose.origin + to_matrix(pose.orientation) * end);
+        outline.link = std::max({outline.link, linked.length[k], norm(linked.inboard[k]), norm(linked.outboard[k])});
+        add_carried(outline, linked.carried, k, pose);
     }
     return outline;
 }
 
 Sphere sphere_around(ChainSpec const& chain) {
-    Outline const outline = chain.is_beads() ? outline_of(chain.beads) : outline_of(chain.bodies);
+    Outline const outline = chain.is_beads()    ? outline_of(chain.beads)
+                            : chain.is_linked() ? outline_of(chain.linked)
+                                                : outline_of(chain.bodies);
     Vec3 low = outline.points[0], high = low;
     for (Vec3 const& p : outline.points)
         for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
@@ -62,15 +77,18 @@ Sphere sphere_around(ChainSpec const& chain) {
 }
 
 void move(ChainSpec& chain, Vec3 const& by) {
+    if (chain.tip_joint.anchor) chain.tip_joint.anchor = *chain.tip_joint.anchor + by;
     for (Vec3& position : chain.beads.position) position = position + by;
+    for (Vec3& position : chain.linked.position) position = position + by;
+    bool const fixed = chain.base == Base::fixed;
     if (chain.is_beads()) {
-        if (chain.base == Base::fixed) chain.beads.anchor = chain.beads.anchor + by;
-        return;
+        if (fixed) chain.beads.anchor = chain.beads.anchor + by;
+    } else if (chain.is_linked()) {
+        if (fixed) chain.linked.anchor = chain.linked.anchor + by;
+    } else {
+        Vec3& place = fixed ? chain.bodies.translation[0] : chain.bodies.free_position;
+        place = place + by;
     }
-    if (chain.base == Base::fixed)
-        chain.bodies.translation[0] = chain.bodies.translation[0] + by;
-    else
-        chain.bodies.free_position = chain.bodies.free_position + by;
 }
 
 class Grid {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "scene/bodies.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 
@@ -115,8 +116,11 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     DynamicsSpec dynamics;
     dynamics.given = true;
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
-                                             {{"rk4", Integrator::rk4}, {"rattle", Integrator::rattle}, {"g-baoab", Integrator::g_baoab}},
-                                             {"velocity-verlet", "implicit-midpoint", "staggered"});
+                                             {{"rk4", Integrator::rk4},
+                                              {"velocity-verlet", Integrator::velocity_verlet},
+                                              {"rattle", Integrator::rattle},
+                                              {"g-baoab", Integrator::g_baoab}},
+                                             {"implicit-midpoint", "staggered"});
     dynamics.step = positive(fields.need("step", "step: 0.01"));
     take(fields, "steps", dynamics.steps, [](Node const& n) { return whole(n, 0); });
     take(fields, "temperature", dynamics.temperature, non_negative);
@@ -128,9 +132,13 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
 }
 
 ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::string const& file) {
-    Fields const fields(node, {"gravity", "openmm"}, {"springs", "drag", "torques"});
+    Fields const fields(node, {"gravity", "drag", "openmm"}, {"springs", "torques"});
     ForceSpec forces;
     take(fields, "gravity", forces.gravity, vector3);
+    if (Node const* const drag = fields.find("drag")) {
+        auto const [linear, angular] = read_drag(*drag);
+        forces.linear_drag = linear, forces.angular_drag = angular;
+    }
     if (Node const* const openmm = fields.find("openmm")) forces.openmm = read_openmm(*openmm, dynamics, si, file);
     return forces;
 }

@@ -69,11 +69,11 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
 
 }  // namespace
 
-BeadArrays read_sequence(ChainRequest const& request, std::int64_t copy) {
+BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     Fields const& fields = request.fields;
     bool const pdb = fields.find("pdb");
     request.allow(pdb ? "a chain from a PDB file" : "a sequence",
-                  pdb ? Names{"model", "links", "anchor"} : Names{"model", "positions", "links", "anchor", "conformation"});
+                  pdb ? Names{"model", "links", "anchor", "rigid"} : Names{"model", "positions", "links", "anchor", "conformation", "rigid"});
     if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
     Residues residues;
@@ -86,6 +86,12 @@ BeadArrays read_sequence(ChainRequest const& request, std::int64_t copy) {
     } else {
         Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
         residues = residues_of(text(sequence), sequence);
+    }
+    if (Node const* const rigid = fields.find("rigid")) {
+        Node const* const conformation = fields.find("conformation");
+        if (!pdb && !fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
+            fail(*rigid, "rigid domains in a chain without positions", "give `pdb` or `positions`: they say what shape the domains have");
+        request.rigid = read_domains(*rigid, residues.size());
     }
     BeadArrays beads = at_start(request, static_cast<std::int64_t>(residues.size()), copy);
     set_residues(beads, residues);

@@ -6,7 +6,7 @@
 namespace catena::scene {
 
 /// Beads on links with the model's masses, link lengths and residue names, at their start positions, at rest. `copy` tells the random
-/// conformations of a chain's copies apart.
-BeadArrays read_sequence(ChainRequest const& request, std::int64_t copy);
+/// conformations of a chain's copies apart. Sets the request's rigid domains.
+BeadArrays read_sequence(ChainRequest& request, std::int64_t copy);
 
 }  // namespace catena::scene

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "force/calvados2.hpp"
@@ -12,10 +13,6 @@ namespace catena::scene {
 
 namespace {
 
-bool has_joint(ChainSpec const& chain, JointType type) {
-    return std::find(chain.bodies.joint.begin(), chain.bodies.joint.end(), type) != chain.bodies.joint.end();
-}
-
 void check_names(std::vector<Draft> const& drafts) {
     std::set<std::string> names;
     for (Draft const& draft : drafts)
@@ -23,31 +20,67 @@ void check_names(std::vector<Draft> const& drafts) {
             fail(*draft.node, fmt::format("two chains are named `{}`", shown(draft.chain.name)), "give each its own `name`");
 }
 
-/// Dampers act through the joints' rates, which these integrators do not carry.
-void refuse_damping(Draft const& draft, Integrator integrator) {
-    auto const& damping = draft.chain.bodies.damping;
-    auto const found = std::find_if(damping.begin(), damping.end(), [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; });
-    if (found == damping.end()) return;
-    fail_at(*draft.node, "body", found - damping.begin() + 1, fmt::format("joint damping under integrator {}", name_of(integrator)),
-            "use `integrator: rk4`, or set `damping: 0` (g-baoab has `friction`)");
+std::string const joint_integrators = "use `integrator: rk4` or `velocity-verlet`";
+
+/// The first joint, from 0, that integrators in absolute coordinates do not move; the size: the tip's; nothing: there is none.
+std::optional<std::pair<std::size_t, JointType>> immovable_joint(ChainSpec const& chain) {
+    auto const movable = [](JointType t) { return t == JointType::free || t == JointType::spherical || t == JointType::link; };
+    auto const& joints = chain.bodies.joint;
+    auto const found = std::find_if_not(joints.begin(), joints.end(), movable);
+    if (found != joints.end()) return std::pair{static_cast<std::size_t>(found - joints.begin()), *found};
+    if (chain.tip == Tip::jointed && !movable(chain.tip_joint.type)) return std::pair{joints.size(), chain.tip_joint.type};
+    return std::nullopt;
 }
 
-void check_integrator(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
+template <class Value>
+void refuse_at_body(Draft const& draft, std::vector<Value> const& values, bool (*acts)(Value const&), std::string const& what,
+                    std::string const& remedy) {
+    auto const found = std::find_if(values.begin(), values.end(), acts);
+    if (found != values.end()) fail_at(*draft.node, "body", found - values.begin() + 1, what, remedy);
+}
+
+/// What acts through rates or prescribes coordinates, which integrators in absolute coordinates do not carry.
+void refuse_joint_forces(Node const& root, Scene const& scene, Draft const& draft) {
+    std::string const under = fmt::format(" under integrator {}", name_of(scene.dynamics.integrator));
+    BodyArrays const& bodies = draft.chain.bodies;
+    refuse_at_body<Vec3>(
+        draft, bodies.damping, [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; }, "joint damping" + under,
+        joint_integrators + ", or set `damping: 0` (g-baoab has `friction`)");
+    if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
+        fail(*root.find("forces")->find("drag"), "drag" + under, joint_integrators + ", or leave it out (g-baoab has `friction`)");
+    refuse_at_body<std::array<double, 2>>(
+        draft, bodies.drag, [](std::array<double, 2> const& d) { return d[0] != 0 || d[1] != 0; }, "drag" + under,
+        joint_integrators + ", or leave it out (g-baoab has `friction`)");
+    if (!bodies.driven.empty())
+        fail_at(*draft.node, "body", bodies.driven[0].body + 1, "a prescribed motion" + under, joint_integrators + ", or leave it out");
+}
+
+void check_integrator(Node const& root, Scene const& scene, Draft const& draft) {
     ChainSpec const& chain = draft.chain;
-    Node const& section = *root.find("dynamics");
-    Node const& at = *section.find("integrator");
-    if (uses_joint_coordinates(dynamics.integrator)) {
-        if (chain.is_beads())
-            fail(at, fmt::format("integrator rk4 works in joint coordinates, chain `{}` has links", shown(chain.name)),
+    Integrator const integrator = scene.dynamics.integrator;
+    Node const& at = *root.find("dynamics")->find("integrator");
+    if (uses_joint_coordinates(integrator)) {
+        if (chain.is_beads() || chain.is_linked())
+            fail(at, fmt::format("integrator {} works in joint coordinates, chain `{}` has links", name_of(integrator), shown(chain.name)),
                  "use `integrator: rattle` or `g-baoab`");
         return;
     }
-    if (has_joint(chain, JointType::revolute))
+    if (auto const odd = immovable_joint(chain)) {
+        std::string const place = odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
         fail(at,
-             fmt::format("integrator {} moves chains of links or spherical joints, chain `{}` has revolute joints",
-                         name_of(dynamics.integrator), shown(chain.name)),
-             "use `integrator: rk4`");
-    refuse_damping(draft, dynamics.integrator);
+             fmt::format("integrator {} moves chains of links or spherical joints, chain `{}` has a {} joint ({})", name_of(integrator),
+                         shown(chain.name), name_of(odd->second), place),
+             joint_integrators);
+    }
+    refuse_joint_forces(root, scene, draft);
+}
+
+/// Drag acts on rigid bodies; left out silently on others it would mislead.
+void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
+    if (scene.forces.linear_drag == 0 && scene.forces.angular_drag == 0) return;
+    if (!draft.chain.is_beads() && !draft.chain.is_linked()) return;
+    fail(*root.find("forces")->find("drag"), fmt::format("drag on chain `{}`, which has links", shown(draft.chain.name)),
+         "leave it out: g-baoab has `friction`");
 }
 
 void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
@@ -58,8 +91,19 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     bool const named = section && (section->find("temperature") || dynamics.integrator == Integrator::g_baoab);
     if (!named || !(dynamics.temperature > 0))
         fail(at, "thermal velocities without a temperature above 0", "add `dynamics: {temperature: 300}`, or write `velocities: zero`");
-    if (has_joint(draft.chain, JointType::revolute))
-        fail(at, "thermal velocities for revolute joints", "write `velocities: zero`, or give each joint its `qd`");
+    if (auto const odd = immovable_joint(draft.chain))
+        fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
+             "write `velocities: zero`, or give each joint its `qd`");
+}
+
+bool has_beads(ChainSpec const& chain) {
+    return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0;
+}
+
+std::vector<std::string> const& residues_of(ChainSpec const& chain) {
+    return chain.is_beads()    ? chain.beads.residue
+           : chain.is_linked() ? chain.linked.carried.residue
+                               : chain.bodies.carried.residue;
 }
 
 void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
@@ -68,24 +112,24 @@ void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> cons
             std::find_if(drafts.begin(), drafts.end(), [&, &chain_name = name](Draft const& d) { return d.chain.name == chain_name; });
         Node const& entry = *at.find("map")->find(name);
         if (found == drafts.end()) fail(entry, fmt::format("no chain is named `{}`", shown(name)), "use the chains' names");
-        auto const size = static_cast<std::int64_t>(found->chain.size()), given = range.second - range.first + 1;
+        auto const size = static_cast<std::int64_t>(residues_of(found->chain).size()), given = range.second - range.first + 1;
         if (given != size)
-            fail(entry, fmt::format("{} particles for the {} bodies of chain `{}`", given, size, shown(name)),
+            fail(entry, fmt::format("{} particles for the {} beads of chain `{}`", given, size, shown(name)),
                  "give [first, last], both included");
     }
 }
 
 void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
     Node const& at = *root.find("forces")->find("openmm");
-    if (std::none_of(drafts.begin(), drafts.end(), [](Draft const& d) { return d.chain.is_beads(); }))
+    if (std::none_of(drafts.begin(), drafts.end(), [](Draft const& d) { return has_beads(d.chain); }))
         fail(at, "OpenMM's forces act on beads, no chain of the scene has any", "add a chain of beads or leave `openmm` out");
     check_map(at, openmm, drafts);
     if (openmm.builder != "calvados2") return;
     for (Draft const& draft : drafts)
-        for (std::size_t k = 0; k < draft.chain.beads.residue.size(); ++k)
-            if (!find_calvados2(draft.chain.beads.residue[k]))
+        for (std::size_t k = 0; k < residues_of(draft.chain).size(); ++k)
+            if (std::string const& residue = residues_of(draft.chain)[k]; !find_calvados2(residue))
                 fail_at(*draft.node, "bead", static_cast<std::int64_t>(k) + 1,
-                        fmt::format("residue `{}` has no parameters in calvados2", shown(draft.chain.beads.residue[k])),
+                        fmt::format("residue `{}` has no parameters in calvados2", shown(residue)),
                         "give the chain as `sequence`, or its beads a `residue` among the twenty amino acids");
 }
 
@@ -98,7 +142,8 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         // Copies of one entry are alike.
         if (previous && previous->node == draft.node) continue;
         previous = &draft;
-        if (scene.dynamics.given) check_integrator(root, scene.dynamics, draft);
+        check_drag(root, scene, draft);
+        if (scene.dynamics.given) check_integrator(root, scene, draft);
         check_thermal(root, scene.dynamics, draft);
     }
     if (scene.forces.openmm) check_openmm(root, *scene.forces.openmm, drafts);

@@ -178,7 +178,7 @@ TEST_F(SystemFiles, map_of_chains) {
     EXPECT_EQ(map[0].second, (std::pair<std::int64_t, std::int64_t>{4, 6}));
     EXPECT_EQ(refusal(scene("map: {b: [0, 2]}")), "no chain is named `b` (s.yaml: forces.openmm.map.b, line 2): use the chains' names");
     EXPECT_EQ(refusal(scene("map: {a: [0, 3]}")),
-              "4 particles for the 3 bodies of chain `a` (s.yaml: forces.openmm.map.a, line 2): give [first, last], both included");
+              "4 particles for the 3 beads of chain `a` (s.yaml: forces.openmm.map.a, line 2): give [first, last], both included");
     EXPECT_EQ(refusal(scene("map: {a: [3, 0]}")),
               "the last particle 0 comes before the first 3 (s.yaml: forces.openmm.map.a, line 2): give [first, last] with particles "
               "counted from 0");

@@ -1,0 +1,22 @@
+// Rigid domains of a chain of residues: `rigid: [[first, last], ...]`.
+#pragma once
+
+#include "scene/fields.hpp"
+#include "scene/node.hpp"
+#include "scene/scene.hpp"
+
+namespace catena::scene {
+
+/// First and last residue of a domain, from 0, both included.
+struct Domain {
+    std::size_t first = 0, last = 0;
+};
+
+/// The list in ascending order. InputError for domains outside the chain of `residues`, of fewer than three residues, or that overlap.
+std::vector<Domain> read_domains(Node const& rigid, std::size_t residues);
+
+/// The beads of each domain become one rigid body with their mass, centre of mass and inertia, in principal axes, which carries them and is
+/// linked at its first and last bead; the other beads stay points. InputError for beads on one line.
+LinkedArrays with_domains(BeadArrays const& beads, std::vector<Domain> const& domains, Node const& rigid);
+
+}  // namespace catena::scene

@@ -1,0 +1,109 @@
+#include "scene/freedom.hpp"
+
+#include <algorithm>
+#include <optional>
+
+namespace catena::scene {
+
+namespace {
+
+double constexpr printed_digits = 1e-6;
+
+/// Follows one axis along the chain: in the axes of the body that was added last.
+class ParallelAxes {
+  public:
+    /// Whether the joint leaves all axes so far parallel. `rotation`: of J in the inboard body.
+    bool add(JointType type, Vec3 const& axis, Mat3 const& rotation) {
+        if (type == JointType::free) return !axis_;
+        if (type == JointType::weld) {
+            if (axis_) axis_ = transposed_times(rotation, *axis_);
+            return true;
+        }
+        if (type != JointType::revolute) return false;
+        bool const parallel = !axis_ || norm(cross(rotation * axis, *axis_)) <= printed_digits;
+        axis_ = axis;
+        return parallel;
+    }
+    bool any() const { return axis_.has_value(); }
+
+  private:
+    std::optional<Vec3> axis_;
+};
+
+/// Turning about one axis in one plane: a chain of revolute joints from the ground on.
+bool is_planar(ChainSpec const& chain) {
+    std::size_t odd = 0;
+    return chain.base == Base::fixed && axes_are_parallel(chain, odd);
+}
+
+std::int64_t restricted_by_tip(ChainSpec const& chain) {
+    if (chain.tip == Tip::free) return 0;
+    return (is_planar(chain) ? 3 : 6) - coordinates_of(chain.tip_joint.type);
+}
+
+std::int64_t freedom_of_links(ChainSpec const& chain) {
+    auto const n = static_cast<std::int64_t>(chain.size());
+    std::int64_t dof = 3 * n - (chain.base == Base::free ? n - 1 : n);
+    for (std::size_t k = 0; k < chain.linked.size(); ++k) dof += chain.linked.is_bead(k) ? 0 : 3;
+    return dof - (chain.tip == Tip::free ? 0 : 1);
+}
+
+}  // namespace
+
+int coordinates_of(JointType type) {
+    switch (type) {
+        case JointType::free:
+            return 6;
+        case JointType::link:
+            return 5;
+        case JointType::spherical:
+            return 3;
+        case JointType::universal:
+            return 2;
+        case JointType::revolute:
+        case JointType::prismatic:
+        case JointType::helical:
+            return 1;
+        case JointType::weld:
+            break;
+    }
+    return 0;
+}
+
+bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) {
+    BodyArrays const& bodies = chain.bodies;
+    ParallelAxes axes;
+    for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
+        if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd])) return false;
+    if (chain.tip == Tip::jointed && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation)) return false;
+    return axes.any();
+}
+
+HandleKind handle_kind(ChainSpec const& chain) {
+    if (chain.is_beads() || chain.is_linked()) return HandleKind::link;
+    BodyArrays const& bodies = chain.bodies;
+    int least = 3;  // coordinates of the most restricting joint
+    for (JointType const joint : bodies.joint) least = std::min(least, coordinates_of(joint));
+    if (chain.tip == Tip::jointed) least = std::min(least, coordinates_of(chain.tip_joint.type));
+    if (!bodies.driven.empty() || least == 0) return HandleKind::full;
+    if (least == 1) return is_planar(chain) ? HandleKind::planar : HandleKind::revolute;
+    return least == 2 ? HandleKind::universal : HandleKind::spherical;
+}
+
+int directions_of(HandleKind kind) { return 1 + static_cast<int>(kind); }
+
+char const* name_of(HandleKind kind) {
+    static constexpr char const* names[] = {"link", "planar", "spherical", "universal", "revolute", "full"};
+    return names[static_cast<int>(kind)];
+}
+
+std::int64_t degrees_of_freedom(ChainSpec const& chain) {
+    if (chain.is_beads() || chain.is_linked()) return freedom_of_links(chain);
+    BodyArrays const& bodies = chain.bodies;
+    std::int64_t dof = -restricted_by_tip(chain);
+    for (JointType const joint : bodies.joint) dof += coordinates_of(joint);
+    for (DrivenJoint const& driven : bodies.driven) dof -= coordinates_of(bodies.joint[static_cast<std::size_t>(driven.body)]);
+    return dof;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,28 @@
+// What joints leave free and what they restrict.
+#pragma once
+
+#include <cstdint>
+
+#include "scene/scene.hpp"
+
+namespace catena::scene {
+
+/// Coordinates of a joint that is not driven: 1, universal 2, spherical 3, free 6; weld 0. A link restricts one direction of six.
+int coordinates_of(JointType type);
+
+/// Whether the joints' axes are all parallel whatever the coordinates: revolute joints, the tip's too, with welds between them or a free
+/// joint 1. `first_odd` receives the first body (from 0) whose joint has no axis or one not parallel to those before; the size: the tip.
+bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd);
+
+/// The smallest kind of handle that holds all joints of the chain.
+enum class HandleKind : std::uint8_t { link, planar, spherical, universal, revolute, full };
+HandleKind handle_kind(ChainSpec const& chain);
+/// Directions that a handle of the kind carries: 1, 2, 3, 4, 5, 6.
+int directions_of(HandleKind kind);
+char const* name_of(HandleKind kind);
+
+/// Coordinates of the joints, those that are driven left out, less what the tip's joint restricts; links: 6 a rigid body, 3 a bead, less
+/// one a link.
+std::int64_t degrees_of_freedom(ChainSpec const& chain);
+
+}  // namespace catena::scene

@@ -1,0 +1,131 @@
+#include "scene/linked.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "scene/carried_beads.hpp"
+#include "scene/physics.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+/// Largest relative difference of a length that is given from the distance at the start.
+double constexpr length_tolerance = 1e-9;
+
+class LinkedReader {
+  public:
+    LinkedReader(Base base, Vec3 const& anchor) : base_(base) { made_.linked.anchor = anchor; }
+
+    void add(Node const& item) {
+        bool const bead = !item.find("inertia");
+        if (bead)
+            for (char const* const key : {"com", "quaternion", "omega", "beads"})
+                if (Node const* const extra = item.find(key))
+                    fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key), "leave it out or give `inertia`");
+        for (char const* const key : {"wrench", "drag"})
+            if (Node const* const extra = item.find(key))
+                fail(*extra, fmt::format("key `{}` means nothing in a chain of links", key), "leave it out");
+        Fields const body(item, {"mass", "inertia", "com", "position", "quaternion", "velocity", "omega", "residue", "beads", "joint"});
+        linked_.mass.push_back(positive(body.need("mass", "mass: 1.0")));
+        bead ? add_bead(body) : add_rigid(body);
+        Node const* const velocity = body.find("velocity");
+        linked_.velocity.push_back(velocity ? vector3(*velocity) : Vec3::zero());
+        made_.velocities = made_.velocities || velocity || body.find("omega");
+        add_link(body);
+    }
+
+    ExplicitLinked take() {
+        linked_.carried = carried_.take();
+        return std::move(made_);
+    }
+
+  private:
+    void add_bead(Fields const& body) {
+        linked_.inertia.push_back(Sym3::zero());
+        linked_.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
+        linked_.orientation.push_back({1, 0, 0, 0});
+        linked_.omega.push_back(Vec3::zero());
+        linked_.inboard.push_back(Vec3::zero());
+        Node const* const residue = body.find("residue");
+        carried_.append(Vec3::zero(), linked_.mass.back(), residue ? text(*residue) : "UNK");
+        carried_.close();
+    }
+
+    void add_rigid(Fields const& body) {
+        if (Node const* const residue = body.find("residue"))
+            fail(*residue, "key `residue` means nothing for a rigid body", "give it `beads: [{residue: ALA, position: [0, 0, 0]}]`");
+        linked_.inertia.push_back(inertia(*body.find("inertia")));
+        Node const* const com_node = body.find("com");
+        Vec3 const com = com_node ? vector3(*com_node) : Vec3::zero();
+        Node const* const quaternion = body.find("quaternion");
+        std::array<double, 4> const q = quaternion ? unit_quaternion(*quaternion) : std::array<double, 4>{1, 0, 0, 0};
+        Vec3 const origin = vector3(body.need("position", "position: [0, 0, 0]"));
+        linked_.position.push_back(origin + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * com);
+        linked_.orientation.push_back(q);
+        Node const* const omega = body.find("omega");
+        linked_.omega.push_back(omega ? vector3(*omega) : Vec3::zero());
+        linked_.inboard.push_back(-com);
+        carried_.add(body.find("beads"), com);
+    }
+
+    Vec3 at(std::size_t k, Vec3 const& point) const {
+        auto const& q = linked_.orientation[k];
+        return linked_.position[k] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * point;
+    }
+
+    /// The link on the body's inboard side, which also says where the body before ends.
+    void add_link(Fields const& body) {
+        std::size_t const k = linked_.mass.size() - 1;
+        linked_.outboard.push_back(linked_.inboard[k]);
+        bool const none = k == 0 && base_ == Base::free;
+        Node const* const node = k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
+        Node const* length = nullptr;
+        if (node) {
+            Fields const joint(*node, {"type", "length", "translation"});
+            length = joint.find("length");
+            if (length && none)
+                fail(*length, "a link length for body 1 of a free base, which has no link", "leave it out or write `base: fixed`");
+            if (Node const* const translation = joint.find("translation")) start_link(*translation, k);
+        }
+        linked_.length.push_back(none ? 0 : measured(body.node(), length, k));
+    }
+
+    void start_link(Node const& translation, std::size_t k) {
+        if (k == 0)
+            fail(translation, "a translation for link 1, which starts at the ground", "leave it out; `anchor` of the chain says where");
+        if (linked_.is_bead(k - 1)) fail(translation, fmt::format("a translation for a link that starts at bead {}, a point", k), "leave it out");
+        linked_.outboard[k - 1] = vector3(translation) + linked_.inboard[k - 1];
+    }
+
+    double measured(Node const& body, Node const* given, std::size_t k) const {
+        Vec3 const from = k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]), to = at(k, linked_.inboard[k]);
+        double const distance = norm(to - from);
+        // Positions carry half a unit in their last place: a link shorter than some of these has no direction.
+        if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(to))))
+            fail(body, fmt::format("the ends of link {} coincide: it has no direction", k + 1), "move one of its bodies");
+        if (!given) return distance;
+        double const length = positive(*given);
+        if (std::abs(length - distance) > length_tolerance * length)
+            fail(*given, fmt::format("the link's length is {:.12g}, its ends are {:.12g} apart", length, distance),
+                 "correct the positions, or leave `length` out");
+        return length;
+    }
+
+    Base base_;
+    ExplicitLinked made_;
+    LinkedArrays& linked_ = made_.linked;
+    CarriedList carried_;
+};
+
+}  // namespace
+
+ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor) {
+    LinkedReader reader(base, anchor);
+    for (Node const& item : bodies.items) reader.add(item);
+    return reader.take();
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,33 @@
+// Where the bodies of a chain in joint coordinates stand: the joints' own motions and their composition.
+#pragma once
+
+#include <cmath>
+
+#include "dca/rotation.hpp"
+#include "scene/scene.hpp"
+
+namespace catena::scene {
+
+/// Orientation and origin of a frame in another one.
+struct Pose {
+    Quat orientation = Quat::identity();
+    Vec3 origin = Vec3::zero();
+};
+/// X_AC = X_AB X_BC.
+Pose operator*(Pose const& a, Pose const& b);
+
+/// X(q) of B in J, as BodyArrays defines it; a link and a free joint: their q as it stands.
+Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, double pitch, std::array<double, 4> const& q);
+
+/// Pose in W of body k + 1, given that of body k (k = 0: ignored).
+Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard);
+
+inline double value_at(Course const& c, double t) {
+    return c.offset + c.rate * t + c.amplitude * std::sin(6.283185307179586476925 * c.frequency * t + c.phase);
+}
+inline double rate_at(Course const& c, double t) {
+    double const omega = 6.283185307179586476925 * c.frequency;
+    return c.rate + c.amplitude * omega * std::cos(omega * t + c.phase);
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,169 @@
+#include "scene/tip.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "scene/freedom.hpp"
+#include "scene/joint_entry.hpp"
+#include "scene/pose.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+/// Largest error of a joint that is to be closed at the start, relative to the length it is measured by.
+double constexpr closure_tolerance = 1e-9;
+
+struct Reach {
+    Pose end;           // of the last body
+    double length = 0;  // of the joints' distances along the chain
+};
+
+Reach reach_of(BodyArrays const& bodies) {
+    Reach reach;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        Pose const next = next_pose(bodies, k, reach.end);
+        if (k > 0) reach.length += norm(next.origin - reach.end.origin);
+        reach.end = next;
+    }
+    return reach;
+}
+
+void close_joint(ChainSpec const& chain, Node const& node) {
+    TipJoint const& tip = chain.tip_joint;
+    if (!tip.anchor) return;
+    Reach const reach = reach_of(chain.bodies);
+    Pose const frame{to_quaternion(tip.rotation), tip.translation};
+    Pose const end = reach.end * frame * joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
+    double const error = norm(end.origin - *tip.anchor), length = reach.length + norm(end.origin - reach.end.origin);
+    if (error <= closure_tolerance * (length > 0 ? length : 1)) return;
+    fail(node,
+         fmt::format("the tip's joint is open at the start: its origin is at [{:.9g}, {:.9g}, {:.9g}], {:.3g} from the anchor",
+                     end.origin[0], end.origin[1], end.origin[2], error),
+         fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out", closure_tolerance * length));
+}
+
+/// Where the tip's link starts. `given`: the user says where in the last body.
+Vec3 start_of_link(ChainSpec& chain, bool given) {
+    if (chain.is_beads()) return chain.beads.position.back();
+    LinkedArrays& linked = chain.linked;
+    std::size_t const last = linked.size() - 1;
+    if (given) linked.outboard[last] = chain.tip_joint.translation + linked.inboard[last];
+    auto const& q = linked.orientation[last];
+    return linked.position[last] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * linked.outboard[last];
+}
+
+void close_link(ChainSpec& chain, Node const& node) {
+    TipJoint& tip = chain.tip_joint;
+    Vec3 const start = start_of_link(chain, node.find("translation"));
+    double const distance = norm(*tip.anchor - start);
+    // Positions carry half a unit in their last place.
+    if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(start) + norm(*tip.anchor))))
+        fail(node, "the tip's anchor stands on the last body: their link has no direction", "move one of them");
+    if (tip.length == 0) tip.length = distance;
+    if (std::abs(tip.length - distance) <= closure_tolerance * tip.length) return;
+    bool const far = distance > tip.length;
+    fail(node,
+         fmt::format("the tip's link of length {:.12g} {}: they are {:.12g} apart at the start", tip.length,
+                     far ? "cannot reach its anchor" : "is longer than from the last body to its anchor", distance),
+         "leave `length` out, or move the anchor or the chain");
+}
+
+/// Ends of the links, or origins of the joints, from ground to ground.
+std::vector<Vec3> points_of_bridge(ChainSpec const& chain) {
+    std::vector<Vec3> points;
+    if (chain.is_beads()) {
+        points.push_back(chain.beads.anchor);
+        points.insert(points.end(), chain.beads.position.begin(), chain.beads.position.end());
+        points.push_back(*chain.tip_joint.anchor);
+        return points;
+    }
+    Pose pose;
+    for (std::size_t k = 0; k < chain.bodies.size(); ++k) {
+        pose = next_pose(chain.bodies, k, pose);
+        points.push_back(pose.origin);
+    }
+    points.push_back((pose * Pose{Quat::identity(), chain.tip_joint.translation}).origin);
+    return points;
+}
+
+/// A bridge of links or spherical joints whose handle vectors are all parallel has a singular matrix.
+void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
+    auto const& joints = chain.bodies.joint;
+    bool const spherical = chain.tip_joint.type == JointType::spherical && !joints.empty() &&
+                           std::all_of(joints.begin(), joints.end(), [](JointType t) { return t == JointType::spherical; });
+    if (chain.base != Base::fixed || !(chain.is_beads() || spherical)) return;
+    std::vector<Vec3> const points = points_of_bridge(chain);
+    Vec3 const first = points[1] - points[0];
+    for (std::size_t k = 1; k + 1 < points.size(); ++k) {
+        Vec3 const next = points[k + 1] - points[k];
+        if (norm(cross(first, next)) > 1e-7 * norm(first) * norm(next)) return;
+    }
+    fail(node, "the bridge from ground to ground is straight: nothing tells the forces in its joints apart",
+         "start from a bent chain of at least two bodies");
+}
+
+char const* kind_of(ChainSpec const& chain) { return chain.is_beads() ? "a chain of beads" : "a chain of links"; }
+
+/// A tip that restricts more than the chain has leaves its forces undetermined.
+void refuse_too_many(ChainSpec const& chain, Node const& node) {
+    std::int64_t const with = degrees_of_freedom(chain);
+    if (with >= 0) return;
+    ChainSpec open;
+    open.base = chain.base, open.bodies.joint = chain.bodies.joint, open.bodies.driven = chain.bodies.driven;
+    std::int64_t const free = degrees_of_freedom(open), restricted = free - with;
+    fail(node, fmt::format("the tip's joint restricts {} directions, the chain has {} degrees of freedom", restricted, free),
+         "give the tip a joint that restricts less, or the chain more joints");
+}
+
+}  // namespace
+
+ReadTip read_tip(Fields const& chain) {
+    ReadTip read;
+    Node const* const tip = chain.find("tip");
+    if (!tip) return read;
+    if (tip->kind == Node::Kind::map) {
+        Node const& joint = Fields(*tip, {"joint"}).need("joint", "joint: {type: spherical}");
+        TipEntry const entry = read_tip_joint(joint);
+        read.kind = Tip::jointed;
+        read.joint = entry.joint;
+        if (entry.planar) read.planar = &joint;
+        return read;
+    }
+    enum class Word { free, fixed };
+    if (choice<Word>(*tip, {{"free", Word::free}, {"fixed", Word::fixed}}, {"ring"}) == Word::free) return read;
+    read.kind = Tip::jointed;
+    read.fixed = true;
+    read.joint.type = JointType::weld;
+    return read;
+}
+
+void join_tip(ChainSpec& chain, ReadTip const& tip, Node const& chain_node) {
+    chain.tip = tip.kind;
+    chain.tip_joint = tip.joint;
+    if (tip.kind == Tip::free) return;
+    Node const& written = *chain_node.find("tip");
+    Node const& node = tip.fixed ? written : *written.find("joint");
+    bool const links = chain.is_beads() || chain.is_linked(), link = tip.joint.type == JointType::link;
+    if (links && tip.fixed)
+        fail(node, fmt::format("a fixed tip of {}", kind_of(chain)), "write `tip: {joint: {type: link, anchor: [x, y, z]}}`");
+    if (links && !link)
+        fail(node, fmt::format("a {} joint at the tip of {}", name_of(tip.joint.type), kind_of(chain)),
+             "write `joint: {type: link, anchor: [x, y, z]}`");
+    if (!links && link) fail(node, "a link at the tip of a chain of other joints", "use another type, such as spherical");
+    if (chain.is_beads())
+        if (Node const* const translation = node.find("translation"))
+            fail(*translation, "key `translation` means nothing for a point bead", "leave it out");
+    if (link) {
+        close_link(chain, node);
+    } else {
+        refuse_too_many(chain, node);
+        close_joint(chain, node);
+    }
+    refuse_straight_bridge(chain, node);
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,21 @@
+// The outboard end of a chain: `tip: free | fixed | {joint: {...}}`.
+#pragma once
+
+#include "scene/chain_request.hpp"
+
+namespace catena::scene {
+
+struct ReadTip {
+    Tip kind = Tip::free;
+    TipJoint joint;
+    bool fixed = false;            // `tip: fixed`
+    Node const* planar = nullptr;  // a joint that is written `planar`
+};
+/// What the key says. InputError for rings ("not in this version") and for joints that are wrong in themselves.
+ReadTip read_tip(Fields const& chain);
+
+/// Gives the finished chain its tip: checks that joint and chain go together and that the joint is closed at the start (1e-9 of the chain's
+/// reach), sets a link's length. InputError names error and remedy.
+void join_tip(ChainSpec& chain, ReadTip const& tip, Node const& chain_node);
+
+}  // namespace catena::scene
