@@ -69,7 +69,8 @@ Refusal const keys_cases[] = {
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}, weight: 2})y",
-     "unknown key `weight` (s.yaml: chains[0].bodies[1].weight, body 2, line 5): use one of `mass`, `com`, `inertia`, `joint`, `wrench`"},
+     "unknown key `weight` (s.yaml: chains[0].bodies[1].weight, body 2, line 5): use one of `mass`, `com`, `inertia`, `joint`, `wrench`, "
+     "`drag`, `beads`"},
     {"unknown_near_in_body", R"y(chains:
   - base: fixed
     bodies:
@@ -98,7 +99,7 @@ forces: {openmm: {bilder: calvados2}})y",
      "key `chains` has no value (s.yaml: chains, line 1): give one or leave the key out"},
     {"chain_is_text", "chains: [GGG]",
      "`GGG` is not a map (s.yaml: chains[0], line 1): give a map with keys among `name`, `count`, `sequence`, `fasta`, `pdb`, `bodies`, "
-     "`generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, `conformation`, `velocities`"},
+     "`generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, `conformation`, `rigid`, `velocities`"},
     {"nothing_in_chain", "chains: [{name: a}]",
      "the chain says nothing of its bodies (s.yaml: chains[0], line 1): add one of `sequence`, `fasta`, `pdb`, `bodies`, `generator`"},
     {"two_sources", "chains: [{sequence: GGG, model: calvados2, generator: {pendulum: {links: 2}}}]",
@@ -227,7 +228,7 @@ Refusal const bodies_cases[] = {
      "the list of bodies is empty (s.yaml: chains[0].bodies, line 1): give at least one body"},
     {"body_is_text", "chains: [{base: fixed, bodies: [rod]}]",
      "`rod` is not a map (s.yaml: chains[0].bodies[0], body 1, line 1): give a map with keys among `mass`, `com`, `inertia`, `joint`, "
-     "`wrench`"},
+     "`wrench`, `drag`, `beads`"},
     {"no_mass", "chains: [{base: fixed, bodies: [{inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}]}]",
      "key `mass` is missing (s.yaml: chains[0].bodies[0], body 1, line 1): add `mass: 1.0`"},
     {"zero_mass", R"y(chains:
@@ -329,7 +330,7 @@ Refusal const joints_cases[] = {
       - {mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: ball-and-socket}})y",
      "`ball-and-socket` is not a value of `type` (s.yaml: chains[0].bodies[1].joint.type, body 2, line 5): use one of `free`, `link`, "
-     "`revolute`, `spherical`"},
+     "`revolute`, `planar`, `universal`, `spherical`, `prismatic`, `helical`, `weld`"},
     {"zero_axis", R"y(chains:
   - base: fixed
     bodies:
