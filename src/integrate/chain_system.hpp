@@ -20,7 +20,7 @@ int choose_threads(Scene const&, Communicator const&);
 
 class ChainSystem {
   public:
-    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4) or world (rattle, g-baoab). Collective.
+    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4, velocity-verlet) or world (rattle, g-baoab). Collective.
     ChainSystem(Scene const&, Axes axes, Communicator const&);
 
     /// Kinematics, forces, matrices and biases at the present state: accelerations of every body. With OpenMM the matrix sweep runs
@@ -72,10 +72,18 @@ class ChainSystem {
     /// Everything a checkpoint needs, in scene order on rank 0; and back, on every rank.
     std::map<std::string, std::vector<double>> state();
     void set_state(std::map<std::string, std::vector<double>> const&);
+    /// The same for accelerations of joint group i that an integrator carries from step to step.
+    void collect_rates(std::size_t i, JointRates const&, std::map<std::string, std::vector<double>>& arrays) const;
+    void distribute_rates(std::size_t i, std::map<std::string, std::vector<double>> const& arrays, JointRates&) const;
 
   private:
     void make_openmm();
     void add_openmm_forces();
+    /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
+    std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name, int width) const;
+    /// This rank's part into an array of a checkpoint. Collective.
+    void add_part(ChainGroup const&, std::vector<double> const& own, int width, std::string const& name,
+                  std::map<std::string, std::vector<double>>& arrays) const;
     Scene const& scene_;
     Communicator const& communicator_;
     Backend backend_;

@@ -181,8 +181,8 @@ class Run {
         c.scene_hash = scene_.hash;
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
-        stepper_->save(c);
         c.arrays = system_.state();
+        stepper_->save(c);
         c.arrays["largest_constraint_error"] = {worst_error_};
         folder_->write_checkpoint(c);
     }
@@ -275,7 +275,8 @@ class Run {
         }
         s["solver"] = {{"backend", name_of(system_.backend())}, {"tree_table", dca::tree_table_version}, {"groups", solvers}};
         s["solver"].update(stepper_->describe());
-        if (!system_.absolute().empty())  // joint coordinates cannot come apart
+        bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(), [](auto const& g) { return g->has_tips(); });
+        if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
             s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (OpenMmForce const* openmm = system_.openmm()) {
             double const matrix = system_.matrix_seconds();

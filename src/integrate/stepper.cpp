@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "integrate/constrained_integrator.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/joint_integrators.hpp"
 
 namespace catena {
 namespace {
@@ -13,37 +13,59 @@ using nlohmann::json;
 
 class JointStepper final : public Stepper {
   public:
-    JointStepper(ChainSystem& system, double h) : system_(system), h_(h) {
-        for (JointDynamics* dynamics : system.joint()) rk4_.emplace_back(*dynamics);
+    JointStepper(ChainSystem& system, DynamicsSpec const& d) : system_(system), h_(d.step) {
+        for (std::size_t i = 0; i < system.joint().size(); ++i) {
+            JointDynamics& dynamics = *system.joint()[i];
+            integrators_.push_back(d.integrator == Integrator::rk4 ? make_runge_kutta4(dynamics) : make_velocity_verlet(dynamics));
+            dynamics.close_tips(system.joint_state(i));
+        }
     }
     void prepare(StepTimeline*) override {}
     void observe(bool joint_forces) override {
         if (joint_forces) system_.evaluate();
     }
-    void step(std::int64_t, StepTimeline* timeline) override {
+    void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();
-        for (std::size_t i = 0; i < rk4_.size(); ++i) rk4_[i].step(system_.joint_state(i), h_);
-        if (timeline) timeline->phases.push_back({"four evaluations", "catena", 0.0, seconds_now() - start});
+        for (std::size_t i = 0; i < integrators_.size(); ++i) {
+            system_.joint_state(i).time = static_cast<double>(n) * h_;
+            integrators_[i]->step(system_.joint_state(i), h_);
+        }
+        if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
-    /// Joint coordinates cannot come apart: nothing but whether the state is finite.
+    /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is finite.
     double constraint_error() override {
-        double sum = 0;
-        for (std::size_t i = 0; i < rk4_.size(); ++i) {
+        double worst = 0;
+        for (std::size_t i = 0; i < integrators_.size(); ++i) {
             JointState const& state = system_.joint_state(i);
             for (std::int64_t k = 0; k < state.q.size(); ++k)
-                sum = larger(sum, 0.0 * (dot(state.q[k], state.q[k]) + dot(state.qd[k], state.qd[k])));
+                worst = larger(worst, 0.0 * (dot(state.q[k], state.q[k]) + dot(state.qd[k], state.qd[k])));
+            worst = larger(worst, system_.joint()[i]->closure_error(state));
         }
-        return system_.communicator().max(sum);
+        return system_.communicator().max(worst);
     }
     bool add_sweep() override { return false; }
-    void save(Checkpoint&) const override {}
-    void restore(Checkpoint const&) override {}
-    json describe() const override { return {{"matrix_sweeps_a_step", 4}, {"bias_sweeps_a_step", 4}}; }
+    void save(Checkpoint& c) const override {
+        for (std::size_t i = 0; i < integrators_.size(); ++i)
+            if (JointRates* const rates = integrators_[i]->carried()) system_.collect_rates(i, *rates, c.arrays);
+    }
+    void restore(Checkpoint const& c) override {
+        for (std::size_t i = 0; i < integrators_.size(); ++i) {
+            system_.joint_state(i).time = static_cast<double>(c.step) * h_;
+            JointRates* const rates = integrators_[i]->carried();
+            if (!rates) continue;
+            system_.distribute_rates(i, c.arrays, *rates);
+            integrators_[i]->restored();
+        }
+    }
+    json describe() const override {
+        int const evaluations = integrators_.empty() ? 0 : integrators_.front()->evaluations_a_step();
+        return {{"matrix_sweeps_a_step", evaluations}, {"bias_sweeps_a_step", evaluations}};
+    }
 
   private:
     ChainSystem& system_;
     double h_;
-    std::vector<RungeKutta4> rk4_;
+    std::vector<std::unique_ptr<JointIntegrator>> integrators_;
 };
 
 class ConstrainedStepper final : public Stepper {
@@ -115,7 +137,7 @@ class ConstrainedStepper final : public Stepper {
 }  // namespace
 
 std::unique_ptr<Stepper> make_stepper(ChainSystem& system, DynamicsSpec const& dynamics) {
-    if (uses_joint_coordinates(dynamics.integrator)) return std::make_unique<JointStepper>(system, dynamics.step);
+    if (uses_joint_coordinates(dynamics.integrator)) return std::make_unique<JointStepper>(system, dynamics);
     return std::make_unique<ConstrainedStepper>(system, dynamics);
 }
 

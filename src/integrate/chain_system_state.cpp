@@ -1,0 +1,184 @@
+#include "integrate/chain_system.hpp"
+
+#include <utility>
+
+#include "chain/gather.hpp"
+#include "error.hpp"
+
+namespace catena {
+namespace {
+
+std::vector<double> flat(std::vector<Vec3> const& values) {
+    std::vector<double> out;
+    out.reserve(3 * values.size());
+    for (Vec3 const& v : values) out.insert(out.end(), v.data, v.data + 3);
+    return out;
+}
+std::vector<Vec3> triples(std::vector<double> const& values) {
+    std::vector<Vec3> out(values.size() / 3);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {{values[3 * i], values[3 * i + 1], values[3 * i + 2]}};
+    return out;
+}
+
+/// What counts where a piece starts, as one entry a body.
+std::vector<Vec3> at_starts(ChainGroup const& group, std::vector<Vec3> const& of_piece) {
+    std::vector<Vec3> of_body(static_cast<std::size_t>(group.size), Vec3::zero());
+    for (std::size_t p = 0; p < group.pieces.size(); ++p)
+        if (group.pieces[p].starts) of_body[static_cast<std::size_t>(group.pieces[p].local)] = of_piece[p];
+    return of_body;
+}
+
+}  // namespace
+
+ChainSystem::Snapshot ChainSystem::snapshot() {
+    std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
+    std::vector<double> position(3 * n), velocity(3 * n), omega(3 * n), orientation(4 * n);
+    for (std::size_t i = 0; i < n; ++i) orientation[4 * i] = 1.0;
+    for (auto const& group : absolute_) {
+        std::vector<StateArray> const state = group->state(), observed = group->observed_state();
+        gather_to_scene(communicator_, group->group(), 3, array_named(state, "position").values, position);
+        gather_to_scene(communicator_, group->group(), 3, array_named(observed, "velocity").values, velocity);
+        if (group->group().beads) continue;
+        gather_to_scene(communicator_, group->group(), 4, array_named(state, "orientation").values, orientation);
+        gather_to_scene(communicator_, group->group(), 3, array_named(observed, "omega").values, omega);
+    }
+    for (std::size_t i = 0; i < joint_.size(); ++i) {
+        ChainGroup const& group = joint_[i]->group();
+        BodyMotion const& motion = joint_[i]->motion(joint_states_[i]);
+        std::vector<Vec3> x, v;
+        for (std::int64_t k = 0; k < group.size; ++k) {
+            Vector<double, 4> const q = motion.orientation[k];
+            Mat3 const turn = to_matrix(Quat{q[0], q[1], q[2], q[3]});
+            x.push_back(motion.origin[k] - turn * group.r1[k]);
+            v.push_back(turn * (motion.velocity[k] - cross(motion.omega[k], group.r1[k])));
+        }
+        gather_to_scene(communicator_, group, 3, flat(x), position);
+        gather_to_scene(communicator_, group, 3, flat(v), velocity);
+        gather_to_scene(communicator_, group, 4, to_array<4>("", motion.orientation.view()).values, orientation);
+        gather_to_scene(communicator_, group, 3, to_array<3>("", motion.omega.view()).values, omega);
+    }
+    Snapshot s{triples(position), triples(velocity), triples(omega), {}};
+    for (std::size_t i = 0; i < n; ++i)
+        s.orientation.push_back({orientation[4 * i], orientation[4 * i + 1], orientation[4 * i + 2], orientation[4 * i + 3]});
+    return s;
+}
+
+std::vector<EnergyTerm> ChainSystem::potential_energy() {
+    std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
+    std::vector<double> gravity(n), springs(n);
+    auto const add = [&](ChainGroup const& group, PotentialEnergy const& e) {
+        gather_to_scene(communicator_, group, 1, e.gravity, gravity);
+        gather_to_scene(communicator_, group, 1, e.springs, springs);
+    };
+    for (auto const& group : absolute_) add(group->group(), group->potential());
+    for (std::size_t i = 0; i < joint_.size(); ++i)
+        add(joint_[i]->group(), joint_[i]->potential(joint_states_[i], joint_[i]->motion(joint_states_[i])));
+    std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
+    for (double const e : gravity) terms[0].value += e;
+    for (double const e : springs) terms[1].value += e;
+    if (openmm_)
+        for (EnergyTerm const& term : openmm_->energies()) terms.push_back(term);
+    return terms;
+}
+
+std::vector<Vector<double, 6>> ChainSystem::joint_forces() {
+    std::vector<double> all(communicator_.rank() == 0 ? static_cast<std::size_t>(6 * scene_.bodies()) : 0);
+    auto const add = [&](ChainGroup const& group, BodyResults const& r) {
+        std::vector<double> own;
+        for (Vector<double, 6> const& w : r.joint_force) own.insert(own.end(), w.data, w.data + 6);
+        gather_to_scene(communicator_, group, 6, own, all);
+    };
+    for (auto const& group : absolute_) add(group->group(), group->results());
+    for (auto const& group : joint_) add(group->group(), group->results());
+    std::vector<Vector<double, 6>> forces(all.size() / 6);
+    for (std::size_t i = 0; i < all.size(); ++i) forces[i / 6][static_cast<int>(i % 6)] = all[i];
+    return forces;
+}
+
+ChainSystem::Accelerations ChainSystem::accelerations() {
+    std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
+    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), bead_force;
+    if (openmm_) bead_force.resize(3 * n);
+    auto const add = [&](ChainGroup const& group, BodyResults const& r) {
+        gather_to_scene(communicator_, group, 3, flat(r.acceleration), body);
+    };
+    for (auto const& group : absolute_) {
+        add(group->group(), group->results());
+        gather_to_scene(communicator_, group->group(), 3, flat(group->results().acceleration), joint);
+        if (group.get() != beads_ || !openmm_) continue;
+        gather_to_scene(communicator_, group->group(), 3, to_array<3>("", std::as_const(openmm_force_).view()).values, bead_force);
+    }
+    for (std::size_t i = 0; i < joint_.size(); ++i) {
+        ChainGroup const& group = joint_[i]->group();
+        add(group, joint_[i]->results());
+        gather_to_scene(communicator_, group, 3, to_array<3>("", std::as_const(joint_rates_[i]).qdd.view()).values, joint);
+        gather_to_scene(communicator_, group, 3, flat(at_starts(group, joint_rates_[i].base_acceleration)), base);
+    }
+    return {triples(joint), triples(body), triples(bead_force), triples(base), joint_forces()};
+}
+
+std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays,
+                                          std::string const& name, int width) const {
+    auto const found = arrays.find(name);
+    if (found == arrays.end() || found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
+        throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart",
+                         "take a checkpoint of this scene and integrator");
+    return take_from_scene(group, width, found->second);
+}
+
+void ChainSystem::add_part(ChainGroup const& group, std::vector<double> const& own, int width, std::string const& name,
+                           std::map<std::string, std::vector<double>>& arrays) const {
+    auto& array = arrays[name];
+    array.resize(communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies() * width) : 0);
+    gather_to_scene(communicator_, group, width, own, array);
+}
+
+std::map<std::string, std::vector<double>> ChainSystem::state() {
+    std::map<std::string, std::vector<double>> arrays;
+    for (auto const& group : absolute_)
+        for (StateArray const& a : group->state()) add_part(group->group(), a.values, a.width, a.name, arrays);
+    for (std::size_t i = 0; i < joint_.size(); ++i) {
+        ChainGroup const& group = joint_[i]->group();
+        JointState const& s = joint_states_[i];
+        add_part(group, to_array<4>("", s.q.view()).values, 4, "q", arrays);
+        add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", arrays);
+        add_part(group, flat(at_starts(group, s.base_position)), 3, "base_position", arrays);
+        add_part(group, flat(at_starts(group, s.base_velocity)), 3, "base_velocity", arrays);
+    }
+    return arrays;
+}
+
+void ChainSystem::collect_rates(std::size_t i, JointRates const& rates, std::map<std::string, std::vector<double>>& arrays) const {
+    ChainGroup const& group = joint_[i]->group();
+    add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", arrays);
+    add_part(group, flat(at_starts(group, rates.base_acceleration)), 3, "base_acceleration", arrays);
+}
+
+void ChainSystem::distribute_rates(std::size_t i, std::map<std::string, std::vector<double>> const& arrays, JointRates& rates) const {
+    ChainGroup const& group = joint_[i]->group();
+    from_array<3>({"qdd", 3, own_part(group, arrays, "qdd", 3)}, rates.qdd.view());
+    std::vector<Vec3> const base = triples(own_part(group, arrays, "base_acceleration", 3));
+    for (std::size_t p = 0; p < group.pieces.size(); ++p)
+        rates.base_acceleration[p] = base[static_cast<std::size_t>(group.pieces[p].local)];
+}
+
+void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& arrays) {
+    for (auto const& group : absolute_) {
+        std::vector<StateArray> state = group->state();
+        for (StateArray& a : state) a.values = own_part(group->group(), arrays, a.name, a.width);
+        group->set_state(state);
+    }
+    for (std::size_t i = 0; i < joint_.size(); ++i) {
+        ChainGroup const& group = joint_[i]->group();
+        from_array<4>({"q", 4, own_part(group, arrays, "q", 4)}, joint_states_[i].q.view());
+        from_array<3>({"qd", 3, own_part(group, arrays, "qd", 3)}, joint_states_[i].qd.view());
+        std::vector<Vec3> const x = triples(own_part(group, arrays, "base_position", 3));
+        std::vector<Vec3> const v = triples(own_part(group, arrays, "base_velocity", 3));
+        for (std::size_t p = 0; p < group.pieces.size(); ++p) {
+            joint_states_[i].base_position[p] = x[static_cast<std::size_t>(group.pieces[p].local)];
+            joint_states_[i].base_velocity[p] = v[static_cast<std::size_t>(group.pieces[p].local)];
+        }
+    }
+}
+
+}  // namespace catena

@@ -1,0 +1,31 @@
+// Steps in joint coordinates: nothing drifts apart but jointed tips, which are closed after every step.
+#pragma once
+
+#include <memory>
+
+#include "integrate/joint_dynamics.hpp"
+
+namespace catena {
+
+class JointIntegrator {
+  public:
+    virtual ~JointIntegrator() = default;
+    /// One step of length h from `state`, whose time is its own. Collective.
+    virtual void step(JointState& state, double h) = 0;
+    virtual int evaluations_a_step() const = 0;
+    /// What the next step needs beside the state, for checkpoints; null: nothing.
+    virtual JointRates* carried() { return nullptr; }
+    /// `carried` was set from outside.
+    virtual void restored() {}
+};
+
+/// The classical fourth-order Runge-Kutta step (the chapter's integrator). Quaternions follow q' = 1/2 q (0, omega) and are normalised
+/// at the end of the step.
+std::unique_ptr<JointIntegrator> make_runge_kutta4(JointDynamics&);
+
+/// Velocity Verlet for accelerations that depend on velocities, one evaluation a step, second order (Groot & Warren, J. Chem. Phys. 107,
+/// 4423, 1997, with lambda = 1): q moves by h q' + h^2/2 q'', the acceleration is taken there with q' + h q'', and q' gets the
+/// mean of both accelerations. Orientations move by the exponential of that rotation vector.
+std::unique_ptr<JointIntegrator> make_velocity_verlet(JointDynamics&);
+
+}  // namespace catena
