@@ -18,26 +18,6 @@ oracle::Loads loads_at_start() {
     return loads;
 }
 
-/// The chain a time h later, correct to h^2 in coordinates and h in velocities with errors even in h where it matters for
-/// central differences: spherical and free joints turn by the rotation vector h (w + h/2 w') about their body's axes.
-ChainSpec moved(ChainSpec chain, OracleResult<double> const& a, double h) {
-    BodyArrays& b = chain.bodies;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-        Vec3 const step = h * (b.qd[k] + (0.5 * h) * a.qdd[k]);
-        if (b.joint[k] == JointType::spherical || b.joint[k] == JointType::free) {
-            auto const& q = b.q[k];
-            Quat const turned = normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
-            b.q[k] = {turned.w, turned.x, turned.y, turned.z};
-        } else {
-            for (int i = 0; i < 2; ++i) b.q[k][static_cast<std::size_t>(i)] += step[i];
-        }
-        b.qd[k] = b.qd[k] + h * a.qdd[k];
-    }
-    b.free_position = b.free_position + h * (b.free_velocity + (0.5 * h) * a.base_acceleration);
-    b.free_velocity = b.free_velocity + h * a.base_acceleration;
-    return chain;
-}
-
 using Vectors = std::vector<Vec3>;
 Vectors central(Vectors const& ahead, Vectors const& behind, double h) {
     Vectors d;
