@@ -174,6 +174,7 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     BodyArrays& b = chain.bodies;
     move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation), move(b.q), move(b.qd);
     move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness), move(b.damping), move(b.rest), move(b.wrench);
+    move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity), move(chain.beads.anchor);
     TipJoint& tip = chain.tip_joint;
     move(tip.axis), move(tip.first_axis), move(tip.pitch), move(tip.rotation), move(tip.translation), move(tip.q);
     if (tip.anchor) move(*tip.anchor);
@@ -181,7 +182,6 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     move(l.mass), move(l.inertia), move(l.position), move(l.velocity), move(l.orientation), move(l.omega), move(l.inboard);
     move(l.outboard), move(l.anchor);
     move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
-    move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity), move(chain.beads.anchor);
     return chain;
 }
 
