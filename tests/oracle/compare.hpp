@@ -40,9 +40,13 @@ S largest(std::vector<Vector<S, 3>> const& values) {
     return most;
 }
 
-/// Every quantity of a result.
+/// Accelerations only: where a chain is held more than once, its forces are one choice of many.
+enum class What { all, accelerations };
+
+/// The quantities of a result.
 template <class S>
-std::vector<std::vector<Vector<S, 3>>> quantities(oracle::OracleResult<S> const& r) {
+std::vector<std::vector<Vector<S, 3>>> quantities(oracle::OracleResult<S> const& r, What what) {
+    if (what == What::accelerations) return {r.qdd, r.com_acceleration, r.alpha, {r.base_acceleration}};
     std::vector<Vector<S, 3>> tension;
     for (S const& t : r.tension) tension.push_back({{t, S(0), S(0)}});
     return {r.qdd,
@@ -53,14 +57,16 @@ std::vector<std::vector<Vector<S, 3>>> quantities(oracle::OracleResult<S> const&
             forces(r.joint_force),
             torques(r.constraint_force),
             forces(r.constraint_force),
-            tension};
+            tension,
+            {r.tip_force.torque},
+            {r.tip_force.force}};
 }
 
 /// Largest difference between two results, each quantity relative to its own largest component; one that the model keeps at
 /// zero (the rotation of a chain of prismatic joints) relative to the largest of all, which is O(1) in these chains' units.
 template <class S>
-S difference(oracle::OracleResult<S> const& a, oracle::OracleResult<S> const& b) {
-    auto const of_a = quantities(a), of_b = quantities(b);
+S difference(oracle::OracleResult<S> const& a, oracle::OracleResult<S> const& b, What what = What::all) {
+    auto const of_a = quantities(a, what), of_b = quantities(b, what);
     S overall(0), worst(0);
     for (auto const& q : of_b) overall = std::max(overall, largest(q));
     for (std::size_t i = 0; i < of_b.size(); ++i) {
@@ -81,6 +87,26 @@ inline double growth(ChainSpec const& chain, oracle::Loads const& loads) {
     return most;
 }
 
+/// The chain a time h later, correct to h^2 in coordinates and h in velocities with errors even in h where it matters for
+/// central differences: spherical and free joints turn by the rotation vector h (w + h/2 w') about their body's axes.
+inline ChainSpec moved(ChainSpec chain, oracle::OracleResult<double> const& a, double h) {
+    BodyArrays& b = chain.bodies;
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        Vec3 const step = h * (b.qd[k] + (0.5 * h) * a.qdd[k]);
+        if (b.joint[k] == JointType::spherical || b.joint[k] == JointType::free) {
+            auto const& q = b.q[k];
+            Quat const turned = normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
+            b.q[k] = {turned.w, turned.x, turned.y, turned.z};
+        } else {
+            for (int i = 0; i < 2; ++i) b.q[k][static_cast<std::size_t>(i)] += step[i];
+        }
+        b.qd[k] = b.qd[k] + h * a.qdd[k];
+    }
+    b.free_position = b.free_position + h * (b.free_velocity + (0.5 * h) * a.base_acceleration);
+    b.free_velocity = b.free_velocity + h * a.base_acceleration;
+    return chain;
+}
+
 /// Collects |aba - dense| over many chains against c n eps growth: both solvers are backward stable, so each gives the exact
 /// answer of a problem changed by a few roundings a body, and growth is what such a change does to the answer. c = 16: a body
 /// passes some tens of rounded operations, which add up like a random walk.
@@ -92,11 +118,14 @@ class Agreement {
         double const error = static_cast<double>(difference(oracle::aba<S>(chain, loads), oracle::dense<S>(chain, loads)));
         double const unit = static_cast<double>(chain.size()) * static_cast<double>(epsilon<S>());
         double const ratio = error / (unit * growth(chain, loads));
-        ++count_;
-        error_ = std::max(error_, error);
-        ratio_ = std::max(ratio_, ratio);
-        condition_ratio_ = std::max(condition_ratio_, error / (unit * oracle::condition_estimate(chain, loads)));
-        return ratio;
+        return take(chain, loads, error, ratio);
+    }
+    /// Accelerations alone, over n eps cond: of a chain held more than once, whose perturbed neighbours cannot move at all.
+    double add_accelerations(ChainSpec const& chain, oracle::Loads const& loads) {
+        double const error =
+            static_cast<double>(difference(oracle::aba<S>(chain, loads), oracle::dense<S>(chain, loads), What::accelerations));
+        double const unit = static_cast<double>(chain.size()) * static_cast<double>(epsilon<S>());
+        return take(chain, loads, error, error / (unit * oracle::condition_estimate(chain, loads)));
     }
     double error() const { return error_; }
     void print() const {
@@ -105,6 +134,14 @@ class Agreement {
     }
 
   private:
+    double take(ChainSpec const& chain, oracle::Loads const& loads, double error, double ratio) {
+        double const unit = static_cast<double>(chain.size()) * static_cast<double>(epsilon<S>());
+        ++count_;
+        error_ = std::max(error_, error);
+        ratio_ = std::max(ratio_, ratio);
+        condition_ratio_ = std::max(condition_ratio_, error / (unit * oracle::condition_estimate(chain, loads)));
+        return ratio;
+    }
     int count_ = 0;
     double error_ = 0, ratio_ = 0, condition_ratio_ = 0;
 };

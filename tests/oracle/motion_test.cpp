@@ -18,26 +18,6 @@ oracle::Loads loads_at_start() {
     return loads;
 }
 
-/// The chain a time h later, correct to h^2 in coordinates and h in velocities with errors even in h where it matters for
-/// central differences: spherical and free joints turn by the rotation vector h (w + h/2 w') about their body's axes.
-ChainSpec moved(ChainSpec chain, OracleResult<double> const& a, double h) {
-    BodyArrays& b = chain.bodies;
-    for (std::size_t k = 0; k < b.size(); ++k) {
-        Vec3 const step = h * (b.qd[k] + (0.5 * h) * a.qdd[k]);
-        if (b.joint[k] == JointType::spherical || b.joint[k] == JointType::free) {
-            auto const& q = b.q[k];
-            Quat const turned = normalized(Quat{q[0], q[1], q[2], q[3]} * from_rotation_vector(step));
-            b.q[k] = {turned.w, turned.x, turned.y, turned.z};
-        } else {
-            for (int i = 0; i < 2; ++i) b.q[k][static_cast<std::size_t>(i)] += step[i];
-        }
-        b.qd[k] = b.qd[k] + h * a.qdd[k];
-    }
-    b.free_position = b.free_position + h * (b.free_velocity + (0.5 * h) * a.base_acceleration);
-    b.free_velocity = b.free_velocity + h * a.base_acceleration;
-    return chain;
-}
-
 using Vectors = std::vector<Vec3>;
 Vectors central(Vectors const& ahead, Vectors const& behind, double h) {
     Vectors d;
@@ -121,6 +101,87 @@ TEST_P(Motion, EnergyChangesByThePowerOfWhatIsNotConservative) {
     double const scale = std::abs(power) + std::abs(coarse.spring);
     EXPECT_GT(std::abs(coarse.spring), 1e-3 * scale);  // the springs take part
     expect_second_order(std::abs(coarse.energy - power) / scale, std::abs(fine.energy - power) / scale, "power");
+}
+
+/// Poses by the definition of each joint's motion X(q) in scene.hpp, written out with quaternions.
+TEST_P(Motion, PosesFollowTheDefinition) {
+    ChainSpec const c = chain();
+    BodyArrays const& b = c.bodies;
+    auto const k = oracle::kinematics<double>(c, loads_at_start());
+    Mat3 r = Mat3::identity();
+    Vec3 x = Vec3::zero();
+    for (std::size_t i = 0; i < c.size(); ++i) {
+        JointType const type = b.joint[i];
+        auto const& q = b.q[i];
+        Quat turn = Quat::identity();
+        Vec3 shift = Vec3::zero();
+        if (type == JointType::free || type == JointType::spherical) turn = {q[0], q[1], q[2], q[3]};
+        if (type == JointType::revolute || type == JointType::helical) turn = from_axis_angle(b.axis[i], q[0]);
+        if (type == JointType::universal) turn = from_axis_angle(b.first_axis[i], q[0]) * from_axis_angle(b.axis[i], q[1]);
+        if (type == JointType::prismatic) shift = q[0] * b.axis[i];
+        if (type == JointType::helical) shift = (b.pitch[i] * q[0]) * b.axis[i];
+        bool const free = type == JointType::free;
+        x = free ? b.free_position : x + r * (b.translation[i] + b.rotation[i] * shift);
+        r = free ? to_matrix(turn) : r * (b.rotation[i] * to_matrix(turn));
+        EXPECT_LE(norm(k.origin[i] - x), 64 * 0x1p-52);
+        for (int j = 0; j < 3; ++j) EXPECT_LE(norm(k.orientation[i].column(j) - r.column(j)), 64 * 0x1p-52);
+    }
+}
+
+/// A drive holds its course with the effort that an undriven joint would need for it.
+TEST_P(Motion, ADriveIsTheEffortItNeeds) {
+    ChainSpec const c = chain(0.7);
+    auto const driven = oracle::aba<double>(c, loads_at_start());
+    auto const k = oracle::kinematics<double>(c, loads_at_start());
+    ChainSpec pushed = c;
+    pushed.bodies.driven.clear();
+    for (DrivenJoint const& d : c.bodies.driven) {
+        auto const i = static_cast<std::size_t>(d.body);
+        JointType const type = c.bodies.joint[i];
+        Vec3 &u = pushed.bodies.qd[i], &effort = pushed.bodies.torque[i], q = Vec3::zero();
+        for (int j = 0; j < (type == JointType::universal ? 2 : 1); ++j) {
+            Course const& course = d.course[static_cast<std::size_t>(j)];
+            double const turns = 2 * std::acos(-1.0) * course.frequency, phase = turns * start + course.phase;
+            q[j] = course.offset + course.rate * start + course.amplitude * std::sin(phase);
+            u[j] = course.rate + course.amplitude * turns * std::cos(phase);
+            EXPECT_NEAR(driven.qdd[i][j], -course.amplitude * turns * turns * std::sin(phase), 1e-12 * (1 + turns * turns));
+        }
+        pushed.bodies.q[i] = {q[0], q[1], 0, 0};
+        pushed.bodies.stiffness[i] = pushed.bodies.damping[i] = Vec3::zero();
+        auto const& wrench = driven.constraint_force[i];
+        Vec3 const torque = transposed_times(k.orientation[i], wrench.torque), force = transposed_times(k.orientation[i], wrench.force);
+        Vec3 const axis = c.bodies.axis[i];
+        if (type == JointType::prismatic) effort[0] = dot(axis, force);
+        if (type == JointType::revolute) effort[0] = dot(axis, torque);
+        if (type == JointType::helical) effort[0] = dot(axis, torque) + c.bodies.pitch[i] * dot(axis, force);
+        if (type == JointType::universal)  // the first axis in B: turned back about the second
+            effort = {{dot(to_matrix(from_axis_angle(axis, -q[1])) * c.bodies.first_axis[i], torque), dot(axis, torque), 0}};
+    }
+    auto const found = oracle::dense<double>(pushed, loads_at_start());
+    double const allowed = 64 * 5 * 0x1p-52 * growth(pushed, loads_at_start());
+    EXPECT_LE(relative_difference(found.com_acceleration, driven.com_acceleration), allowed);
+    EXPECT_LE(relative_difference(forces(found.joint_force), forces(driven.joint_force)), allowed);
+}
+
+/// Forces on carried beads are a wrench on the body that carries them.
+TEST_P(Motion, ForcesOnCarriedBeads) {
+    ChainSpec c = chain();
+    auto const k = oracle::kinematics<double>(c, loads_at_start());
+    ChainSpec pushed = c;
+    oracle::Loads loads = loads_at_start(), with_beads = loads;
+    Random random(5);
+    c.bodies.carried.offset = {0, 2, 2, 3, 6, 6};
+    for (std::size_t body = 0, bead = 0; body < 5; ++body)
+        for (; bead < static_cast<std::size_t>(c.bodies.carried.offset[body + 1]); ++bead) {
+            Vec3 const at = random.vector(0.5), force = random.vector(5);
+            c.bodies.carried.position.push_back(at);
+            with_beads.bead_forces.push_back(force);
+            auto& wrench = pushed.bodies.wrench[body];
+            wrench.first = wrench.first + cross(k.origin[body] + k.orientation[body] * at - k.com_position[body], force);
+            wrench.second = wrench.second + force;
+        }
+    auto const a = oracle::aba<double>(c, with_beads), b = oracle::aba<double>(pushed, loads);
+    EXPECT_LE(difference(a, b), 16 * 5 * 0x1p-52 * growth(pushed, loads));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "dca/oracle/oracle.hpp"
+
 namespace catena::test {
 namespace {
 
@@ -119,6 +121,27 @@ void append_joint(Random& random, RandomChainOptions const& options, BodyArrays&
     b.rest.push_back(random_coordinates(random, type, 1, rest));
 }
 
+/// A tip joint of the options' type in an arbitrary state; a planar chain's revolute tip keeps to the plane.
+TipJoint random_tip(Random& random, RandomChainOptions const& options) {
+    TipJoint tip;
+    tip.type = *options.tip;
+    bool const level = options.joints == RandomJoints::planar && tip.type == JointType::revolute && options.base == Base::fixed;
+    tip.axis = level ? planar_axis : random.direction();
+    tip.first_axis = direction_off(random, tip.axis);
+    tip.pitch = random.uniform(0.02, 0.2);
+    tip.rotation = to_matrix(level ? from_axis_angle(planar_axis, random.uniform(-3, 3)) : random.orientation());
+    tip.translation = random.uniform(0.2, 0.6) * random.direction();
+    tip.q = random_coordinates(random, tip.type, 3, random.orientation());
+    return tip;
+}
+/// A link of random length from `end` to the ground.
+TipJoint random_tip_link(Random& random, Vec3 const& end) {
+    TipJoint tip;
+    tip.type = JointType::link;
+    tip.anchor = end + random.uniform(0.2, 0.6) * random.direction();
+    return tip;
+}
+
 /// Moves numbers by up to `size` of themselves.
 class Perturbation {
   public:
@@ -151,8 +174,14 @@ ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
     BodyArrays& b = chain.bodies;
     move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation), move(b.q), move(b.qd);
     move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness), move(b.damping), move(b.rest), move(b.wrench);
-    move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
     move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity), move(chain.beads.anchor);
+    TipJoint& tip = chain.tip_joint;
+    move(tip.axis), move(tip.first_axis), move(tip.pitch), move(tip.rotation), move(tip.translation), move(tip.q);
+    if (tip.anchor) move(*tip.anchor);
+    LinkedArrays& l = chain.linked;
+    move(l.mass), move(l.inertia), move(l.position), move(l.velocity), move(l.orientation), move(l.omega), move(l.inboard);
+    move(l.outboard), move(l.anchor);
+    move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
     return chain;
 }
 
@@ -197,10 +226,15 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
         b.free_velocity = options.moving ? random.vector(1) : Vec3::zero();
     }
     for (std::size_t k = 0; k < options.bodies && options.drag; ++k) b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});
+    if (options.tip && options.bodies > 0) {
+        chain.tip = Tip::jointed;
+        chain.tip_joint = random_tip(random, options);
+        oracle::project_velocities(chain, options.time);
+    }
     return chain;
 }
 
-ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base) {
+ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip) {
     Random random(seed);
     ChainSpec chain;
     chain.name = "random beads";
@@ -221,7 +255,53 @@ ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base) {
         b.position.push_back(position);
         b.velocity.push_back(velocity);
     }
+    if (tip == Tip::jointed) {
+        chain.tip = tip;
+        chain.tip_joint = random_tip_link(random, position);
+        oracle::project_velocities(chain);
+    }
     return chain;
+}
+
+ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base, Tip tip) {
+    Random random(seed);
+    ChainSpec chain;
+    chain.name = "random linked bodies";
+    chain.base = base;
+    LinkedArrays& b = chain.linked;
+    b.anchor = random.vector(1);
+    Vec3 end = base == Base::fixed ? b.anchor : random.vector(1);
+    for (std::size_t k = 0; k < bodies; ++k) {
+        bool const bead = random.chance(0.5);
+        Quat const orientation = bead ? Quat::identity() : random.orientation();
+        Vec3 const zero = Vec3::zero(), inboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction(),
+                   outboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction();
+        b.mass.push_back(std::pow(10.0, random.uniform(-0.5, 0.5)));
+        b.inertia.push_back(bead ? Sym3::zero() : random_inertia(random, b.mass.back()));
+        b.orientation.push_back(as_array(orientation));
+        b.inboard.push_back(inboard);
+        b.outboard.push_back(outboard);
+        b.length.push_back(random.uniform(0.2, 0.6));
+        if (k > 0 || base == Base::fixed) end = end + b.length.back() * random.direction();
+        b.position.push_back(end - to_matrix(orientation) * inboard);
+        end = b.position.back() + to_matrix(orientation) * outboard;
+        b.velocity.push_back(random.vector(1));
+        b.omega.push_back(bead ? zero : random.vector(3));
+    }
+    chain.tip = tip;
+    if (tip == Tip::jointed) chain.tip_joint = random_tip_link(random, end);
+    oracle::project_velocities(chain);
+    return chain;
+}
+
+std::vector<std::pair<Vec3, Vec3>> random_wrenches(std::uint64_t seed, std::size_t bodies) {
+    Random random(seed);
+    std::vector<std::pair<Vec3, Vec3>> wrenches;
+    for (std::size_t k = 0; k < bodies; ++k) {
+        Vec3 const torque = random.vector(1), force = random.vector(5);
+        wrenches.push_back({torque, force});
+    }
+    return wrenches;
 }
 
 std::vector<Vec3> random_forces(std::uint64_t seed, std::size_t beads) {

@@ -38,13 +38,19 @@ struct RandomChainOptions {
     bool drag = false;                            // of every body
     double driven = 0;                            // probability that a joint that can be driven is
     std::optional<JointType> tip = std::nullopt;  // type of the joint of the last body to ground; velocities are made to fit
+    double time = 0;                              // at which they are made to fit: decides the rates of driven joints
 };
 
 /// Rigid bodies of mass 0.3 .. 3, size about 0.3, any shape a real body can have.
 ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options);
 
-/// Point beads of mass 0.3 .. 3 on links of 0.2 .. 0.6; velocities keep the lengths to rounding.
-ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base);
+/// Point beads of mass 0.3 .. 3 on links of 0.2 .. 0.6; velocities keep the lengths to rounding. A jointed tip: a link of that
+/// size from the last bead to the ground.
+ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip = Tip::free);
+/// Rigid bodies and beads mixed, on links of 0.2 .. 0.6; velocities keep the lengths to rounding. Ends as random_bead_chain's.
+ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base, Tip tip = Tip::free);
+/// A torque and a force on each body.
+std::vector<std::pair<Vec3, Vec3>> random_wrenches(std::uint64_t seed, std::size_t bodies);
 /// A force on each bead.
 std::vector<Vec3> random_forces(std::uint64_t seed, std::size_t beads);
 

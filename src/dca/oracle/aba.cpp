@@ -1,6 +1,6 @@
 #include <string>
 
-#include "dca/oracle/joint.hpp"
+#include "dca/oracle/linked.hpp"
 #include "error.hpp"
 
 // Articulated-body algorithm. For every body F = I A + p with F = [torque; force] through the inboard joint, about the
@@ -139,8 +139,8 @@ V3<S> joint_acceleration(Link<S> const& link, Articulated<S> const& a, Motion<S>
 template <class S>
 class Solver {
   public:
-    Solver(ChainSpec const& chain, Loads const& loads)
-        : links_(read_links<S>(chain, loads)), attitude_(attitudes(links_)), bodies_(links_.size()), gravity_(lift<S>(loads.gravity)) {
+    Solver(std::vector<Link<S>> const& links, V3<S> const& gravity)
+        : links_(links), attitude_(attitudes(links_)), bodies_(links_.size()), gravity_(gravity) {
         if (!links_.empty() && links_[0].type == JointType::free) refer_to_com();
     }
 
@@ -225,12 +225,24 @@ class Solver {
 }  // namespace
 
 template <class S>
-OracleResult<S> aba(ChainSpec const& chain, Loads const& loads) {
-    return chain.is_beads() ? aba_beads<S>(chain, loads) : Solver<S>(chain, loads).solve();
+OracleResult<S> aba_links(std::vector<Link<S>> const& links, V3<S> const& gravity) {
+    return Solver<S>(links, gravity).solve();
 }
 
-template OracleResult<double> aba<double>(ChainSpec const&, Loads const&);
-template OracleResult<long double> aba<long double>(ChainSpec const&, Loads const&);
-template OracleResult<Quad> aba<Quad>(ChainSpec const&, Loads const&);
+template <class S>
+OracleResult<S> aba(ChainSpec const& chain, Loads const& loads) {
+    if (chain.is_beads()) return aba_beads<S>(chain, loads);
+    if (chain.is_linked()) return tridiagonal_linked<S>(chain, loads);
+    if (chain.tip == Tip::jointed && chain.size() > 0) return aba_with_tip<S>(chain, loads);
+    return aba_links(read_links<S>(chain, loads), lift<S>(loads.gravity));
+}
+
+#define CATENA_ORACLE(S)                                                              \
+    template OracleResult<S> aba_links<S>(std::vector<Link<S>> const&, V3<S> const&); \
+    template OracleResult<S> aba<S>(ChainSpec const&, Loads const&);
+CATENA_ORACLE(double)
+CATENA_ORACLE(long double)
+CATENA_ORACLE(Quad)
+#undef CATENA_ORACLE
 
 }  // namespace catena::oracle

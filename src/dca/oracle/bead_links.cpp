@@ -1,19 +1,32 @@
 #include "dca/oracle/joint.hpp"
+#include "error.hpp"
 
 namespace catena::oracle {
+
+Vec3 tip_anchor(ChainSpec const& chain) {
+    if (chain.tip_joint.type != JointType::link || !chain.tip_joint.anchor)
+        throw ComputationError("a chain of links ends in a link to an anchor only (" + chain.name +
+                               ": tip): give it type link and an anchor");
+    return *chain.tip_joint.anchor;
+}
+
+template <class S>
+BeadLink<S> bead_link(V3<S> const& along, V3<S> const& relative_velocity) {
+    S const length = norm(along);
+    V3<S> const u = S(S(1) / length) * along;
+    V3<S> const across = relative_velocity - dot(relative_velocity, u) * u;
+    return {u, -dot(across, across) / length};
+}
 
 template <class S>
 std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
     BeadArrays const& b = chain.beads;
     std::vector<BeadLink<S>> links(b.size());
-    for (std::size_t k = chain.base == Base::free ? 1 : 0; k < b.size(); ++k) {
-        V3<S> const along = lift<S>(b.position[k]) - lift<S>(k == 0 ? b.anchor : b.position[k - 1]);
-        V3<S> const relative = k == 0 ? lift<S>(b.velocity[k]) : lift<S>(b.velocity[k]) - lift<S>(b.velocity[k - 1]);
-        S const length = norm(along);
-        V3<S> const u = S(S(1) / length) * along;
-        V3<S> const across = relative - dot(relative, u) * u;
-        links[k] = {u, -dot(across, across) / length};
-    }
+    auto const x = [&](std::size_t k) { return lift<S>(b.position[k]); };
+    auto const v = [&](std::size_t k) { return lift<S>(b.velocity[k]); };
+    if (chain.base == Base::fixed) links[0] = bead_link(x(0) - lift<S>(b.anchor), v(0));
+    for (std::size_t k = 1; k < b.size(); ++k) links[k] = bead_link(x(k) - x(k - 1), v(k) - v(k - 1));
+    if (chain.tip == Tip::jointed) links.push_back(bead_link(lift<S>(tip_anchor(chain)) - x(b.size() - 1), -v(b.size() - 1)));
     return links;
 }
 
@@ -25,6 +38,7 @@ V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
 }
 
 #define CATENA_ORACLE(S)                                                    \
+    template BeadLink<S> bead_link<S>(V3<S> const&, V3<S> const&);          \
     template std::vector<BeadLink<S>> read_bead_links<S>(ChainSpec const&); \
     template V3<S> bead_force<S>(ChainSpec const&, Loads const&, std::size_t);
 CATENA_ORACLE(double)

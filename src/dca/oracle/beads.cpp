@@ -23,15 +23,12 @@ Cholesky<S, 3> factor(ArticulatedBead<S> const& bead, std::size_t k) {
     return f;
 }
 
-}  // namespace
-
+/// The chain without its tip link, under `forces`.
 template <class S>
-OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
+OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> const& links, std::vector<V3<S>> const& forces) {
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
-    std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
     std::vector<ArticulatedBead<S>> beads(n);
-    for (std::size_t k = 0; k < n; ++k)
-        beads[k] = {scaled(S(chain.beads.mass[k]), M3<S>::identity()), -bead_force<S>(chain, loads, k), S(0), S(0)};
+    for (std::size_t k = 0; k < n; ++k) beads[k] = {scaled(S(chain.beads.mass[k]), M3<S>::identity()), -forces[k], S(0), S(0)};
     for (std::size_t k = n; k-- > first;) {
         V3<S> const& u = links[k].direction;
         V3<S> const softness = factor(beads[k], k).solve(u);
@@ -50,6 +47,41 @@ OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
         result.com_acceleration.push_back(a);
         result.tension.push_back(-lambda);
     }
+    return result;
+}
+
+/// How the last bead yields along u to a unit force along u.
+template <class S>
+S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
+    V3<S> const u = links.back().direction;
+    for (BeadLink<S>& link : links) link.closure = S(0);
+    std::vector<V3<S>> push(chain.size(), V3<S>::zero());
+    push.back() = u;
+    S const yields = dot(u, open_chain(chain, links, push).com_acceleration.back());
+    if (!(yields > S(0)))
+        throw ComputationError("the tip link has nothing to give (bead " + std::to_string(chain.size()) +
+                               "): a chain stretched straight between its ends has no answer");
+    return yields;
+}
+
+}  // namespace
+
+template <class S>
+OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
+    std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
+    std::vector<V3<S>> forces;
+    for (std::size_t k = 0; k < chain.size(); ++k) forces.push_back(bead_force<S>(chain, loads, k));
+    OracleResult<S> result = open_chain(chain, links, forces);
+    if (chain.tip != Tip::jointed) return result;
+    V3<S> const u = links.back().direction, applied = forces.back();
+    S const yields = tip_compliance(chain, links);
+    S lambda(0);
+    for (int pass = 0; pass < 2; ++pass) {  // the second takes back the rounding of the first
+        lambda += (links.back().closure + dot(u, result.com_acceleration.back())) / yields;
+        forces.back() = applied - lambda * u;
+        result = open_chain(chain, links, forces);
+    }
+    result.tip_force.force = -lambda * u;
     return result;
 }
 

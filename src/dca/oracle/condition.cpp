@@ -1,5 +1,6 @@
 #include "dca/oracle/eigen.hpp"
 #include "dca/oracle/inverse.hpp"
+#include "dca/oracle/linked.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -43,17 +44,33 @@ Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
 
 /// G M^-1 G^T of the links, G the gradients of their lengths.
 template <class S>
-Dense<S> link_matrix(ChainSpec const& chain) {
+Dense<S> bead_link_matrix(ChainSpec const& chain) {
     std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
-    std::size_t const first = chain.base == Base::fixed ? 0 : 1;
+    std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
     auto const count = static_cast<Index>(links.size() - first);
     Dense<S> t = Dense<S>::Zero(count, count);
     for (std::size_t k = first; k < links.size(); ++k) {
         auto const i = static_cast<Index>(k - first);
+        if (k > 0) t(i, i) += S(1) / S(chain.beads.mass[k - 1]);
+        if (k == n) continue;
         S const mobility = S(1) / S(chain.beads.mass[k]);
         t(i, i) += mobility;
-        if (k > 0) t(i, i) += S(1) / S(chain.beads.mass[k - 1]);
         if (i + 1 < count) t(i, i + 1) = t(i + 1, i) = -mobility * dot(links[k].direction, links[k + 1].direction);
+    }
+    return t;
+}
+
+template <class S>
+Dense<S> linked_matrix(ChainSpec const& chain) {
+    LinkedModel<S> const model = read_linked<S>(chain, {});
+    std::vector<S> diagonal, beside;
+    link_compliance(model, diagonal, beside);
+    auto const count = static_cast<Index>(diagonal.size() - model.first);
+    Dense<S> t = Dense<S>::Zero(count, count);
+    for (Index i = 0; i < count; ++i) {
+        std::size_t const k = static_cast<std::size_t>(i) + model.first;
+        t(i, i) = diagonal[k];
+        if (i + 1 < count) t(i, i + 1) = t(i + 1, i) = beside[k];
     }
     return t;
 }
@@ -61,7 +78,9 @@ Dense<S> link_matrix(ChainSpec const& chain) {
 }  // namespace
 
 double condition_estimate(ChainSpec const& chain, Loads const& loads) {
-    Dense<double> const m = chain.is_beads() ? link_matrix<double>(chain) : joint_space_inertia<double>(chain, loads);
+    Dense<double> const m = chain.is_beads()    ? bead_link_matrix<double>(chain)
+                            : chain.is_linked() ? linked_matrix<double>(chain)
+                                                : joint_space_inertia<double>(chain, loads);
     if (m.rows() == 0) return 1;
     Eigen::SelfAdjointEigenSolver<Dense<double>> const eigen((m + m.transpose()) / 2, Eigen::EigenvaluesOnly);
     double const largest = eigen.eigenvalues().maxCoeff(), smallest = eigen.eigenvalues().minCoeff();

@@ -1,3 +1,5 @@
+#include <optional>
+
 #include "dca/oracle/system.hpp"
 
 // Newton's and Euler's equations of every body beside the second time derivative of every joint's closure, all in ground
@@ -39,6 +41,7 @@ class Assembly {
             if (link.type != JointType::free) add_joint(k, b);
             bodies_.push_back(b);
         }
+        if (chain.tip == Tip::jointed) close_tip(chain);
     }
 
     System<S> system() const {
@@ -50,6 +53,10 @@ class Assembly {
             add_joint_end(b, b.to_inboard, b, S(1), s);
             if (k > 0) add_joint_end(bodies_[k - 1], to_outboard(k), b, S(-1), s);
             add_closure(b, s);
+        }
+        if (tip_) {
+            add_joint_end(bodies_.back(), tip_->arm, tip_joint_, S(-1), s);
+            add_closure(tip_joint_, s);
         }
         return s;
     }
@@ -70,6 +77,11 @@ class Assembly {
             result.constraint_force[k] = constraint(b, x);
             result.joint_force[k] = result.constraint_force[k] + b.given;
         }
+        if (tip_) {
+            std::vector<S> components;
+            for (std::size_t i = 0; i < tip_->locked.size(); ++i) components.push_back(x[tip_joint_.joint + static_cast<Index>(i)]);
+            result.tip_force = tip_wrench(*tip_, components, tip_->frame);
+        }
         return result;
     }
 
@@ -83,6 +95,14 @@ class Assembly {
         b.given = {b.orientation * given.torque, b.orientation * given.force};
         for (Motion<S> const& d : restricted(link)) b.locked.push_back(rotated(b.orientation, d));
         size_ += static_cast<Index>(b.locked.size());
+    }
+
+    void close_tip(ChainSpec const& chain) {
+        tip_ = read_tip(chain, links_, attitude_);
+        tip_joint_.locked = tip_->locked;
+        tip_joint_.closure = tip_->closure;
+        tip_joint_.joint = size_;
+        size_ += static_cast<Index>(tip_->locked.size());
     }
 
     /// From the centre of mass of joint k's inboard body to the joint.
@@ -150,6 +170,8 @@ class Assembly {
     std::vector<Link<S>> links_;
     std::vector<Attitude<S>> attitude_;
     std::vector<Body<S>> bodies_;
+    std::optional<TipClosure<S>> tip_;
+    Body<S> tip_joint_;  // of it only the joint counts
     V3<S> gravity_;
     Index size_ = 0;
 };
@@ -160,6 +182,7 @@ template <class S>
 OracleResult<S> dense(ChainSpec const& chain, Loads const& loads) {
     if (chain.size() == 0) return {};
     if (chain.is_beads()) return dense_beads<S>(chain, loads);
+    if (chain.is_linked()) return dense_linked<S>(chain, loads);
     Assembly<S> const assembly(chain, loads);
     return assembly.read(solve(assembly.system()));
 }

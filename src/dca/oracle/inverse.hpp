@@ -38,6 +38,9 @@ class Inverse {
         return bodies;
     }
 
+    /// A wrench at the last body's centre of mass beside its own loads, W: a jointed tip's.
+    void push_last(SpatialForce<S> const& wrench) { pushed_ = wrench; }
+
     /// Components in body k's axes of a vector given in W.
     V3<S> in_body(std::size_t k, V3<S> const& v) const { return transposed_times(attitude_[k].orientation, v); }
     /// What the accelerations need along the coordinates of joint k.
@@ -81,7 +84,11 @@ class Inverse {
         b.torque.add(cross(b.to_com, inertial));
         b.torque.add(-cross(b.to_com, weight + link.applied_force));
         b.torque.add(-link.applied_torque);
-        if (k + 1 == bodies.size()) return;
+        if (k + 1 == bodies.size()) {
+            b.force.add(-pushed_.force);
+            b.torque.add(-pushed_.torque - cross(b.to_com, pushed_.force));
+            return;
+        }
         InverseBody<S> const& next = bodies[k + 1];
         b.force.add(next.force.sum);
         b.torque.add(next.torque.sum);
@@ -91,6 +98,7 @@ class Inverse {
     std::vector<Link<S>> const& links_;
     std::vector<Attitude<S>> attitude_;
     V3<S> gravity_;
+    SpatialForce<S> pushed_;
 };
 
 }  // namespace catena::oracle

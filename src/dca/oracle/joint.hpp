@@ -94,15 +94,44 @@ struct Attitude {
 template <class S>
 std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links);
 
+/// The joint from the last body to ground; on it acts the frame G at rest, in the place of an outboard body.
+template <class S>
+struct TipClosure {
+    V3<S> arm, frame;               // from the last body's centre of mass to the origins of G and of the joint frame, W
+    std::vector<Motion<S>> locked;  // directions in which G may not move against the last body, W
+    Motion<S> closure;              // acceleration of G against the last body's point there less that along the coordinates, W
+};
+/// Rates of the joint: what the last body's velocity leaves along the joint's directions (least squares).
+template <class S>
+TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links, std::vector<Attitude<S>> const& attitude);
+/// How far the last body's acceleration is from a closed tip, one entry a locked direction: zero when it is.
+template <class S>
+std::vector<S> tip_defect(TipClosure<S> const& tip, V3<S> const& com_acceleration, V3<S> const& alpha, V3<S> const& omega);
+/// Of a wrench along the locked directions on G: what the last body feels about its centre of mass, and about the joint frame.
+template <class S>
+SpatialForce<S> tip_wrench(TipClosure<S> const& tip, std::vector<S> const& along_locked, V3<S> const& about);
+
+/// Articulated bodies of an open chain.
+template <class S>
+OracleResult<S> aba_links(std::vector<Link<S>> const& links, V3<S> const& gravity);
+template <class S>
+OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads);
+
 /// A link between beads, or from the anchor to bead 1.
 template <class S>
 struct BeadLink {
     V3<S> direction = V3<S>::zero();  // unit, towards the outboard bead, W
     S closure = S(0);                 // u . (a_outboard - a_inboard) that keeps the length: - |v_rel across u|^2 / l
 };
-/// Entry k is the inboard link of bead k + 1. Entry 0 of a free base is zero.
+/// Entry k is the inboard link of bead k + 1; behind the last stands that of a jointed tip, from the last bead to the ground.
+/// Entry 0 of a free base is zero.
 template <class S>
 std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain);
+/// Ground point of a tip link. Throws ComputationError when the tip is another joint.
+Vec3 tip_anchor(ChainSpec const& chain);
+/// From the velocity of the outboard end less that of the inboard one.
+template <class S>
+BeadLink<S> bead_link(V3<S> const& along, V3<S> const& relative_velocity);
 /// Applied force and weight of bead k + 1, W.
 template <class S>
 V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k);

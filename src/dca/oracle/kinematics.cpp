@@ -1,4 +1,4 @@
-#include "dca/oracle/joint.hpp"
+#include "dca/oracle/linked.hpp"
 
 namespace catena::oracle {
 namespace {
@@ -40,10 +40,29 @@ Kinematics<S> of_bodies(ChainSpec const& chain, Loads const& loads) {
     return result;
 }
 
+template <class S>
+Kinematics<S> of_linked(ChainSpec const& chain, Loads const& loads) {
+    Kinematics<S> result;
+    LinkedModel<S> const model = read_linked<S>(chain, loads);
+    for (std::size_t k = 0; k < model.bodies.size(); ++k) {
+        LinkedBody<S> const& body = model.bodies[k];
+        V3<S> const x = lift<S>(chain.linked.position[k]), v = lift<S>(chain.linked.velocity[k]);
+        result.orientation.push_back(body.orientation);
+        result.origin.push_back(x);
+        result.com_position.push_back(x);
+        result.com_velocity.push_back(v);
+        result.omega.push_back(body.omega);
+        result.kinetic_energy += (body.mass * dot(v, v) + dot(body.omega, body.inertia * body.omega)) / S(2);
+        result.potential_energy -= body.mass * dot(lift<S>(loads.gravity), x);
+    }
+    return result;
+}
+
 }  // namespace
 
 template <class S>
 Kinematics<S> kinematics(ChainSpec const& chain, Loads const& loads) {
+    if (chain.is_linked()) return of_linked<S>(chain, loads);
     return chain.is_beads() ? of_beads<S>(chain, loads) : of_bodies<S>(chain, loads);
 }
 

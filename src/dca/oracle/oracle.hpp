@@ -13,10 +13,11 @@ namespace catena::oracle {
 
 /// What acts on a chain beside the wrenches, torques, springs and dampers that its ChainSpec holds.
 struct Loads {
-    Vec3 gravity = Vec3::zero();               // W
-    std::vector<Vec3> bead_forces;             // W, one a bead (bodies: one a carried bead, in their order); empty: zero
-    double linear_drag = 0, angular_drag = 0;  // force -linear v, torque -angular omega on every body without a drag of its own
-    double time = 0;                           // at which driven joints are taken
+    Vec3 gravity = Vec3::zero();                       // W
+    std::vector<Vec3> bead_forces;                     // W, one a bead (bodies: one a carried bead, in their order); empty: zero
+    double linear_drag = 0, angular_drag = 0;          // force -linear v, torque -angular omega on every body without a drag of its own
+    std::vector<std::pair<Vec3, Vec3>> wrenches = {};  // bodies of a linked chain: external {torque, force} at com, W; empty: zero
+    double time = 0;                                   // at which driven joints are taken
 };
 
 template <class Scalar>
@@ -41,14 +42,22 @@ struct OracleResult {
     /// The constraint's part D lambda alone. With P the joint's directions it obeys P^T f = 0, and the rest of joint_force,
     /// P (P^T P)^-1 tau, lies in the span of P (formulas' D^T T = 0). Driven: all of joint_force.
     std::vector<SpatialForce<Scalar>> constraint_force;
-    /// Beads: tension of the inboard link, positive when it pulls its two ends together. Free base: entry 0 is zero.
+    /// Beads and linked bodies: tension of the inboard link, positive when it pulls its two ends together. Free base: entry 0
+    /// is zero.
     std::vector<Scalar> tension;
+    /// Jointed tip: wrench of the tip joint on the last body, W, torque about the origin of the tip's joint frame (the one fixed
+    /// in the last body). A tip link: its force on the last bead, or on the last body's `outboard` point.
+    SpatialForce<Scalar> tip_force;
 };
 
 /// Articulated-body algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, section 7.3) in body axes, about the
 /// joints, O(n). Accelerations are those of points (not Featherstone's spatial ones): linear velocities then do not enter,
 /// and nothing large has to cancel far from the base. Beads: articulated 3 x 3 masses.
-/// Precondition: validated chain. Throws ComputationError (body index) when an articulated inertia is not positive definite.
+/// Jointed tips: the open chain's answer and its answers to unit wrenches at the tip, then the small system of the tip joint.
+/// Linked bodies: the scalar tridiagonal system of the link forces by elimination.
+/// Where a tip holds a chain more than once (a planar chain on joints that hold it in its plane anyway), accelerations are
+/// unique and joint forces are one choice of many. Precondition: validated chain, velocities that fit the tip. Throws ComputationError
+/// (body index) when an articulated inertia is not positive definite.
 template <class Scalar>
 OracleResult<Scalar> aba(ChainSpec const& chain, Loads const& loads);
 
@@ -77,16 +86,22 @@ Kinematics<Scalar> kinematics(ChainSpec const& chain, Loads const& loads);
 /// Recursive Newton-Euler inverse dynamics (Featherstone 2008, section 5.3) of given accelerations: per joint the torque
 /// they need less the torque that acts, over the largest term of that joint's own balance (moments; prismatic: forces); the
 /// largest ratio of the chain. Driven joints take whatever they need. A free base adds the force balance of the whole. Beads:
-/// `accelerations` are the beads', and the ratio is the part of a link's force across the link. Information, no measure of a solver at
-/// large n: it grows with the condition number. Shapes: accelerations[k] as OracleResult::qdd (beads: com_acceleration).
+/// `accelerations` are the beads', and the ratio is the part of a link's force across the link. Jointed tips: under the tip
+/// force that fits best (least squares). Linked bodies are not covered: ComputationError. Information, no measure of a solver
+/// at large n: it grows with the condition number. Shapes: accelerations[k] as OracleResult::qdd (beads: com_acceleration).
 template <class Scalar>
 Scalar rnea_residual(ChainSpec const& chain, Loads const& loads, std::vector<Vector<Scalar, 3>> const& accelerations,
                      Vector<Scalar, 3> const& base_acceleration = Vector<Scalar, 3>::zero());
 
 /// 2-norm condition number of the joint-space inertia, column by column from inverse dynamics and then dense eigenvalues
-/// (rigid bodies, without driven joints; a free base counts with 6), or of the links' matrix G M^-1 G^T (beads). O(n^3): moderate n. In
-/// double precision: trustworthy up to some 1e13, never above 1 / eps.
+/// (rigid bodies, without driven joints; a free base counts with 6; a jointed tip is left out), or of the links' matrix
+/// G M^-1 G^T (beads and linked bodies, a tip link included). O(n^3): moderate n. In double precision: trustworthy up to some
+/// 1e13, never above 1 / eps.
 double condition_estimate(ChainSpec const& chain, Loads const& loads = {});
+
+/// Makes the velocities (qd, free_velocity; beads and linked bodies: velocity, omega) fit a jointed tip and every link: the least
+/// change (sum of squares of the numbers), to rounding. Driven joints keep the rates they have at `time`.
+void project_velocities(ChainSpec& chain, double time = 0);
 
 #define CATENA_ORACLE(Scalar)                                                                                           \
     extern template OracleResult<Scalar> aba<Scalar>(ChainSpec const&, Loads const&);                                   \
