@@ -13,7 +13,9 @@
 #include "scene/fields.hpp"
 #include "scene/freedom.hpp"
 #include "scene/generator_entry.hpp"
+#include "scene/files.hpp"
 #include "scene/linked.hpp"
+#include "scene/hdf5_bodies.hpp"
 #include "scene/sequences.hpp"
 #include "scene/tip.hpp"
 
@@ -81,8 +83,6 @@ class ChainReader {
         tip_ = read_tip(request_.fields);
         if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
         if (source_.key == "generator") generator_.emplace(request_, source_);
-        if (source_.key == "bodies" && source_.kind == Node::Kind::map)
-            Fields(source_, {"hdf5"}), fail_later(source_, "bodies from an HDF5 file");
     }
 
     void append_to(std::vector<Draft>& drafts) {
@@ -116,6 +116,10 @@ class ChainReader {
                 chain.linked = with_domains(chain.beads, request_.rigid, *request_.fields.find("rigid"));
                 chain.beads = {};
             }
+        } else if (source_.kind == Node::Kind::map) {
+            request_.allow("rigid bodies", {});
+            Node const& file = Fields(source_, {"hdf5"}).need("hdf5", "hdf5: chain.h5");
+            chain.bodies = read_hdf5_bodies(resolved(text(file), request_.scene.file), request_.base);
         } else if (BodyList const kind = kind_of_list(source_); kind == BodyList::beads) {
             velocities = explicit_beads(request_, source_, chain.beads);
         } else if (kind == BodyList::linked) {

@@ -14,9 +14,6 @@ namespace {
 
 using Four = std::array<double, 4>;
 
-/// Axes nearer to parallel than numbers printed with seven digits can tell apart.
-double constexpr least_angle = 1e-6;
-
 struct TypeName {
     JointType type;
     bool planar = false;
@@ -118,8 +115,7 @@ void read_geometry(Fields const& joint, Entry& entry) {
             fail(axes, describe(axes) + " is not two axes", "give the first in the joint frame, the second in the body's frame");
         entry.first_axis = direction(axes.items[0]);
         entry.axis = direction(axes.items[1]);
-        if (norm(cross(entry.first_axis, entry.axis)) <= least_angle)
-            fail(axes, "the two axes are parallel", "give two directions, best at right angles, or use a revolute joint");
+        if (auto const fault = check_two_axes(entry.first_axis, entry.axis)) fail(axes, fault->what, fault->remedy);
     }
     if (numbers_of(entry.type) == 1) entry.axis = direction(joint.need("axis", "axis: [0, 0, 1]"));
     if (entry.type == JointType::helical) {

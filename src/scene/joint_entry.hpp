@@ -34,7 +34,7 @@ struct TipEntry {
 };
 TipEntry read_tip_joint(Node const& joint);
 
-/// "revolute or prismatic", ... : whether one number (1), two or three are the joint's coordinates; 0: none of its own.
+/// How many numbers a torque, stiffness or damping of the joint has: 1, 2 or 3; 0 for links, welds and free joints.
 int numbers_of(JointType type);
 
 }  // namespace catena::scene

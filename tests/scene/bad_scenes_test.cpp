@@ -234,8 +234,6 @@ INSTANTIATE_TEST_SUITE_P(Together, Refused, testing::ValuesIn(together_cases), n
 
 Refusal const later_cases[] = {
     {"ring", "chains: [{sequence: GGG, model: calvados2, tip: ring}]", "not in this version: `tip: ring` (s.yaml: chains[0].tip, line 1)"},
-    {"hdf5", "chains: [{base: fixed, bodies: {hdf5: chain.h5}}]",
-     "not in this version: bodies from an HDF5 file (s.yaml: chains[0].bodies, line 1)"},
     {"springs", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {springs: []})y",
      "not in this version: key `springs` (s.yaml: forces.springs, line 2)"},

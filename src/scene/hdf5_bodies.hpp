@@ -1,0 +1,15 @@
+// Large chains of rigid bodies: `bodies: {hdf5: chain.h5}`.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace catena::scene {
+
+/// Reads `path`, whose datasets inputs/README.md lists, row by row into the arrays, with every check that the YAML reader makes.
+/// Throws InputError that names file, dataset and body; "built without HDF5".
+BodyArrays read_hdf5_bodies(std::string const& path, Base base);
+
+}  // namespace catena::scene
