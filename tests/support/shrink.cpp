@@ -113,10 +113,11 @@ class Shrinking {
 
   private:
     bool keep(ChainSpec const& candidate) {
-        bool fails = true;
+        bool fails = false;
         try {
             fails = !holds_(candidate);
         } catch (std::exception const&) {
+            fails = true;
         }
         if (fails) chain_ = candidate;
         return fails;

@@ -273,6 +273,7 @@ std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links) {
     return all;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                         \
     template void place<S>(JointShape<S> const&, std::string const&, Link<S>&);  \
     template Motion<S> along<S>(Link<S> const&, V3<S> const&);                   \
@@ -286,5 +287,6 @@ CATENA_ORACLE(double)
 CATENA_ORACLE(long double)
 CATENA_ORACLE(Quad)
 #undef CATENA_ORACLE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace catena::oracle
