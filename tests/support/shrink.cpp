@@ -53,7 +53,7 @@ void cut_bodies(ChainSpec& chain, Cut const& cut) {
 }
 
 /// Bodies [first, last) of the chain, closed as the chain was.
-ChainSpec part(ChainSpec chain, std::size_t first, std::size_t last) {
+ChainSpec part(ChainSpec chain, std::size_t first, std::size_t last, double time) {
     Cut const cut{first, last, chain.size()};
     if (chain.is_beads()) {
         BeadArrays& b = chain.beads;
@@ -68,7 +68,7 @@ ChainSpec part(ChainSpec chain, std::size_t first, std::size_t last) {
     } else {
         cut_bodies(chain, cut);
     }
-    oracle::project_velocities(chain);
+    oracle::project_velocities(chain, time);
     return chain;
 }
 
@@ -93,13 +93,14 @@ std::vector<void (*)(ChainSpec&)> simplifications() {
 
 class Shrinking {
   public:
-    Shrinking(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds) : chain_(chain), holds_(holds) {}
+    Shrinking(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds, double time)
+        : chain_(chain), holds_(holds), time_(time) {}
 
     ChainSpec run() {
         for (std::size_t drop = chain_.size(); drop > 0; drop /= 2) {
-            while (drop < chain_.size() && keep(part(chain_, 0, chain_.size() - drop))) {
+            while (drop < chain_.size() && keep(part(chain_, 0, chain_.size() - drop, time_))) {
             }
-            while (drop < chain_.size() && keep(part(chain_, drop, chain_.size()))) {
+            while (drop < chain_.size() && keep(part(chain_, drop, chain_.size(), time_))) {
             }
         }
         for (auto const& simplify : simplifications()) {
@@ -112,16 +113,18 @@ class Shrinking {
 
   private:
     bool keep(ChainSpec const& candidate) {
-        bool fails = true;
+        bool fails = false;
         try {
             fails = !holds_(candidate);
         } catch (std::exception const&) {
+            fails = true;
         }
         if (fails) chain_ = candidate;
         return fails;
     }
     ChainSpec chain_;
     std::function<bool(ChainSpec const&)> const& holds_;
+    double time_;
 };
 
 std::string text(Vec3 const& v) { return fmt::format("({:.17g}, {:.17g}, {:.17g})", v[0], v[1], v[2]); }
@@ -176,8 +179,8 @@ std::string describe(ChainSpec const& chain) {
     return lines;
 }
 
-Shrunk shrink(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds) {
-    ChainSpec const smallest = Shrinking(chain, holds).run();
+Shrunk shrink(ChainSpec const& chain, std::function<bool(ChainSpec const&)> const& holds, double time) {
+    ChainSpec const smallest = Shrinking(chain, holds, time).run();
     return {smallest, describe(smallest)};
 }
 

@@ -37,6 +37,7 @@ V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
     return loads.bead_forces.empty() ? weight - drag : weight + lift<S>(loads.bead_forces[k]) - drag;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                    \
     template BeadLink<S> bead_link<S>(V3<S> const&, V3<S> const&);          \
     template std::vector<BeadLink<S>> read_bead_links<S>(ChainSpec const&); \
@@ -45,5 +46,6 @@ CATENA_ORACLE(double)
 CATENA_ORACLE(long double)
 CATENA_ORACLE(Quad)
 #undef CATENA_ORACLE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace catena::oracle

@@ -139,6 +139,17 @@ void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& l
     }
 }
 
+/// (P^T P)^-1 x.
+template <class S>
+V3<S> over_gram(Link<S> const& link, V3<S> x) {
+    Motion<S> const &p = link.free[0], &p2 = link.free[1];
+    if (link.dof == 1) x[0] = x[0] / (dot(p.angular, p.angular) + dot(p.linear, p.linear));
+    if (link.dof != 2) return x;
+    V3<S> const normal = cross(p.angular, p2.angular);  // both are rotations: Cramer's rule with |a1 x a2|^2
+    S const a = dot(p.angular, p.angular), b = dot(p.angular, p2.angular), c = dot(p2.angular, p2.angular), det = dot(normal, normal);
+    return {{(c * x[0] - b * x[1]) / det, (a * x[1] - b * x[0]) / det, S(0)}};
+}
+
 }  // namespace
 
 template <class S>
@@ -189,19 +200,6 @@ Motion<S> along(Link<S> const& link, V3<S> const& coordinates) {
     }
     return m;
 }
-
-namespace {
-/// (P^T P)^-1 x.
-template <class S>
-V3<S> over_gram(Link<S> const& link, V3<S> x) {
-    Motion<S> const &p = link.free[0], &p2 = link.free[1];
-    if (link.dof == 1) x[0] = x[0] / (dot(p.angular, p.angular) + dot(p.linear, p.linear));
-    if (link.dof != 2) return x;
-    V3<S> const normal = cross(p.angular, p2.angular);  // both are rotations: Cramer's rule with |a1 x a2|^2
-    S const a = dot(p.angular, p.angular), b = dot(p.angular, p2.angular), c = dot(p2.angular, p2.angular), det = dot(normal, normal);
-    return {{(c * x[0] - b * x[1]) / det, (a * x[1] - b * x[0]) / det, S(0)}};
-}
-}  // namespace
 
 template <class S>
 V3<S> efforts(Link<S> const& link, SpatialForce<S> const& wrench) {
@@ -275,6 +273,7 @@ std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links) {
     return all;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                         \
     template void place<S>(JointShape<S> const&, std::string const&, Link<S>&);  \
     template Motion<S> along<S>(Link<S> const&, V3<S> const&);                   \
@@ -288,5 +287,6 @@ CATENA_ORACLE(double)
 CATENA_ORACLE(long double)
 CATENA_ORACLE(Quad)
 #undef CATENA_ORACLE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace catena::oracle

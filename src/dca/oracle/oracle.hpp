@@ -14,7 +14,7 @@ namespace catena::oracle {
 /// What acts on a chain beside the wrenches, torques, springs and dampers that its ChainSpec holds.
 struct Loads {
     Vec3 gravity = Vec3::zero();                       // W
-    std::vector<Vec3> bead_forces;                     // W, one a bead (bodies: one a carried bead, in their order); empty: zero
+    std::vector<Vec3> bead_forces;                     // W, one a bead (bodies, linked: one a carried bead, in order); empty: zero
     double linear_drag = 0, angular_drag = 0;          // force -linear v, torque -angular omega on every body without a drag of its own
     std::vector<std::pair<Vec3, Vec3>> wrenches = {};  // bodies of a linked chain: external {torque, force} at com, W; empty: zero
     double time = 0;                                   // at which driven joints are taken
@@ -56,13 +56,13 @@ struct OracleResult {
 /// Jointed tips: the open chain's answer and its answers to unit wrenches at the tip, then the small system of the tip joint.
 /// Linked bodies: the scalar tridiagonal system of the link forces by elimination.
 /// Where a tip holds a chain more than once (a planar chain on joints that hold it in its plane anyway), accelerations are
-/// unique and joint forces are one choice of many. Precondition: validated chain, velocities that fit the tip. Throws ComputationError
-/// (body index) when an articulated inertia is not positive definite.
+/// unique and joint forces are one choice of many. Preconditions: validated chain, velocities that fit the tip.
+/// Throws ComputationError (body index) when an articulated inertia is not positive definite.
 template <class Scalar>
 OracleResult<Scalar> aba(ChainSpec const& chain, Loads const& loads);
 
 /// The same from one dense linear system: Newton and Euler of every body and the closure of every joint (second time
-/// derivative) for all accelerations and all joint forces at once, in ground axes, by LU with partial pivoting and one step
+/// derivative; the tip's too) for all accelerations and all joint forces at once, in ground axes, by LU with partial pivoting and one step
 /// of iterative refinement. Cost (12 n)^3: n of some hundreds at most.
 template <class Scalar>
 OracleResult<Scalar> dense(ChainSpec const& chain, Loads const& loads);

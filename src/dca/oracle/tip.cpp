@@ -146,6 +146,7 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
     return result;
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                                                                \
     template TipClosure<S> read_tip<S>(ChainSpec const&, std::vector<Link<S>> const&, std::vector<Attitude<S>> const&); \
     template std::vector<S> tip_defect<S>(TipClosure<S> const&, V3<S> const&, V3<S> const&, V3<S> const&);              \
@@ -155,5 +156,6 @@ CATENA_ORACLE(double)
 CATENA_ORACLE(long double)
 CATENA_ORACLE(Quad)
 #undef CATENA_ORACLE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace catena::oracle
