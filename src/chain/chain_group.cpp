@@ -4,8 +4,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
+
+#include "scene/freedom.hpp"
 
 namespace catena {
 namespace {
@@ -87,32 +88,8 @@ int restricted_at(ChainSpec const& spec, std::int64_t body) {
     return is_driven_joint(spec, body) ? 6 : restricted_directions(joint_type(spec, body));
 }
 
-/// Whether every axis is that of joint 1 and nothing else moves: all joints revolute on a fixed base, a tip free or of that kind.
-/// Axes count as parallel within a few roundings of rotation matrices.
-bool is_planar(ChainSpec const& spec) {
-    BodyArrays const& b = spec.bodies;
-    if (b.size() == 0 || spec.base != Base::fixed || !b.driven.empty()) return false;
-    auto const parallel = [](Vec3 const& in_body, Mat3 const& rotation, Vec3 const& axis) {
-        return norm(cross(in_body, rotation * axis)) <= 32 * std::numeric_limits<double>::epsilon();
-    };
-    for (std::size_t k = 0; k < b.size(); ++k) {
-        if (b.joint[k] != JointType::revolute) return false;
-        if (k > 0 && !parallel(b.axis[k - 1], b.rotation[k], b.axis[k])) return false;
-    }
-    return spec.tip == Tip::free ||
-           (spec.tip_joint.type == JointType::revolute && parallel(b.axis.back(), spec.tip_joint.rotation, spec.tip_joint.axis));
-}
-
 /// Directions that hold every joint of the chain.
-int smallest_directions(ChainSpec const& spec) {
-    if (spec.bodies.size() == 0) return 1;
-    if (is_planar(spec)) return 2;
-    int most = 3;
-    auto const n = static_cast<std::int64_t>(spec.size());
-    for (std::int64_t k = 0; k <= n; ++k)
-        most = std::max(most, k < n ? restricted_directions(spec.bodies.joint[k]) : restricted_at(spec, k));
-    return spec.bodies.driven.empty() ? most : 6;
-}
+int smallest_directions(ChainSpec const& spec) { return scene::directions_of(scene::handle_kind(spec)); }
 
 void fill_bead(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
     group.mass.set(k, {{spec.beads.mass[body]}});
@@ -172,6 +149,7 @@ void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     TipJoint const& tip = spec.tip_joint;
     LocalTip local{k, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
                    std::min(group.directions, restricted_directions(tip.type))};
+    if (group.planar) local.axes = joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()), Vec3::zero());
     group.jointed_tip[k] = 1;
     if (!group.beads && !group.linked) {
         group.r2.set(k, tip.translation - spec.bodies.com.back());
@@ -313,8 +291,7 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles) {
 }  // namespace
 
 char const* ChainGroup::kind() const {
-    static char const* const kinds[] = {"", "link", "planar", "spherical", "universal", "revolute", "full"};
-    return kinds[smallest_directions];
+    return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1));
 }
 
 bool ChainGroup::is_driven(std::int64_t k) const {

@@ -1,7 +1,6 @@
 #include "chain/joint_kinematics.hpp"
 
-#include <cmath>
-#include <numbers>
+#include "scene/pose.hpp"
 
 namespace catena {
 namespace {
@@ -72,25 +71,13 @@ JointRate joint_rate(ChainGroup const& group, JointState const& state, std::int6
     }
 }
 
-double value_of(Course const& c, double t) {
-    return c.offset + c.rate * t + c.amplitude * std::sin(2 * std::numbers::pi * c.frequency * t + c.phase);
-}
-double rate_of(Course const& c, double t) {
-    double const w = 2 * std::numbers::pi * c.frequency;
-    return c.rate + c.amplitude * w * std::cos(w * t + c.phase);
-}
-double acceleration_of(Course const& c, double t) {
-    double const w = 2 * std::numbers::pi * c.frequency;
-    return -c.amplitude * w * w * std::sin(w * t + c.phase);
-}
-
 void follow_courses(ChainGroup const& group, JointState& state) {
     for (LocalDrive const& drive : group.drives) {
         bool const two = group.joint[drive.body] == JointType::universal;
         Course const& a = drive.course[0];
         Course const& b = drive.course[1];
-        state.q.set(drive.body, {{value_of(a, state.time), two ? value_of(b, state.time) : 0.0, 0, 0}});
-        state.qd.set(drive.body, {{rate_of(a, state.time), two ? rate_of(b, state.time) : 0.0, 0}});
+        state.q.set(drive.body, {{scene::value_at(a, state.time), two ? scene::value_at(b, state.time) : 0.0, 0, 0}});
+        state.qd.set(drive.body, {{scene::rate_at(a, state.time), two ? scene::rate_at(b, state.time) : 0.0, 0}});
     }
 }
 

@@ -20,9 +20,6 @@ struct JointState {
 JointState make_joint_state(ChainGroup const&, Scene const&);
 /// Sets q and qd of driven joints to their courses' at the state's time.
 void follow_courses(ChainGroup const&, JointState&);
-double value_of(Course const&, double time);
-double rate_of(Course const&, double time);
-double acceleration_of(Course const&, double time);
 
 /// The motion of a frame B against a frame A.
 struct Motion {

@@ -27,7 +27,7 @@ Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     double worst = 0;
     std::size_t body = 0, bead = 0;
     for (ChainSpec const& chain : scene.chains) {
-        oracle::Loads loads{scene.forces.gravity, {}};
+        oracle::Loads loads{scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
         std::vector<Vec3> accelerations;
         Vec3 base = Vec3::zero();
         for (std::size_t k = 0; k < chain.size(); ++k, ++body) {
@@ -61,6 +61,12 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
             double const* const a = s.acceleration.data() + s.acceleration_offset[body];
             double const* const f = s.joint_force.data() + s.force_offset[body];
             switch (s.acceleration_offset[body + 1] - s.acceleration_offset[body]) {
+                case 0:
+                    accelerations.push_back(Json::array());
+                    break;
+                case 2:
+                    accelerations.push_back({a[0], a[1]});
+                    break;
                 case 1:
                     accelerations.push_back(a[0]);
                     break;
@@ -70,7 +76,7 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
                 default:
                     accelerations.push_back({{"alpha", {a[0], a[1], a[2]}}, {"acceleration", {a[3], a[4], a[5]}}});
             }
-            if (chain.is_beads())
+            if (chain.is_beads() || chain.is_linked())
                 forces.push_back(f[0]);
             else
                 forces.push_back({f[0], f[1], f[2], f[3], f[4], f[5]});

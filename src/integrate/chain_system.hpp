@@ -46,6 +46,7 @@ class ChainSystem {
     /// holds qdd (revolute: first entry) and `base_acceleration` a free base's. Collective.
     struct Accelerations {
         std::vector<Vec3> joint_acceleration, acceleration, bead_force;
+        std::vector<Vec3> alpha;              // angular, W; zero for beads
         std::vector<Vec3> base_acceleration;  // one a body; counts for the first body of a free base
         std::vector<Vector<double, 6>> joint_force;
     };

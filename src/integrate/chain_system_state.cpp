@@ -97,10 +97,11 @@ std::vector<Vector<double, 6>> ChainSystem::joint_forces() {
 
 ChainSystem::Accelerations ChainSystem::accelerations() {
     std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
-    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), bead_force;
+    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), alpha(3 * n), bead_force;
     if (openmm_) bead_force.resize(3 * n);
     auto const add = [&](ChainGroup const& group, BodyResults const& r) {
         gather_to_scene(communicator_, group, 3, flat(r.acceleration), body);
+        if (!group.beads) gather_to_scene(communicator_, group, 3, flat(r.alpha), alpha);
     };
     for (auto const& group : absolute_) {
         add(group->group(), group->results());
@@ -114,7 +115,7 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
         gather_to_scene(communicator_, group, 3, to_array<3>("", std::as_const(joint_rates_[i]).qdd.view()).values, joint);
         gather_to_scene(communicator_, group, 3, flat(at_starts(group, joint_rates_[i].base_acceleration)), base);
     }
-    return {triples(joint), triples(body), triples(bead_force), triples(base), joint_forces()};
+    return {triples(joint), triples(body), triples(bead_force), triples(alpha), triples(base), joint_forces()};
 }
 
 std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "integrate/across_plane.hpp"
+#include "scene/pose.hpp"
 
 namespace catena {
 namespace {
@@ -162,7 +163,7 @@ Vec3 JointDynamics::joint_velocity_term(JointState const& state, std::int64_t k,
     if (group_.drives.empty() || !group_.is_driven(k)) return angular;
     auto const drive =
         std::lower_bound(group_.drives.begin(), group_.drives.end(), k, [](LocalDrive const& d, std::int64_t b) { return d.body < b; });
-    double const first = acceleration_of(drive->course[0], state.time), second = acceleration_of(drive->course[1], state.time);
+    double const first = scene::acceleration_at(drive->course[0], state.time), second = scene::acceleration_at(drive->course[1], state.time);
     if (universal) return angular + first * group_.first_axis.view().load(k) + second * axes.column(2);
     Vec3 const s = group_.has_screws ? group_.screw.view().load(k) : Vec3{{1, 0, 1}};
     linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));
@@ -268,8 +269,8 @@ void JointDynamics::rates(JointState const& state, JointRates& out) {
     });
     for (LocalDrive const& drive : group_.drives)
         out.qdd.set(drive.body,
-                    {{acceleration_of(drive.course[0], state.time),
-                      group_.joint[drive.body] == JointType::universal ? acceleration_of(drive.course[1], state.time) : 0.0, 0}});
+                    {{scene::acceleration_at(drive.course[0], state.time),
+                      group_.joint[drive.body] == JointType::universal ? scene::acceleration_at(drive.course[1], state.time) : 0.0, 0}});
     for (std::size_t p = 0; p < group_.pieces.size(); ++p) {
         std::int64_t const k = group_.pieces[p].local;
         if (!group_.pieces[p].starts || group_.joint[k] != JointType::free) continue;

@@ -11,8 +11,8 @@ namespace catena {
 
 /// On rank 0; empty on the others. Body b's numbers are entries [offset[b], offset[b + 1]).
 struct Solution {
-    /// Revolute: q''; spherical: derivative of the components of qd (B); free: {alpha (B), acceleration of the origin (W)}; link: the
-    /// bead's acceleration (W).
+    /// Second derivatives of the joint's coordinates (universal 2, weld none); spherical: derivative of the components of qd (B); free:
+    /// {alpha (B), acceleration of the origin (W)}; link: the bead's acceleration (W), a rigid body's {alpha (B), of its centre of mass (W)}.
     std::vector<double> acceleration;
     std::vector<std::int64_t> acceleration_offset;
     /// Constraint wrench [torque, force] on body b at its inboard joint (W); link: its tension, positive when it pulls its ends together (0
@@ -26,8 +26,10 @@ struct Solution {
 /// Of the last evaluate(). Collective.
 Solution solution_of(ChainSystem&);
 
-/// Smallest handle kind that holds the chain: link | spherical | revolute.
+/// Smallest handle kind that holds the chain.
 char const* kind_of(ChainSpec const&);
+/// Numbers in the acceleration of body k: as many as its inboard joint has coordinates; 3 of a bead; 6 of a free or linked rigid body.
+int accelerations_of(ChainSpec const&, std::size_t k);
 
 /// Writes /accelerations, /joint_forces (both flat) and /offsets ([bodies + 1][2]: where a body's numbers begin in the one and the other).
 /// Throws ComputationError naming file and cause. The first of the two tells beforehand, by InputError, what is no regular file, and "built

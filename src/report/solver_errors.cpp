@@ -11,6 +11,12 @@
 namespace catena {
 namespace {
 
+template <class Scalar>
+Matrix<Scalar, 3, 3> orientation_of(ChainSpec const& chain, std::size_t k) {
+    auto const& q = chain.linked.orientation[k];
+    return to_matrix(Quaternion<Scalar>{Scalar(q[0]), Scalar(q[1]), Scalar(q[2]), Scalar(q[3])});
+}
+
 /// Joint accelerations in the layout of Solution::acceleration.
 template <class Scalar>
 std::vector<double> oracle_accelerations(Scene const& scene, std::vector<Vec3> const& bead_force) {
@@ -20,15 +26,22 @@ std::vector<double> oracle_accelerations(Scene const& scene, std::vector<Vec3> c
         for (int i = 0; i < count; ++i) list.push_back(static_cast<double>(v[i]));
     };
     for (ChainSpec const& chain : scene.chains) {
-        oracle::Loads loads{scene.forces.gravity, {}};
+        oracle::Loads loads{scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
         if (chain.is_beads() && !bead_force.empty())
             loads.bead_forces.assign(bead_force.begin() + bead, bead_force.begin() + bead + chain.size());
         bead += chain.beads.size();
         oracle::OracleResult<Scalar> const r = oracle::aba<Scalar>(chain, loads);
         for (std::size_t k = 0; k < chain.size(); ++k) {
-            append(chain.is_beads() ? r.com_acceleration[k] : r.qdd[k],
-                   !chain.is_beads() && chain.bodies.joint[k] == JointType::revolute ? 1 : 3);
-            if (!chain.is_beads() && chain.bodies.joint[k] == JointType::free) append(r.base_acceleration, 3);
+            int const numbers = accelerations_of(chain, k);
+            if (chain.is_beads() || (chain.is_linked() && numbers == 3)) {
+                append(r.com_acceleration[k], 3);
+            } else if (chain.is_linked()) {
+                append(transposed_times(orientation_of<Scalar>(chain, k), r.alpha[k]), 3);
+                append(r.com_acceleration[k], 3);
+            } else {
+                append(r.qdd[k], std::min(3, numbers));
+                if (numbers == 6) append(r.base_acceleration, 3);
+            }
         }
     }
     return list;

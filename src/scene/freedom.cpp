@@ -1,44 +1,60 @@
 #include "scene/freedom.hpp"
 
 #include <algorithm>
-#include <optional>
+#include <limits>
 
 namespace catena::scene {
 
 namespace {
 
 double constexpr printed_digits = 1e-6;
+double constexpr rounding = 32 * std::numeric_limits<double>::epsilon();  // of a few products of rotations
 
 /// Follows one axis along the chain: in the axes of the body that was added last.
 class ParallelAxes {
   public:
+    explicit ParallelAxes(double tolerance) : tolerance_(tolerance) {}
     /// Whether the joint leaves all axes so far parallel. `rotation`: of J in the inboard body.
     bool add(JointType type, Vec3 const& axis, Mat3 const& rotation) {
-        if (type == JointType::free) return !axis_;
+        if (type == JointType::free) return !any_;
         if (type == JointType::weld) {
-            if (axis_) axis_ = transposed_times(rotation, *axis_);
+            axis_ = transposed_times(rotation, axis_);
             return true;
         }
         if (type != JointType::revolute) return false;
-        bool const parallel = !axis_ || norm(cross(rotation * axis, *axis_)) <= printed_digits;
+        bool const parallel = !any_ || norm(cross(rotation * axis, axis_)) <= tolerance_;
         axis_ = axis;
+        any_ = true;
         return parallel;
     }
-    bool any() const { return axis_.has_value(); }
+    bool any() const { return any_; }
 
   private:
-    std::optional<Vec3> axis_;
+    double tolerance_;
+    Vec3 axis_ = Vec3::zero();
+    bool any_ = false;
 };
 
-/// Turning about one axis in one plane: a chain of revolute joints from the ground on.
+bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& first_odd) {
+    BodyArrays const& bodies = chain.bodies;
+    ParallelAxes axes(tolerance);
+    for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
+        if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd])) return false;
+    bool const pinned = chain.tip == Tip::jointed && chain.tip_joint.type == JointType::spherical;  // turns about any axis
+    if (chain.tip == Tip::jointed && !pinned && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation)) return false;
+    return axes.any();
+}
+
+/// Turning about one axis in one plane: a chain of revolute joints from the ground on. To rounding, for what leaves the plane is then
+/// left out of the dynamics.
 bool is_planar(ChainSpec const& chain) {
     std::size_t odd = 0;
-    return chain.base == Base::fixed && axes_are_parallel(chain, odd);
+    return chain.base == Base::fixed && parallel_within(rounding, chain, odd);
 }
 
 std::int64_t restricted_by_tip(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return 0;
-    return (is_planar(chain) ? 3 : 6) - coordinates_of(chain.tip_joint.type);
+    return is_planar(chain) ? 2 : 6 - coordinates_of(chain.tip_joint.type);
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {
@@ -70,14 +86,7 @@ int coordinates_of(JointType type) {
     return 0;
 }
 
-bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) {
-    BodyArrays const& bodies = chain.bodies;
-    ParallelAxes axes;
-    for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
-        if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd])) return false;
-    if (chain.tip == Tip::jointed && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation)) return false;
-    return axes.any();
-}
+bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) { return parallel_within(printed_digits, chain, first_odd); }
 
 HandleKind handle_kind(ChainSpec const& chain) {
     if (chain.is_beads() || chain.is_linked()) return HandleKind::link;

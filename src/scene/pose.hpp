@@ -29,5 +29,9 @@ inline double rate_at(Course const& c, double t) {
     double const omega = 6.283185307179586476925 * c.frequency;
     return c.rate + c.amplitude * omega * std::cos(omega * t + c.phase);
 }
+inline double acceleration_at(Course const& c, double t) {
+    double const omega = 6.283185307179586476925 * c.frequency;
+    return -c.amplitude * omega * omega * std::sin(omega * t + c.phase);
+}
 
 }  // namespace catena::scene

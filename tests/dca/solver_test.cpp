@@ -67,6 +67,10 @@ RandomChainOptions options_of(std::uint64_t seed) {
     options.springs = seed / 18 % 2;
     options.drag = seed / 36 % 3 == 0;
     options.driven = seed / 72 % 4 == 3 ? 0.2 : 0;
+    JointType const tips[] = {JointType::spherical, JointType::revolute,  JointType::universal,
+                              JointType::weld,      JointType::prismatic, JointType::helical};
+    // A tip takes up to six coordinates of the chain's; in a plane it is a pin.
+    if (seed / 9 % 3 == 2 && options.bodies >= 12) options.tip = tips[seed / 27 % (options.joints == RandomJoints::planar ? 2 : 6)];
     return options;
 }
 
@@ -107,7 +111,17 @@ TEST_P(Solver, RandomChainsAgreeWithTheArticulatedBodyAlgorithm) {
         RandomChainOptions const options = options_of(seed);
         ChainSpec const chain = random_chain(seed, options);
         oracle::Loads const loads{{{0.3, -2.0, 9.0}}, {}};
-        Compared const c = compare(scene_of(chain, loads.gravity), chain, loads, *communicator_);
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        bool const held_twice = options.tip && options.joints == RandomJoints::planar;  // the plane holds both ends as well
+        if (held_twice && GetParam().handles == Handles::full) {
+            EXPECT_THROW(compare(scene_of(chain, loads.gravity), chain, loads, *communicator_), ComputationError);
+            continue;
+        }
+        Compared c = compare(scene_of(chain, loads.gravity), chain, loads, *communicator_);
+        if (held_twice) {  // moving it out of its plane locks it: no growth to measure; and joint forces are not unique
+            c.bound = 64 * static_cast<double>(options.bodies) * oracle::condition_estimate(chain) * eps;
+            c.force_error = 0;
+        }
         worst = std::max(worst, c.error / c.bound);
         ASSERT_LE(c.error, c.bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints);
         ASSERT_LE(c.force_error, 8 * c.bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints);

@@ -3,7 +3,7 @@
 
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/observables.hpp"
-#include "integrate/rk4.hpp"
+#include "integrate/joint_integrators.hpp"
 
 namespace catena::test {
 namespace {
@@ -139,28 +139,42 @@ TEST(Langevin, HeatsAColdChainToItsTemperature) {
     }
 }
 
-TEST(RungeKutta, IsOfFourthOrder) {
+/// log2 of the ratio of errors at two step sizes against a reference with many steps.
+double order_of(Scene const& scene, bool fourth) {
     auto const communicator = serial_communicator();
-    for (char const* joint : {"revolute", "spherical"})
+    double constexpr time = 0.2;
+    auto const end_of = [&](int steps, bool reference) {
+        ChainSystem system(scene, Axes::joint, *communicator);
+        JointDynamics& dynamics = *system.joint().front();
+        auto const integrator = reference || fourth ? make_runge_kutta4(dynamics) : make_velocity_verlet(dynamics);
+        dynamics.close_tips(system.joint_state(0));
+        for (int i = 0; i < steps; ++i) {
+            system.joint_state(0).time = i * time / steps;
+            integrator->step(system.joint_state(0), time / steps);
+        }
+        EXPECT_LE(dynamics.closure_error(system.joint_state(0)), 1e-12);
+        return system.snapshot().position;
+    };
+    auto const exact = end_of(1280, true);
+    auto const error_of = [&](int steps) {
+        auto const x = end_of(steps, false);
+        double worst = 0;
+        for (std::size_t i = 0; i < x.size(); ++i) worst = std::max(worst, norm(x[i] - exact[i]));
+        return worst;
+    };
+    int const coarse = fourth ? 20 : 40;
+    return std::log2(error_of(coarse) / error_of(2 * coarse));
+}
+
+TEST(JointIntegrators, HaveTheirOrderForEveryJoint) {
+    for (char const* joint : {"revolute", "spherical", "universal", "prismatic", "helical", "mixed"})
         for (char const* base : {"free", "fixed"}) {
             Scene const scene =
                 parse_scene(std::string("chains: [{name: a, base: ") + base + ", generator: {random: {bodies: 5, joint: " + joint +
-                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2]}\n",
+                                ", seed: 6}}}]\nforces: {gravity: [0, 1, -2], drag: {linear: 0.3, angular: 0.1}}\n",
                             "scene.yaml");
-            auto const end_of = [&](int steps) {
-                ChainSystem system(scene, Axes::joint, *communicator);
-                RungeKutta4 rk4(*system.joint().front());
-                for (int i = 0; i < steps; ++i) rk4.step(system.joint_state(0), 0.2 / steps);
-                return system.snapshot().position;
-            };
-            auto const exact = end_of(640);
-            auto const error_of = [&](int steps) {
-                auto const x = end_of(steps);
-                double worst = 0;
-                for (std::size_t i = 0; i < x.size(); ++i) worst = std::max(worst, norm(x[i] - exact[i]));
-                return worst;
-            };
-            EXPECT_NEAR(std::log2(error_of(20) / error_of(40)), 4.0, 0.4) << joint << " " << base;
+            EXPECT_NEAR(order_of(scene, true), 4.0, 0.4) << joint << " " << base;
+            EXPECT_NEAR(order_of(scene, false), 2.0, 0.3) << joint << " " << base;
         }
 }
 
