@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
@@ -166,6 +167,47 @@ TEST(Tips, a_fixed_one_is_a_weld_where_it_is) {
     ChainSpec const chain = chain_of(list_of({"{type: spherical}", "{type: spherical}"}, "tip: fixed"));
     EXPECT_EQ(chain.tip_joint.type, JointType::weld);
     EXPECT_FALSE(chain.tip_joint.anchor);
+}
+
+TEST(Tips, move_with_the_copies_of_their_chain) {
+    Scene const scene = parse_scene(
+        "chains: [{count: 3, name: a, base: fixed, bodies: [{mass: 1, position: [1, 0, 0], joint: {type: link}}, {mass: 1, position: [1, "
+        "1, 0], "
+        "joint: {type: link}}], tip: {joint: {type: link, anchor: [0, 2, 0]}}}, {count: 2, name: b, generator: {random: {bodies: 20, "
+        "joint: "
+        "link, rigid: 0.5}}}]",
+        "s.yaml");
+    ASSERT_EQ(scene.chains.size(), 5u);
+    for (int i = 0; i < 3; ++i) {
+        ChainSpec const& chain = scene.chains[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(norm(*chain.tip_joint.anchor - chain.beads.position[1]), std::sqrt(2.0), 1e-12);
+        EXPECT_NEAR(norm(*chain.tip_joint.anchor - chain.beads.anchor), 2, 1e-12);
+    }
+    EXPECT_GT(norm(scene.chains[0].beads.position[0] - scene.chains[1].beads.position[0]), 1);
+    EXPECT_GT(norm(scene.chains[3].linked.position[0] - scene.chains[4].linked.position[0]), 1);
+}
+
+TEST(Hash, guards_everything_that_is_new) {
+    auto const hash = [](std::string const& yaml) { return parse_scene(yaml, "s.yaml").hash; };
+    std::string const second = "{type: revolute, axis: [1, 0, 0]";
+    std::vector<std::string> scenes{list_of({"{type: spherical}", second + "}"}),
+                                    list_of({"{type: spherical}", second + ", motion: {rate: 1}}"}),
+                                    list_of({"{type: spherical}", second + ", motion: {rate: 1, phase: 0.1}}"}),
+                                    list_of({"{type: spherical}", second + "}, drag: {linear: 1}"}),
+                                    list_of({"{type: spherical}", second + "}, beads: [{position: [0, 0, 0]}]"}),
+                                    list_of({"{type: spherical}", second + "}, beads: [{position: [0, 0, 1]}]"}),
+                                    list_of({"{type: spherical}", second + "}"}) + "\nforces: {drag: {angular: 1}}",
+                                    list_of({"{type: spherical}", "{type: helical, axis: [1, 0, 0], pitch: 1}"}),
+                                    list_of({"{type: spherical}", "{type: helical, axis: [1, 0, 0], pitch: 2}"}),
+                                    list_of({"{type: spherical}", "{type: universal, axes: [[0, 1, 0], [1, 0, 0]]}"}),
+                                    list_of({"{type: spherical}", "{type: universal, axes: [[0, 0, 1], [1, 0, 0]]}"}),
+                                    list_of({"{type: spherical}", "{type: spherical}"}, "tip: fixed"),
+                                    list_of({"{type: spherical}", "{type: spherical}"}, "tip: {joint: {type: revolute, axis: [1, 0, 0]}}"),
+                                    "chains: [{generator: {random: {bodies: 3, joint: link, rigid: 1, seed: 1}}}]",
+                                    "chains: [{generator: {random: {bodies: 3, joint: link, rigid: 1, seed: 2}}}]"};
+    std::set<std::string> hashes;
+    for (std::string const& yaml : scenes) hashes.insert(hash(yaml));
+    EXPECT_EQ(hashes.size(), scenes.size());
 }
 
 TEST(Dynamics, velocity_verlet) {
