@@ -52,9 +52,10 @@ Table chain_table(Scene const& scene) {
 
 Json chains_json(Scene const& scene) {
     Json list = Json::array();
-    for (ChainSpec const& chain : scene.chains)
-        list.push_back({{"name", chain.name}, {"bodies", chain.size()}, {"kind", kind_name(chain)}, {"base", base_name(chain)},
-                        {"tip", tip_name(chain)}, {"dof", scene::degrees_of_freedom(chain)}});
+    for (ChainSpec const& chain : scene.chains) {
+        list.push_back({{"name", chain.name}, {"bodies", chain.size()}, {"kind", kind_name(chain)}, {"base", base_name(chain)}});
+        if (chain.tip != Tip::free) list.back()["tip"] = tip_name(chain);
+    }
     return list;
 }
 

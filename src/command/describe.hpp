@@ -14,7 +14,7 @@ namespace catena::command {
 std::string title_of(Scene const&);
 /// Equal neighbouring chains in one row.
 Table chain_table(Scene const&);
-/// [{"name", "bodies", "kind", "base", "tip", "dof"}], every chain.
+/// [{"name", "bodies", "kind", "base"}], every chain; "tip" where it is jointed.
 Json chains_json(Scene const&);
 
 /// What acts on the chains.

@@ -46,7 +46,8 @@ double scene_bytes(ChainSpec const& chain) {
     double const linked = sizeof(double) * (1 + 6 + 6 + 4 + 3 + 6 + 1);
     double const carried = sizeof(double) * 4 + sizeof(std::string);
     return bead * static_cast<double>(chain.beads.size()) + body * static_cast<double>(b.size()) + loads + more +
-           linked * static_cast<double>(chain.linked.size()) + carried * static_cast<double>(b.carried.size() + chain.linked.carried.size());
+           linked * static_cast<double>(chain.linked.size()) +
+           carried * static_cast<double>(b.carried.size() + chain.linked.carried.size());
 }
 
 }  // namespace

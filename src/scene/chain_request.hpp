@@ -20,7 +20,8 @@ struct ChainRequest {
     Base base = Base::free;
     std::vector<Domain> rigid = {};  // ascending; of a chain of residues
 
-    /// Refuses those of `model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this kind of chain.
+    /// Refuses those of `model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this kind of
+    /// chain.
     void allow(char const* kind, Names keys) const;
     /// Origin where none is given.
     Vec3 anchor() const;

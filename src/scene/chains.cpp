@@ -11,11 +11,11 @@
 #include "scene/chain_request.hpp"
 #include "scene/conformation.hpp"
 #include "scene/fields.hpp"
+#include "scene/files.hpp"
 #include "scene/freedom.hpp"
 #include "scene/generator_entry.hpp"
-#include "scene/files.hpp"
-#include "scene/linked.hpp"
 #include "scene/hdf5_bodies.hpp"
+#include "scene/linked.hpp"
 #include "scene/sequences.hpp"
 #include "scene/tip.hpp"
 

@@ -103,10 +103,10 @@ std::vector<Domain> read_domains(Node const& rigid, std::size_t residues) {
     for (Node const& item : rigid.items) {
         if (item.kind != Node::Kind::list || item.items.size() != 2) fail(item, describe(item) + " is not a pair of residues", remedy);
         std::int64_t const first = whole(item.items[0], 1), last = whole(item.items[1], 1);
-        if (last > static_cast<std::int64_t>(residues))
-            fail(item, fmt::format("residue {} of a chain of {}", last, residues), remedy);
+        if (last > static_cast<std::int64_t>(residues)) fail(item, fmt::format("residue {} of a chain of {}", last, residues), remedy);
         if (last < first + 2)
-            fail(item, fmt::format("residues {} to {} are no rigid body: it needs three that do not stand on one line", first, last), remedy);
+            fail(item, fmt::format("residues {} to {} are no rigid body: it needs three that do not stand on one line", first, last),
+                 remedy);
         Domain const domain{static_cast<std::size_t>(first - 1), static_cast<std::size_t>(last - 1)};
         for (Domain const& other : domains)
             if (domain.first <= other.last && other.first <= domain.last)

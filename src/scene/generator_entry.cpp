@@ -62,7 +62,8 @@ void GeneratorEntry::read_random() {
     if (Node const* const rigid = fields.find("rigid")) {
         if (!links) fail(*rigid, "a fraction of rigid bodies in a chain that has no beads", "leave it out or write `joint: link`");
         chain.rigid = number(*rigid);
-        if (!(chain.rigid >= 0 && chain.rigid <= 1)) fail(*rigid, fmt::format("the fraction {} is no fraction", chain.rigid), "give 0 to 1");
+        if (!(chain.rigid >= 0 && chain.rigid <= 1))
+            fail(*rigid, fmt::format("the fraction {} is no fraction", chain.rigid), "give 0 to 1");
     }
     Node const* const loads = fields.find("loads");
     if (loads) loads_ = truth(*loads);
@@ -98,8 +99,8 @@ void GeneratorEntry::read_rods() {
 void GeneratorEntry::read_walk() {
     bool const worm = entry_.key == "worm_like";
     char const* const count = worm ? "bodies" : "beads";
-    Fields const fields = worm ? Fields(entry_, {"bodies", "persistence", "length", "mass", "seed"})
-                               : Fields(entry_, {"beads", "length", "mass", "seed"});
+    Fields const fields =
+        worm ? Fields(entry_, {"bodies", "persistence", "length", "mass", "seed"}) : Fields(entry_, {"beads", "length", "mass", "seed"});
     Walk& walk = walk_.emplace();
     size_ = walk.beads = whole(fields.need(count, std::string(count) + ": 100"), 1);
     take(fields, "mass", walk.mass);

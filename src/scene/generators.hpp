@@ -18,7 +18,7 @@ struct RandomChain {
     Base base = Base::fixed;
     std::uint64_t seed = 0;
     Distribution mass{Distribution::Kind::log_uniform, {0.5, 2}};
-    Distribution length{Distribution::Kind::uniform, {0.5, 1.5}};      // between joints; of links
+    Distribution length{Distribution::Kind::uniform, {0.5, 1.5}};     // between joints; of links
     Distribution inertia{Distribution::Kind::uniform, {0.05, 0.15}};  // second moments of the mass along the principal axes, per mass
     Vec3 anchor = Vec3::zero();                                       // links on a fixed base
     double rigid = 0;                                                 // links: the fraction of rigid bodies among beads
@@ -55,12 +55,11 @@ BodyArrays pendulum(Rods const& rods);
 
 /// Standard hard shapes after Featherstone's ("An empirical study of the joint space inertia matrix", 2004; "A divide-and-conquer
 /// articulated-body algorithm, part 2", 1999), whose condition numbers grow up to O(n^4). These are serial chains of rods as pendulum's,
-/// on revolute joints, at rest, all joints at the angle `turn`; where they differ from the published ones in detail, these definitions hold.
-/// coil: joint axes stand across the rods, each turned by `twist` about its rod against the one before, so that the chain winds up into a
-/// helix and far bodies come to lie near each other.
-/// dill: self-similar: rod k (from 1) is `ratio`^v times as long and as thick as given, its mass times ratio^(3 v), v the number of times
-/// that 2 divides k: every second rod is of full size, every fourth the next smaller, and so on; axes alternate by a right angle.
-/// (Featherstone's dill is a tree with such branches.)
+/// on revolute joints, at rest, all joints at the angle `turn`; where they differ from the published ones in detail, these definitions
+/// hold. coil: joint axes stand across the rods, each turned by `twist` about its rod against the one before, so that the chain winds up
+/// into a helix and far bodies come to lie near each other. dill: self-similar: rod k (from 1) is `ratio`^v times as long and as thick as
+/// given, its mass times ratio^(3 v), v the number of times that 2 divides k: every second rod is of full size, every fourth the next
+/// smaller, and so on; axes alternate by a right angle. (Featherstone's dill is a tree with such branches.)
 struct Winding {
     double turn = 0.3, twist = 0.1, ratio = 0.5;
     Base base = Base::fixed;

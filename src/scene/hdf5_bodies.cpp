@@ -19,9 +19,9 @@ constexpr std::pair<std::string_view, JointType> types[] = {
     {"free", JointType::free},           {"link", JointType::link}, {"spherical", JointType::spherical}, {"revolute", JointType::revolute},
     {"universal", JointType::universal}, {"weld", JointType::weld}, {"prismatic", JointType::prismatic}, {"helical", JointType::helical}};
 
-constexpr std::string_view known[] = {"mass",   "com",       "inertia", "joint_type", "axis", "rotation", "translation",   "q",
-                                      "qd",     "first_axis", "pitch",  "torque",     "stiffness", "damping", "rest", "wrench",
-                                      "drag",   "free_position", "free_velocity"};
+constexpr std::string_view known[] = {"mass", "com",    "inertia",    "joint_type",    "axis",         "rotation",  "translation",
+                                      "q",    "qd",     "first_axis", "pitch",         "torque",       "stiffness", "damping",
+                                      "rest", "wrench", "drag",       "free_position", "free_velocity"};
 
 Vec3 vector_at(double const* v) { return {{v[0], v[1], v[2]}}; }
 
@@ -107,8 +107,7 @@ class Hdf5Bodies {
         bool const free = type == JointType::free;
         if (type == JointType::link)
             table_.refuse("joint_type", k, "a link in a file of rigid bodies on joints", "write chains of links as a list or a generator");
-        if (free && k > 0)
-            table_.refuse("joint_type", k, "a free joint inside a chain", "use it for body 1 of a chain with `base: free`");
+        if (free && k > 0) table_.refuse("joint_type", k, "a free joint inside a chain", "use it for body 1 of a chain with `base: free`");
         if (free && base_ == Base::fixed)
             table_.refuse("joint_type", k, "a free joint on a fixed base", "write `base: free`, or give joint 1 another type");
         if (!free && k == 0 && base_ == Base::free)
@@ -207,9 +206,8 @@ class Hdf5Bodies {
         if (table_.has("damping")) resistances("damping", bodies_.damping);
         if (table_.has("wrench")) {
             bodies_.wrench.resize(table_.rows());
-            table_.for_each("wrench", {{6}}, [&](std::size_t k, double const* v, std::size_t) {
-                bodies_.wrench[k] = {vector_at(v), vector_at(v + 3)};
-            });
+            table_.for_each("wrench", {{6}},
+                            [&](std::size_t k, double const* v, std::size_t) { bodies_.wrench[k] = {vector_at(v), vector_at(v + 3)}; });
         }
         if (!table_.has("drag")) return;
         bodies_.drag.resize(table_.rows());

@@ -1,7 +1,6 @@
 // Large chains of rigid bodies: `bodies: {hdf5: chain.h5}`.
 #pragma once
 
-#include <array>
 #include <string>
 
 #include "scene/scene.hpp"

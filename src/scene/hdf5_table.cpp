@@ -99,7 +99,7 @@ void Hdf5Table::for_each_text(std::string const& name, std::function<void(std::s
         std::vector<std::string> texts;
         for (std::size_t i = 0; i < count; ++i) {
             char const* text = block.data() + i * length;
-            if (variable) std::memcpy(&text, block.data() + i * length, sizeof text);
+            if (variable) std::memcpy(static_cast<void*>(&text), block.data() + i * length, sizeof text);
             texts.emplace_back(text ? std::string(text, variable ? std::strlen(text) : strnlen(text, length)) : "");
         }
         if (variable) {

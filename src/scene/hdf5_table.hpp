@@ -18,8 +18,8 @@ class Hdf5Table {
     bool has(std::string const& name) const;
     std::vector<std::string> names() const;
 
-    /// Calls `read(k, numbers of row k)` for every row, whose shape is one of `shapes` ({}: one number). InputError for any other shape, for
-    /// what are no numbers and for numbers that are not finite. Returns the numbers a row.
+    /// Calls `read(k, numbers of row k)` for every row, whose shape is one of `shapes` ({}: one number). InputError for any other shape,
+    /// for what are no numbers and for numbers that are not finite. Returns the numbers a row.
     using Shape = std::vector<hsize_t>;
     using Read = std::function<void(std::size_t, double const*, std::size_t)>;
     std::size_t for_each(std::string const& name, std::vector<Shape> const& shapes, Read const& read) const;

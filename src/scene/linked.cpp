@@ -96,7 +96,8 @@ class LinkedReader {
     void start_link(Node const& translation, std::size_t k) {
         if (k == 0)
             fail(translation, "a translation for link 1, which starts at the ground", "leave it out; `anchor` of the chain says where");
-        if (linked_.is_bead(k - 1)) fail(translation, fmt::format("a translation for a link that starts at bead {}, a point", k), "leave it out");
+        if (linked_.is_bead(k - 1))
+            fail(translation, fmt::format("a translation for a link that starts at bead {}, a point", k), "leave it out");
         linked_.outboard[k - 1] = vector3(translation) + linked_.inboard[k - 1];
     }
 

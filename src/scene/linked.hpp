@@ -12,8 +12,8 @@ struct ExplicitLinked {
     LinkedArrays linked;
     bool velocities = false;  // some body says its velocity or omega
 };
-/// Bodies {mass, inertia, com, position, quaternion, velocity, omega, beads, joint: {type: link, length, translation}} and, where there is no
-/// `inertia`, beads. Every length is given or the distance at the start. Throws InputError.
+/// Bodies {mass, inertia, com, position, quaternion, velocity, omega, beads, joint: {type: link, length, translation}} and, where there is
+/// no `inertia`, beads. Every length is given or the distance at the start. Throws InputError.
 ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor);
 
 }  // namespace catena::scene

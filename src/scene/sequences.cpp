@@ -72,8 +72,9 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
 BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     Fields const& fields = request.fields;
     bool const pdb = fields.find("pdb");
-    request.allow(pdb ? "a chain from a PDB file" : "a sequence",
-                  pdb ? Names{"model", "links", "anchor", "rigid"} : Names{"model", "positions", "links", "anchor", "conformation", "rigid"});
+    request.allow(
+        pdb ? "a chain from a PDB file" : "a sequence",
+        pdb ? Names{"model", "links", "anchor", "rigid"} : Names{"model", "positions", "links", "anchor", "conformation", "rigid"});
     if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
     Residues residues;

@@ -96,14 +96,10 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
              "write `velocities: zero`, or give each joint its `qd`");
 }
 
-bool has_beads(ChainSpec const& chain) {
-    return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0;
-}
+bool has_beads(ChainSpec const& chain) { return chain.is_beads() || chain.bodies.carried.size() > 0 || chain.linked.carried.size() > 0; }
 
 std::vector<std::string> const& residues_of(ChainSpec const& chain) {
-    return chain.is_beads()    ? chain.beads.residue
-           : chain.is_linked() ? chain.linked.carried.residue
-                               : chain.bodies.carried.residue;
+    return chain.is_beads() ? chain.beads.residue : chain.is_linked() ? chain.linked.carried.residue : chain.bodies.carried.residue;
 }
 
 void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {

@@ -6,7 +6,8 @@ namespace {
 
 /// A scene whose second body has the joint `joint`, and with more keys of the chain.
 std::string arm(std::string const& joint, std::string const& more = "") {
-    return "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}, {mass: 1, inertia: [1, "
+    return "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1]}}, {mass: 1, inertia: "
+           "[1, "
            "1, 1], joint: " +
            joint + "}]" + more + "}]";
 }
@@ -44,7 +45,8 @@ BadJoint const joints[] = {
     {"axes_of_revolute", "{type: revolute, axes: [[0, 0, 1], [1, 0, 0]]}", "key `axes` means nothing for a revolute joint", ".axes",
      "leave it out or correct `type`"},
     {"q_of_weld", "{type: weld, q: 0}", "key `q` means nothing for a weld joint", ".q", "leave it out or correct `type`"},
-    {"torque_of_weld", "{type: weld, torque: 1}", "key `torque` means nothing for a weld joint", ".torque", "leave it out or correct `type`"},
+    {"torque_of_weld", "{type: weld, torque: 1}", "key `torque` means nothing for a weld joint", ".torque",
+     "leave it out or correct `type`"},
     {"no_axis", "{type: prismatic}", "key `axis` is missing", "", "add `axis: [0, 0, 1]`"},
     {"negative_damping", "{type: prismatic, axis: [1, 0, 0], damping: -2}", "damping -2 is negative", ".damping",
      "give 0 or a number above it"},
@@ -76,13 +78,15 @@ INSTANTIATE_TEST_SUITE_P(Joints, BadJoints, testing::ValuesIn(joints),
                          [](testing::TestParamInfo<BadJoint> const& at) { return std::string(at.param.name); });
 
 TEST(BadPlanar, names_the_body) {
-    EXPECT_EQ(refusal_of(arm("{type: planar, axis: [0, 0.1, 1]}")),
-              "the chain has planar joints, but the revolute joint 2 is not parallel to those before (s.yaml: chains[0].bodies[1], body 2, line "
-              "1): correct `axis` or `rotation`, or write `type: revolute`");
-    EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: [1, 1, "
-                         "1], joint: {type: planar, axis: [0, 0, 1]}}]}]"),
-              "the chain has planar joints, but the spherical joint 1 is not parallel to those before (s.yaml: chains[0].bodies[0], body 1, "
-              "line 1): correct `axis` or `rotation`, or write `type: revolute`");
+    EXPECT_EQ(
+        refusal_of(arm("{type: planar, axis: [0, 0.1, 1]}")),
+        "the chain has planar joints, but the revolute joint 2 is not parallel to those before (s.yaml: chains[0].bodies[1], body 2, line "
+        "1): correct `axis` or `rotation`, or write `type: revolute`");
+    EXPECT_EQ(
+        refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: [1, 1, "
+                   "1], joint: {type: planar, axis: [0, 0, 1]}}]}]"),
+        "the chain has planar joints, but the spherical joint 1 is not parallel to those before (s.yaml: chains[0].bodies[0], body 1, "
+        "line 1): correct `axis` or `rotation`, or write `type: revolute`");
 }
 
 TEST(BadTips, of_bodies) {
@@ -102,16 +106,19 @@ TEST(BadTips, of_bodies) {
                   ", line 1): give the tip a joint that restricts less, or the chain more joints");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {}}")), "key `type` is missing" + at + ", line 1): add `type: revolute`");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {}")), "key `joint` is missing (s.yaml: chains[0].tip, line 1): add `joint: {type: spherical}`");
-    EXPECT_EQ(refusal_of(arm(ball, ", tip: fixd")), "`fixd` is not a value of `tip` (s.yaml: chains[0].tip, line 1): did you mean `fixed`?");
-    EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: [1, 1, "
-                         "1], joint: {type: spherical, translation: [1, 0, 0]}}], tip: {joint: {type: spherical, translation: [1, 0, 0]}}}]"),
-              "the bridge from ground to ground is straight: nothing tells the forces in its joints apart" + at +
-                  ", line 1): start from a bent chain of at least two bodies");
+    EXPECT_EQ(refusal_of(arm(ball, ", tip: fixd")),
+              "`fixd` is not a value of `tip` (s.yaml: chains[0].tip, line 1): did you mean `fixed`?");
+    EXPECT_EQ(
+        refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: [1, 1, "
+                   "1], joint: {type: spherical, translation: [1, 0, 0]}}], tip: {joint: {type: spherical, translation: [1, 0, 0]}}}]"),
+        "the bridge from ground to ground is straight: nothing tells the forces in its joints apart" + at +
+            ", line 1): start from a bent chain of at least two bodies");
 }
 
 TEST(BadTips, of_links) {
     std::string const chain =
-        "chains: [{BASEbodies: [{mass: 1, position: [1, 0, 0], joint: {type: link}}, {mass: 1, position: [2, 0, 0], joint: {type: link}}], tip: ";
+        "chains: [{BASEbodies: [{mass: 1, position: [1, 0, 0], joint: {type: link}}, {mass: 1, position: [2, 0, 0], joint: {type: link}}], "
+        "tip: ";
     std::string const free = std::regex_replace(chain, std::regex("BASE"), ""), at = " (s.yaml: chains[0].tip.joint";
     EXPECT_EQ(refusal_of(free + "fixed}]"),
               "a fixed tip of a chain of beads (s.yaml: chains[0].tip, line 1): write `tip: {joint: {type: link, anchor: [x, y, z]}}`");
@@ -137,9 +144,10 @@ TEST(BadTips, of_links) {
 
 TEST(BadIntegrators, name_the_joint_and_the_remedy) {
     auto const refusal = [](std::string const& joint, std::string const& more, char const* integrator, char const* forces = "") {
-        return refusal_of("chains: [{base: fixed, name: a, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: "
-                          "[1, 1, 1], joint: " +
-                          joint + more + "}]\ndynamics: {integrator: " + integrator + ", step: 1}" + forces);
+        return refusal_of(
+            "chains: [{base: fixed, name: a, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: "
+            "[1, 1, 1], joint: " +
+            joint + more + "}]\ndynamics: {integrator: " + integrator + ", step: 1}" + forces);
     };
     std::string const both = "use `integrator: rk4` or `velocity-verlet`", at = " (s.yaml: dynamics.integrator, line 2): ";
     std::string const moves = "integrator rattle moves chains of links or spherical joints, chain `a` has a ";
@@ -159,8 +167,9 @@ TEST(BadIntegrators, name_the_joint_and_the_remedy) {
     EXPECT_EQ(refusal_of("chains: [{generator: {random: {bodies: 9, joint: link, rigid: 1}}, name: a}]\ndynamics: {integrator: "
                          "velocity-verlet, step: 1}"),
               "integrator velocity-verlet works in joint coordinates, chain `a` has links" + at + "use `integrator: rattle` or `g-baoab`");
-    EXPECT_EQ(refusal_of("chains: [{generator: {random: {bodies: 9, joint: link, rigid: 1}}, name: a}]\ndynamics: {integrator: rattle, step: 1}"),
-              "accepted");
+    EXPECT_EQ(
+        refusal_of("chains: [{generator: {random: {bodies: 9, joint: link, rigid: 1}}, name: a}]\ndynamics: {integrator: rattle, step: 1}"),
+        "accepted");
 }
 
 TEST(BadDrag, values_and_links) {
@@ -180,31 +189,36 @@ TEST(BadLinked, every_refusal) {
         return refusal_of("chains: [{bodies: [{" + first + "}, {" + second + "}]}]");
     };
     std::string const rigid = "mass: 1, inertia: [1, 1, 1], position: [1, 0, 0], ", at = " (s.yaml: chains[0].bodies[1]";
-    EXPECT_EQ(refusal(rigid + "joint: {type: link, length: 1.001}"),
-              "the link's length is 1.001, its ends are 1 apart" + at + ".joint.length, body 2, line 1): correct the positions, or leave "
-                                                                        "`length` out");
+    EXPECT_EQ(refusal(rigid + "joint: {type: link, length: 1.001}"), "the link's length is 1.001, its ends are 1 apart" + at +
+                                                                         ".joint.length, body 2, line 1): correct the positions, or leave "
+                                                                         "`length` out");
     EXPECT_EQ(refusal(rigid + "joint: {type: link}, wrench: {force: [1, 0, 0]}"),
               "key `wrench` means nothing in a chain of links" + at + ".wrench, body 2, line 1): leave it out");
     EXPECT_EQ(refusal(rigid + "joint: {type: link}, residue: ALA"),
-              "key `residue` means nothing for a rigid body" + at + ".residue, body 2, line 1): give it `beads: [{residue: ALA, position: "
-                                                                    "[0, 0, 0]}]`");
+              "key `residue` means nothing for a rigid body" + at +
+                  ".residue, body 2, line 1): give it `beads: [{residue: ALA, position: "
+                  "[0, 0, 0]}]`");
     EXPECT_EQ(refusal(rigid + "joint: {type: link, translation: [1, 0, 0]}"),
               "a translation for a link that starts at bead 1, a point" + at + ".joint.translation, body 2, line 1): leave it out");
     EXPECT_EQ(refusal("mass: 1, inertia: [1, 1, 1], position: [0, 0, 0], joint: {type: link}"),
               "the ends of link 2 coincide: it has no direction" + at + ", body 2, line 1): move one of its bodies");
-    EXPECT_EQ(refusal("mass: 1, position: [1, 0, 0], omega: [1, 0, 0], joint: {type: link}", "mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]"),
-              "key `omega` means nothing for a point bead on a link" + at + ".omega, body 2, line 1): leave it out or give `inertia`");
-    EXPECT_EQ(refusal(rigid + "joint: {type: link}", "mass: 1, position: [0, 0, 0], joint: {type: link, length: 1}"),
-              "a link length for body 1 of a free base, which has no link (s.yaml: chains[0].bodies[0].joint.length, body 1, line 1): leave it "
-              "out or write `base: fixed`");
+    EXPECT_EQ(
+        refusal("mass: 1, position: [1, 0, 0], omega: [1, 0, 0], joint: {type: link}", "mass: 1, inertia: [1, 1, 1], position: [0, 0, 0]"),
+        "key `omega` means nothing for a point bead on a link" + at + ".omega, body 2, line 1): leave it out or give `inertia`");
+    EXPECT_EQ(
+        refusal(rigid + "joint: {type: link}", "mass: 1, position: [0, 0, 0], joint: {type: link, length: 1}"),
+        "a link length for body 1 of a free base, which has no link (s.yaml: chains[0].bodies[0].joint.length, body 1, line 1): leave it "
+        "out or write `base: fixed`");
     EXPECT_EQ(refusal("mass: 1, inertia: [0, 1, 1], position: [1, 0, 0], joint: {type: link}"),
-              "the inertia is singular: its principal moments are 0, 1, 1" + at + ".inertia, body 2, line 1): give the point mass or thin rod a "
-                                                                               "bead radius r: add 0.4 m r^2 to the diagonal");
+              "the inertia is singular: its principal moments are 0, 1, 1" + at +
+                  ".inertia, body 2, line 1): give the point mass or thin rod a "
+                  "bead radius r: add 0.4 m r^2 to the diagonal");
     EXPECT_EQ(refusal(rigid + "joint: {type: link}, beads: [{residue: ALA}]"),
               "key `position` is missing" + at + ".beads[0], body 2, line 1): add `position: [0, 0, 0]`");
-    EXPECT_EQ(refusal(rigid + "joint: {type: link}", "mass: 1, inertia: [1, 1, 1], joint: {type: weld}"),
-              "a joint of type `weld` in a chain of links (s.yaml: chains[0].bodies[0].joint, body 1, line 1): make it a link, or give every "
-              "joint another type");
+    EXPECT_EQ(
+        refusal(rigid + "joint: {type: link}", "mass: 1, inertia: [1, 1, 1], joint: {type: weld}"),
+        "a joint of type `weld` in a chain of links (s.yaml: chains[0].bodies[0].joint, body 1, line 1): make it a link, or give every "
+        "joint another type");
 }
 
 TEST(BadGenerators, distributions_and_shapes) {
@@ -212,20 +226,24 @@ TEST(BadGenerators, distributions_and_shapes) {
     auto const of_mass = [&](std::string const& mass) { return refusal("pendulum: {links: 3, mass: " + mass + "}"); };
     std::string const at = " (s.yaml: chains[0].generator.pendulum.mass";
     EXPECT_EQ(of_mass("-1"), "mass -1 is not positive" + at + ", line 1): give a number above 0");
-    EXPECT_EQ(of_mass("{}"), "the distribution has 0 kinds" + at + ", line 1): give a number or one of `uniform`, `log_uniform`, `normal`, `choice`");
+    EXPECT_EQ(of_mass("{}"),
+              "the distribution has 0 kinds" + at + ", line 1): give a number or one of `uniform`, `log_uniform`, `normal`, `choice`");
     EXPECT_EQ(of_mass("{gauss: [1, 2]}"),
               "unknown key `gauss`" + at + ".gauss, line 1): use one of `uniform`, `log_uniform`, `normal`, `choice`");
-    EXPECT_EQ(of_mass("{uniform: [2, 1]}"), "the bounds 2 and 1 are not positive and ascending" + at + ".uniform, line 1): give [least, most] above 0");
+    EXPECT_EQ(of_mass("{uniform: [2, 1]}"),
+              "the bounds 2 and 1 are not positive and ascending" + at + ".uniform, line 1): give [least, most] above 0");
     EXPECT_EQ(of_mass("{log_uniform: [0, 1]}"),
               "the bounds 0 and 1 are not positive and ascending" + at + ".log_uniform, line 1): give [least, most] above 0");
-    EXPECT_EQ(of_mass("{normal: [-1, 1]}"),
-              "a normal distribution with mean -1 and standard deviation 1" + at +
-                  ".normal, line 1): give a mean above 0 and a standard deviation of 0 or more: what is drawn is redrawn until it is above 0");
+    EXPECT_EQ(
+        of_mass("{normal: [-1, 1]}"),
+        "a normal distribution with mean -1 and standard deviation 1" + at +
+            ".normal, line 1): give a mean above 0 and a standard deviation of 0 or more: what is drawn is redrawn until it is above 0");
     EXPECT_EQ(of_mass("{choice: []}"), "there is nothing to choose from" + at + ".choice, line 1): give at least one number");
     EXPECT_EQ(of_mass("{choice: [1, 0]}"), "choice 0 is not positive" + at + ".choice[1], line 1): give a number above 0");
-    EXPECT_EQ(refusal("random: {bodies: 3, joint: weld, rigid: 0.5}"),
-              "a fraction of rigid bodies in a chain that has no beads (s.yaml: chains[0].generator.random.rigid, line 1): leave it out or write "
-              "`joint: link`");
+    EXPECT_EQ(
+        refusal("random: {bodies: 3, joint: weld, rigid: 0.5}"),
+        "a fraction of rigid bodies in a chain that has no beads (s.yaml: chains[0].generator.random.rigid, line 1): leave it out or write "
+        "`joint: link`");
     EXPECT_EQ(refusal("random: {bodies: 3, joint: link, rigid: 1.5}"),
               "the fraction 1.5 is no fraction (s.yaml: chains[0].generator.random.rigid, line 1): give 0 to 1");
     EXPECT_EQ(refusal("dill: {bodies: 3, ratio: 2}"),

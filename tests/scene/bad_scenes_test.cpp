@@ -186,11 +186,13 @@ INSTANTIATE_TEST_SUITE_P(Sections, Refused, testing::ValuesIn(sections_cases), n
 Refusal const together_cases[] = {
     {"rattle_of_revolute", R"y(chains: [{generator: {random: {bodies: 3, joint: revolute}}, name: arm}]
 dynamics: {integrator: rattle, step: 1})y",
-     "integrator rattle moves chains of links or spherical joints, chain `arm` has a revolute joint (joint 2) (s.yaml: dynamics.integrator, line 2): "
+     "integrator rattle moves chains of links or spherical joints, chain `arm` has a revolute joint (joint 2) (s.yaml: "
+     "dynamics.integrator, line 2): "
      "use `integrator: rk4` or `velocity-verlet`"},
     {"g_baoab_of_revolute", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: g-baoab, step: 1})y",
-     "integrator g-baoab moves chains of links or spherical joints, chain `chain-1` has a revolute joint (joint 1) (s.yaml: dynamics.integrator, line "
+     "integrator g-baoab moves chains of links or spherical joints, chain `chain-1` has a revolute joint (joint 1) (s.yaml: "
+     "dynamics.integrator, line "
      "2): use `integrator: rk4` or `velocity-verlet`"},
     {"rk4_of_links", R"y(chains: [{sequence: GGG, model: calvados2, name: asyn}]
 dynamics: {integrator: rk4, step: 1})y",
@@ -202,7 +204,8 @@ dynamics: {integrator: rk4, step: 1})y",
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, damping: 1}}
 dynamics: {integrator: rattle, step: 1})y",
-     "joint damping under integrator rattle (s.yaml: chains[0], body 2, line 2): use `integrator: rk4` or `velocity-verlet`, or set `damping: 0` (g-baoab has "
+     "joint damping under integrator rattle (s.yaml: chains[0], body 2, line 2): use `integrator: rk4` or `velocity-verlet`, or set "
+     "`damping: 0` (g-baoab has "
      "`friction`)"},
     {"thermal_without_dynamics", "chains: [{sequence: GGG, model: calvados2, velocities: thermal}]",
      "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): add `dynamics: {temperature: 300}`, or "

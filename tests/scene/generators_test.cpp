@@ -140,11 +140,8 @@ TEST(Generators, freely_jointed_walk) {
 
 TEST(Generators, every_random_joint) {
     using enum JointType;
-    for (auto const& [name, type] : std::vector<std::pair<std::string, JointType>>{{"planar", revolute},
-                                                                                    {"universal", universal},
-                                                                                    {"weld", weld},
-                                                                                    {"prismatic", prismatic},
-                                                                                    {"helical", helical}}) {
+    for (auto const& [name, type] : std::vector<std::pair<std::string, JointType>>{
+             {"planar", revolute}, {"universal", universal}, {"weld", weld}, {"prismatic", prismatic}, {"helical", helical}}) {
         ChainSpec const chain = random_chain(50, name, "fixed", 3);
         BodyArrays const& b = chain.bodies;
         for (std::size_t k = 0; k < b.size(); ++k) {
@@ -160,8 +157,8 @@ TEST(Generators, every_random_joint) {
 
 TEST(Generators, mixed_joints_come_in_equal_numbers) {
     BodyArrays const b = random_chain(6000, "mixed", "free", 3).bodies;
-    for (JointType const type : {JointType::revolute, JointType::universal, JointType::spherical, JointType::prismatic, JointType::helical,
-                                 JointType::weld})
+    for (JointType const type :
+         {JointType::revolute, JointType::universal, JointType::spherical, JointType::prismatic, JointType::helical, JointType::weld})
         EXPECT_NEAR(static_cast<double>(std::count(b.joint.begin(), b.joint.end(), type)), 1000, 4 * std::sqrt(6000 * 5.0 / 36));
     BodyArrays const few = random_chain(7, "mixed", "free", 3).bodies;
     for (std::size_t k = 0; k < 7; ++k) EXPECT_TRUE(few.joint[k] == b.joint[k] && few.q[k] == b.q[k] && few.pitch[k] == b.pitch[k]);
@@ -189,8 +186,8 @@ TEST(Generators, distributions) {
     EXPECT_NEAR(thin, 5000, 4 * 50);
     // Normal numbers cut at 0: mean 1 + sd phi(2) / Phi(2).
     EXPECT_NEAR(length, 1 + 0.5 * 0.0539910 / 0.9772499, 4 * 0.5 / 100);
-    BodyArrays const few = rods(
-        "pendulum: {links: 3, mass: {log_uniform: [1e-6, 1e6]}, length: {normal: [1, 0.5]}, radius: {choice: [0.1, 0.2]}, seed: 4}");
+    BodyArrays const few =
+        rods("pendulum: {links: 3, mass: {log_uniform: [1e-6, 1e6]}, length: {normal: [1, 0.5]}, radius: {choice: [0.1, 0.2]}, seed: 4}");
     for (std::size_t k = 0; k < 3; ++k) EXPECT_TRUE(few.mass[k] == b.mass[k] && few.com[k][0] == b.com[k][0]);
     for (double const mass : rods("pendulum: {links: 100, mass: {uniform: [2, 3]}}").mass) EXPECT_TRUE(mass >= 2 && mass <= 3);
 }
@@ -281,7 +278,8 @@ TEST(WormLike, directions_forget_each_other_as_they_should) {
 
 TEST(WormLike, end_to_end_distance_is_the_exact_one) {
     int constexpr copies = 4000, links = 30;
-    Scene const scene = parse_scene("chains: [{count: 4000, generator: {worm_like: {bodies: 31, persistence: 5, length: 1, seed: 8}}}]", "s.yaml");
+    Scene const scene =
+        parse_scene("chains: [{count: 4000, generator: {worm_like: {bodies: 31, persistence: 5, length: 1, seed: 8}}}]", "s.yaml");
     double square = 0, fourth = 0;
     for (ChainSpec const& chain : scene.chains) {
         Vec3 const end = chain.beads.position[links] - chain.beads.position[0];

@@ -58,10 +58,12 @@ TEST_F(Hdf5Bodies, are_those_of_the_list) {
     Scene const from_file = parse_scene(write(), "s.yaml");
     Scene const from_list = parse_scene(
         "chains: [{base: fixed, bodies: ["
-        "{mass: 1, inertia: [1, 2, 2.5], joint: {type: universal, axes: [[1, 0, 0], [0, 2, 0]], q: [0.1, 0.2], qd: [1, 2], stiffness: [1, 2]}},"
+        "{mass: 1, inertia: [1, 2, 2.5], joint: {type: universal, axes: [[1, 0, 0], [0, 2, 0]], q: [0.1, 0.2], qd: [1, 2], stiffness: [1, "
+        "2]}},"
         "{mass: 2, com: [0.5, 0, 0], inertia: [[1, 0.1, 0], [0.1, 1, 0], [0, 0, 1]], wrench: {torque: [1, 2, 3], force: [4, 5, 6]},"
         " joint: {type: helical, axis: [0, 0, 3], pitch: 0.5, translation: [1, 0, 0], q: 0.3, qd: 3, stiffness: 3}},"
-        "{mass: 3, com: [0, 0, 1], inertia: [1, 1, 1], joint: {type: spherical, translation: [0, 1, 0], q: [0.6, 0, 0.8, 0], qd: [4, 5, 6], "
+        "{mass: 3, com: [0, 0, 1], inertia: [1, 1, 1], joint: {type: spherical, translation: [0, 1, 0], q: [0.6, 0, 0.8, 0], qd: [4, 5, "
+        "6], "
         "stiffness: [4, 5, 6]}}]}]",
         "s.yaml");
     EXPECT_EQ(from_file.hash, from_list.hash);
@@ -104,7 +106,8 @@ TEST_F(Hdf5Bodies, refusals_of_the_file) {
     EXPECT_EQ(refusal(), "the dataset is missing" + at("axis") + "add it: body 1 has a universal joint");
     data_.erase("mass");
     EXPECT_EQ(refusal(), "the dataset is missing" + at("mass") + "add it: its rows are the bodies");
-    EXPECT_EQ(refusal_of("chains: [{bodies: {hdf: a.h5}}]"), "unknown key `hdf` (s.yaml: chains[0].bodies.hdf, line 1): did you mean `hdf5`?");
+    EXPECT_EQ(refusal_of("chains: [{bodies: {hdf: a.h5}}]"),
+              "unknown key `hdf` (s.yaml: chains[0].bodies.hdf, line 1): did you mean `hdf5`?");
 }
 
 TEST_F(Hdf5Bodies, refusals_of_values) {
@@ -118,11 +121,11 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
     double const nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_EQ(with("mass", 1, -2), "mass -2 is not positive" + at("mass", 2) + "give a number above 0");
     EXPECT_EQ(with("mass", 2, nan), "nan is not finite" + at("mass", 3) + "give finite numbers");
-    EXPECT_EQ(with("inertia", 0, 5), "no rigid body has the principal moments 2, 2.5, 5: they break the triangle inequality" + at("inertia", 1) +
-                                         "the largest may not exceed the sum of the other two");
+    EXPECT_EQ(with("inertia", 0, 5), "no rigid body has the principal moments 2, 2.5, 5: they break the triangle inequality" +
+                                         at("inertia", 1) + "the largest may not exceed the sum of the other two");
     EXPECT_EQ(with("axis", 5, 0), "the axis is zero" + at("axis", 2) + "give a direction such as [0, 0, 1]");
-    EXPECT_EQ(with("first_axis", 1, 1e9), "the two axes are parallel" + at("first_axis", 1) +
-                                              "give two directions, best at right angles, or use a revolute joint");
+    EXPECT_EQ(with("first_axis", 1, 1e9),
+              "the two axes are parallel" + at("first_axis", 1) + "give two directions, best at right angles, or use a revolute joint");
     EXPECT_EQ(with("pitch", 1, 0), "a helical joint without pitch" + at("pitch", 2) + "give its shift a radian, or use a revolute joint");
     EXPECT_EQ(with("q", 8, 1), "the quaternion is not a unit quaternion: its norm is 1.28062485" + at("q", 3) +
                                    "normalise it: divide its four numbers by their norm");
@@ -131,7 +134,8 @@ TEST_F(Hdf5Bodies, refusals_of_values) {
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t i : {0, 4, 8}) data_["rotation"].second[9 * k + i] = 1;
     EXPECT_EQ(refusal(), "accepted");
-    EXPECT_EQ(with("rotation", 17, -1), "the rotation is left-handed: its determinant is -1" + at("rotation", 2) + "change the sign of one column");
+    EXPECT_EQ(with("rotation", 17, -1),
+              "the rotation is left-handed: its determinant is -1" + at("rotation", 2) + "change the sign of one column");
     data_["drag"] = {{3, 2}, {1, 1, 1, 1, 1, 1}};
     EXPECT_EQ(with("drag", 5, -1), "drag 1, -1 is negative" + at("drag", 3) + "give 0 or numbers above it");
     types_[1] = "hinge";

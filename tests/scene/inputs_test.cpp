@@ -21,7 +21,7 @@ TEST(Inputs, every_scene_loads) {
             EXPECT_GT(scene.bodies(), 0);
         }) << entry.path();
     }
-    EXPECT_GE(scenes, 9);
+    EXPECT_GE(scenes, 16);
 }
 
 TEST(Inputs, alpha_synuclein) {
@@ -50,6 +50,7 @@ TEST(Inputs, the_readme_documents_every_key) {
     std::stringstream readme;
     readme << file.rdbuf();
     std::string const chain = "chains: [{sequence: G, model: calvados2}]\n", odd = "{zzzzzzzzzzzz: 1}";
+    std::string const rigid = "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], ";
     std::set<std::string> keys;
     std::vector<std::string> const scenes{odd,
                                           "chains: [" + odd + "]",
@@ -69,13 +70,24 @@ TEST(Inputs, the_readme_documents_every_key) {
                                           "chains: [{bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: free, q: " + odd + "}}]}]",
                                           "chains: [{bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: free, qd: " + odd + "}}]}]",
                                           "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}, zzzzzzzzzzzz: 1}]}]",
-                                          "chains: [{sequence: G, model: calvados2, conformation: " + odd + "}]"};
+                                          "chains: [{sequence: G, model: calvados2, conformation: " + odd + "}]",
+                                          "chains: [{sequence: G, model: calvados2, tip: " + odd + "}]",
+                                          "chains: [{sequence: G, model: calvados2, tip: {joint: " + odd + "}}]",
+                                          chain + "forces: {drag: " + odd + "}",
+                                          "chains: [{generator: {coil: " + odd + "}}]",
+                                          "chains: [{generator: {dill: " + odd + "}}]",
+                                          "chains: [{generator: {worm_like: " + odd + "}}]",
+                                          "chains: [{generator: {pendulum: {links: 1, mass: " + odd + "}}}]",
+                                          "chains: [{bodies: " + odd + "}]",
+                                          rigid + "joint: {type: weld}, beads: [" + odd + "]}]}]",
+                                          rigid + "joint: {type: revolute, axis: [0, 0, 1], motion: " + odd + "}}]}]",
+                                          rigid + "position: [0, 0, 0], joint: {type: link}, zzzzzzzzzzzz: 1}]}]"};
     for (std::string const& yaml : scenes) {
         std::vector<std::string> const found = known_keys(yaml);
         EXPECT_FALSE(found.empty()) << refusal_of(yaml);
         keys.insert(found.begin(), found.end());
     }
-    EXPECT_GE(keys.size(), 75u);
+    EXPECT_GE(keys.size(), 105u);
     for (std::string const& key : keys) EXPECT_NE(readme.str().find("`" + key + "`"), std::string::npos) << key;
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
@@ -20,12 +21,13 @@ std::string list_of(std::vector<std::string> const& joints, std::string const& c
 ChainSpec chain_of(std::string const& yaml) { return parse_scene(yaml, "s.yaml").chains.at(0); }
 
 TEST(Joints, every_type) {
-    BodyArrays const b = chain_of(list_of({"{type: universal, axes: [[2, 0, 0], [0, 0, 3]], q: [0.1, 0.2], qd: [1, 2], torque: [3, 4], "
-                                           "stiffness: 5, damping: [6, 7], rest: [0.3, 0.4]}",
-                                           "{type: weld, translation: [1, 0, 0]}",
-                                           "{type: prismatic, axis: [0, 1, 0], q: 0.5, qd: 2, torque: 3, stiffness: 4, damping: 5, rest: 6}",
-                                           "{type: helical, axis: [0, 0, 1], pitch: -0.25, q: 2, qd: 1}"}))
-                             .bodies;
+    BodyArrays const b =
+        chain_of(list_of({"{type: universal, axes: [[2, 0, 0], [0, 0, 3]], q: [0.1, 0.2], qd: [1, 2], torque: [3, 4], "
+                          "stiffness: 5, damping: [6, 7], rest: [0.3, 0.4]}",
+                          "{type: weld, translation: [1, 0, 0]}",
+                          "{type: prismatic, axis: [0, 1, 0], q: 0.5, qd: 2, torque: 3, stiffness: 4, damping: 5, rest: 6}",
+                          "{type: helical, axis: [0, 0, 1], pitch: -0.25, q: 2, qd: 1}"}))
+            .bodies;
     EXPECT_EQ(b.joint, (std::vector<JointType>{JointType::universal, JointType::weld, JointType::prismatic, JointType::helical}));
     EXPECT_EQ(b.first_axis[0][0], 1);
     EXPECT_EQ(b.axis[0][2], 1);
@@ -52,8 +54,9 @@ TEST(Joints, arrays_of_what_there_is_not_stay_empty) {
 
 TEST(Joints, motions) {
     BodyArrays const b =
-        chain_of(list_of({"{type: spherical}", "{type: helical, axis: [0, 0, 1], pitch: 1, motion: {offset: 0.5, rate: 2}}",
-                          "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], motion: [{amplitude: 3, frequency: 0.25, phase: 0.1}, {rate: 1}]}"}))
+        chain_of(
+            list_of({"{type: spherical}", "{type: helical, axis: [0, 0, 1], pitch: 1, motion: {offset: 0.5, rate: 2}}",
+                     "{type: universal, axes: [[1, 0, 0], [0, 1, 0]], motion: [{amplitude: 3, frequency: 0.25, phase: 0.1}, {rate: 1}]}"}))
             .bodies;
     ASSERT_EQ(b.driven.size(), 2u);
     EXPECT_EQ(b.driven[0].body, 1);
@@ -71,7 +74,8 @@ TEST(Joints, motions) {
 }
 
 TEST(Joints, drag_of_a_body_goes_before_the_scenes) {
-    std::string const scene = list_of({"{type: spherical}", "{type: spherical}, drag: {linear: 3}"}) + "\nforces: {drag: {linear: 1, angular: 2}}";
+    std::string const scene =
+        list_of({"{type: spherical}", "{type: spherical}, drag: {linear: 3}"}) + "\nforces: {drag: {linear: 1, angular: 2}}";
     Scene const s = parse_scene(scene, "s.yaml");
     EXPECT_EQ(s.forces.linear_drag, 1);
     EXPECT_EQ(s.forces.angular_drag, 2);
@@ -80,10 +84,11 @@ TEST(Joints, drag_of_a_body_goes_before_the_scenes) {
 }
 
 TEST(Joints, carried_beads) {
-    CarriedBeads const c = chain_of(list_of({"{type: spherical}",
-                                             "{type: spherical}, beads: [{residue: ALA, position: [1, 2, 3], mass: 71}, {position: [0, 0, 0]}]",
-                                             "{type: spherical}"}))
-                               .bodies.carried;
+    CarriedBeads const c =
+        chain_of(list_of({"{type: spherical}",
+                          "{type: spherical}, beads: [{residue: ALA, position: [1, 2, 3], mass: 71}, {position: [0, 0, 0]}]",
+                          "{type: spherical}"}))
+            .bodies.carried;
     EXPECT_EQ(c.offset, (std::vector<std::int64_t>{0, 0, 2, 2}));
     EXPECT_EQ(c.residue, (std::vector<std::string>{"ALA", "UNK"}));
     EXPECT_EQ(c.position[0][2], 3);
@@ -107,7 +112,8 @@ TEST(Joints, handle_kinds_and_degrees_of_freedom) {
         scene::HandleKind kind;
         std::int64_t dof;
     };
-    std::string const x = "{type: revolute, axis: [1, 0, 0], translation: [0, 0, 1]}", z = "{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0]}";
+    std::string const x = "{type: revolute, axis: [1, 0, 0], translation: [0, 0, 1]}",
+                      z = "{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0]}";
     std::string const ball = "{type: spherical, translation: [1, 0, 0]}", cross = "{type: universal, axes: [[1, 0, 0], [0, 1, 0]]}";
     using enum scene::HandleKind;
     Case const cases[] = {
@@ -138,9 +144,10 @@ TEST(Tips, anchors_are_checked_by_forward_kinematics) {
     Vec3 const along{{std::cos(q1) * std::cos(q2), std::sin(q1) * std::cos(q2), -std::sin(q2)}};
     Vec3 const end = Vec3{{std::cos(q1), std::sin(q1), 0}} + 1.25 * along;
     std::string const anchor = fmt::format("[{:.17g}, {:.17g}, {:.17g}]", end[0], end[1], end[2]);
-    ChainSpec const chain = chain_of(list_of({"{type: revolute, axis: [0, 0, 1], q: 0.3}", "{type: revolute, axis: [0, 1, 0], translation: [1, 0, 0], q: -0.4}",
-                                              "{type: spherical}", "{type: spherical}"},
-                                             "tip: {joint: {type: prismatic, axis: [1, 0, 0], translation: [1, 0, 0], q: 0.25, anchor: " + anchor + "}}"));
+    ChainSpec const chain =
+        chain_of(list_of({"{type: revolute, axis: [0, 0, 1], q: 0.3}", "{type: revolute, axis: [0, 1, 0], translation: [1, 0, 0], q: -0.4}",
+                          "{type: spherical}", "{type: spherical}"},
+                         "tip: {joint: {type: prismatic, axis: [1, 0, 0], translation: [1, 0, 0], q: 0.25, anchor: " + anchor + "}}"));
     EXPECT_EQ(chain.tip, Tip::jointed);
     EXPECT_EQ(chain.tip_joint.type, JointType::prismatic);
     EXPECT_EQ(chain.tip_joint.q[0], 0.25);
@@ -148,7 +155,8 @@ TEST(Tips, anchors_are_checked_by_forward_kinematics) {
 }
 
 TEST(Tips, links) {
-    std::string const beads = "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, position: [1, 0, 0], joint: {type: link}}], ";
+    std::string const beads =
+        "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, position: [1, 0, 0], joint: {type: link}}], ";
     ChainSpec const chain = chain_of(beads + "tip: {joint: {type: link, anchor: [1, 2, 0]}}}]");
     EXPECT_EQ(chain.tip_joint.length, 2);
     EXPECT_EQ(scene::degrees_of_freedom(chain), 4);
@@ -159,6 +167,47 @@ TEST(Tips, a_fixed_one_is_a_weld_where_it_is) {
     ChainSpec const chain = chain_of(list_of({"{type: spherical}", "{type: spherical}"}, "tip: fixed"));
     EXPECT_EQ(chain.tip_joint.type, JointType::weld);
     EXPECT_FALSE(chain.tip_joint.anchor);
+}
+
+TEST(Tips, move_with_the_copies_of_their_chain) {
+    Scene const scene = parse_scene(
+        "chains: [{count: 3, name: a, base: fixed, bodies: [{mass: 1, position: [1, 0, 0], joint: {type: link}}, {mass: 1, position: [1, "
+        "1, 0], "
+        "joint: {type: link}}], tip: {joint: {type: link, anchor: [0, 2, 0]}}}, {count: 2, name: b, generator: {random: {bodies: 20, "
+        "joint: "
+        "link, rigid: 0.5}}}]",
+        "s.yaml");
+    ASSERT_EQ(scene.chains.size(), 5u);
+    for (int i = 0; i < 3; ++i) {
+        ChainSpec const& chain = scene.chains[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(norm(*chain.tip_joint.anchor - chain.beads.position[1]), std::sqrt(2.0), 1e-12);
+        EXPECT_NEAR(norm(*chain.tip_joint.anchor - chain.beads.anchor), 2, 1e-12);
+    }
+    EXPECT_GT(norm(scene.chains[0].beads.position[0] - scene.chains[1].beads.position[0]), 1);
+    EXPECT_GT(norm(scene.chains[3].linked.position[0] - scene.chains[4].linked.position[0]), 1);
+}
+
+TEST(Hash, guards_everything_that_is_new) {
+    auto const hash = [](std::string const& yaml) { return parse_scene(yaml, "s.yaml").hash; };
+    std::string const second = "{type: revolute, axis: [1, 0, 0]";
+    std::vector<std::string> scenes{list_of({"{type: spherical}", second + "}"}),
+                                    list_of({"{type: spherical}", second + ", motion: {rate: 1}}"}),
+                                    list_of({"{type: spherical}", second + ", motion: {rate: 1, phase: 0.1}}"}),
+                                    list_of({"{type: spherical}", second + "}, drag: {linear: 1}"}),
+                                    list_of({"{type: spherical}", second + "}, beads: [{position: [0, 0, 0]}]"}),
+                                    list_of({"{type: spherical}", second + "}, beads: [{position: [0, 0, 1]}]"}),
+                                    list_of({"{type: spherical}", second + "}"}) + "\nforces: {drag: {angular: 1}}",
+                                    list_of({"{type: spherical}", "{type: helical, axis: [1, 0, 0], pitch: 1}"}),
+                                    list_of({"{type: spherical}", "{type: helical, axis: [1, 0, 0], pitch: 2}"}),
+                                    list_of({"{type: spherical}", "{type: universal, axes: [[0, 1, 0], [1, 0, 0]]}"}),
+                                    list_of({"{type: spherical}", "{type: universal, axes: [[0, 0, 1], [1, 0, 0]]}"}),
+                                    list_of({"{type: spherical}", "{type: spherical}"}, "tip: fixed"),
+                                    list_of({"{type: spherical}", "{type: spherical}"}, "tip: {joint: {type: revolute, axis: [1, 0, 0]}}"),
+                                    "chains: [{generator: {random: {bodies: 3, joint: link, rigid: 1, seed: 1}}}]",
+                                    "chains: [{generator: {random: {bodies: 3, joint: link, rigid: 1, seed: 2}}}]"};
+    std::set<std::string> hashes;
+    for (std::string const& yaml : scenes) hashes.insert(hash(yaml));
+    EXPECT_EQ(hashes.size(), scenes.size());
 }
 
 TEST(Dynamics, velocity_verlet) {

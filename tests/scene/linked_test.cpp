@@ -63,7 +63,8 @@ TEST(Linked, everything_that_a_body_can_say) {
 
 TEST(Linked, a_tip_starts_at_its_translation) {
     std::string const chain =
-        "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, inertia: [1, 1, 1], com: [1, 0, 0], position: [1, 0, "
+        "chains: [{bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 1, inertia: [1, 1, 1], com: [1, 0, 0], position: "
+        "[1, 0, "
         "0], joint: {type: link}}], tip: {joint: {type: link, anchor: [3, 4, 0]";
     EXPECT_EQ(chain_of(chain + ", translation: [2, 0, 0]}}}]").tip_joint.length, 4);
     EXPECT_EQ(chain_of(chain + ", translation: [2, 0, 0]}}}]").linked.outboard[1][0], 1);
@@ -146,24 +147,28 @@ TEST_F(Domains, keep_their_shape_while_the_linkers_take_the_models_lengths) {
 }
 
 TEST_F(Domains, refusals) {
-    std::string const give = "give [first, last] with residues from 1 to 12, both included", place = " (s.yaml: chains[0].rigid[0], line 1): ";
+    std::string const give = "give [first, last] with residues from 1 to 12, both included",
+                      place = " (s.yaml: chains[0].rigid[0], line 1): ";
     EXPECT_EQ(refusal_of(yaml("[]")), "the list of rigid domains is empty (s.yaml: chains[0].rigid, line 1): leave the key out or " + give);
     EXPECT_EQ(refusal_of(yaml("[3]")), "`3` is not a pair of residues" + place + give);
     EXPECT_EQ(refusal_of(yaml("[[9, 13]]")), "residue 13 of a chain of 12" + place + give);
-    EXPECT_EQ(refusal_of(yaml("[[2, 3]]")), "residues 2 to 3 are no rigid body: it needs three that do not stand on one line" + place + give);
+    EXPECT_EQ(refusal_of(yaml("[[2, 3]]")),
+              "residues 2 to 3 are no rigid body: it needs three that do not stand on one line" + place + give);
     EXPECT_EQ(refusal_of(yaml("[[2, 5], [5, 9]]")),
               "residues 5 to 9 overlap the domain 2 to 5 (s.yaml: chains[0].rigid[1], line 1): give each residue to one domain");
-    EXPECT_EQ(refusal_of("chains: [{sequence: GGGG, model: calvados2, rigid: [[1, 3]]}]"),
-              "rigid domains in a chain without positions (s.yaml: chains[0].rigid, line 1): give `pdb` or `positions`: they say what shape "
-              "the domains have");
+    EXPECT_EQ(
+        refusal_of("chains: [{sequence: GGGG, model: calvados2, rigid: [[1, 3]]}]"),
+        "rigid domains in a chain without positions (s.yaml: chains[0].rigid, line 1): give `pdb` or `positions`: they say what shape "
+        "the domains have");
     EXPECT_EQ(refusal_of("chains: [{generator: {pendulum: {links: 3}}, rigid: [[1, 3]]}]"),
               "key `rigid` means nothing for generator `pendulum` (s.yaml: chains[0].rigid, line 1): leave it out");
     std::ofstream line("line_test.csv");
     line << "0,0,0\n0.38,0,0\n0.76,0,0\n1.14,0,0\n";
     line.close();
-    EXPECT_EQ(refusal_of("chains: [{sequence: GGGG, model: calvados2, positions: line_test.csv, rigid: [[1, 3]]}]"),
-              "the beads of residues 1 to 3 stand on one line: a thin rod (s.yaml: chains[0].rigid, line 1): take in a residue beside it, or "
-              "leave the domain out");
+    EXPECT_EQ(
+        refusal_of("chains: [{sequence: GGGG, model: calvados2, positions: line_test.csv, rigid: [[1, 3]]}]"),
+        "the beads of residues 1 to 3 stand on one line: a thin rod (s.yaml: chains[0].rigid, line 1): take in a residue beside it, or "
+        "leave the domain out");
     std::filesystem::remove("line_test.csv");
 }
 
