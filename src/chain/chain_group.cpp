@@ -290,9 +290,7 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles) {
 
 }  // namespace
 
-char const* ChainGroup::kind() const {
-    return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1));
-}
+char const* ChainGroup::kind() const { return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1)); }
 
 bool ChainGroup::is_driven(std::int64_t k) const {
     auto const found =

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "dca/leaves.hpp"
@@ -37,6 +38,7 @@ class TreeSolver final : public ChainSolver {
             Matrices segment = matrices_[root.slot];
             if (root.jointed_tip) segment = assemble(segment, Matrices::zero(), restricted(root.next), joints_[root.next]);
             joints_[root.first].factor = factorize(segment.z11, restricted(root.first));
+            if (root.jointed_tip) refuse_redundant(root);
         });
         ++report_.matrix_sweeps;
         report_.matrix_seconds += now() - start;
@@ -134,6 +136,18 @@ class TreeSolver final : public ChainSolver {
     void for_roots(Action const& action) {
         executor_.for_each(count(schedule_.roots), [&](std::int64_t i) { action(schedule_.roots[i]); });
         for (Root const& root : schedule_.top_roots) action(root);
+    }
+
+    /// Where base and tip hold a chain more than once nothing but rounding is left of a pivot: it is made to fail. What was there before:
+    /// the chain as it floats.
+    void refuse_redundant(Root const& root) {
+        double constexpr lost = 0x1p-33;  // fewer than six digits would be left
+        auto const check = [&](Symmetric<double, K>& factor, Symmetric<double, K> const& floating, int restricted) {
+            for (int i = 0; i < restricted; ++i)
+                if (1 / factor(i, i) < lost * floating(i, i)) factor(i, i) = std::numeric_limits<double>::quiet_NaN();
+        };
+        check(joints_[root.next].factor, matrices_[root.slot].z22, restricted(root.next));
+        check(joints_[root.first].factor, matrices_[root.slot].z11, restricted(root.first));
     }
 
     /// One collective: the units of chains that several ranks share, to all ranks.

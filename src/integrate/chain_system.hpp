@@ -20,7 +20,8 @@ int choose_threads(Scene const&, Communicator const&);
 
 class ChainSystem {
   public:
-    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4, velocity-verlet) or world (rattle, g-baoab). Collective.
+    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4, velocity-verlet) or world (rattle,
+    /// g-baoab). Collective.
     ChainSystem(Scene const&, Axes axes, Communicator const&);
 
     /// Kinematics, forces, matrices and biases at the present state: accelerations of every body. With OpenMM the matrix sweep runs
@@ -81,7 +82,8 @@ class ChainSystem {
     void make_openmm();
     void add_openmm_forces();
     /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
-    std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name, int width) const;
+    std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
+                                 int width) const;
     /// This rank's part into an array of a checkpoint. Collective.
     void add_part(ChainGroup const&, std::vector<double> const& own, int width, std::string const& name,
                   std::map<std::string, std::vector<double>>& arrays) const;

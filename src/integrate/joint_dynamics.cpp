@@ -163,7 +163,8 @@ Vec3 JointDynamics::joint_velocity_term(JointState const& state, std::int64_t k,
     if (group_.drives.empty() || !group_.is_driven(k)) return angular;
     auto const drive =
         std::lower_bound(group_.drives.begin(), group_.drives.end(), k, [](LocalDrive const& d, std::int64_t b) { return d.body < b; });
-    double const first = scene::acceleration_at(drive->course[0], state.time), second = scene::acceleration_at(drive->course[1], state.time);
+    double const first = scene::acceleration_at(drive->course[0], state.time),
+                 second = scene::acceleration_at(drive->course[1], state.time);
     if (universal) return angular + first * group_.first_axis.view().load(k) + second * axes.column(2);
     Vec3 const s = group_.has_screws ? group_.screw.view().load(k) : Vec3{{1, 0, 1}};
     linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));

@@ -322,7 +322,8 @@ json run_simulation(Scene const& scene, Communicator const& communicator, RunOpt
     if (!options.steps && scene.dynamics.steps == 0)
         throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
     // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
-    if (uses_joint_coordinates(scene.dynamics.integrator)) return Run(with_start_velocities(scene, communicator), communicator, options).run();
+    if (uses_joint_coordinates(scene.dynamics.integrator))
+        return Run(with_start_velocities(scene, communicator), communicator, options).run();
     return Run(scene, communicator, options).run();
 }
 

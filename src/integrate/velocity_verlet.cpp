@@ -7,8 +7,7 @@ namespace {
 
 class VelocityVerlet final : public JointIntegrator {
   public:
-    explicit VelocityVerlet(JointDynamics& dynamics)
-        : dynamics_(dynamics), rates_(dynamics.make_rates()), next_(dynamics.make_rates()) {}
+    explicit VelocityVerlet(JointDynamics& dynamics) : dynamics_(dynamics), rates_(dynamics.make_rates()), next_(dynamics.make_rates()) {}
     int evaluations_a_step() const override { return 1; }
     JointRates* carried() override { return &rates_; }
     void restored() override { ready_ = true; }
@@ -42,7 +41,8 @@ class VelocityVerlet final : public JointIntegrator {
                 state.q.set(k, {{q[0] + by[0], q[1] + by[1], 0, 0}});
         }
         for (std::size_t p = 0; p < group.pieces.size(); ++p)
-            state.base_position[p] = state.base_position[p] + plus_scaled(h * state.base_velocity[p], 0.5 * h * h, rates_.base_acceleration[p]);
+            state.base_position[p] =
+                state.base_position[p] + plus_scaled(h * state.base_velocity[p], 0.5 * h * h, rates_.base_acceleration[p]);
     }
     static void add_to_velocities(JointState const& from, double h, JointRates const& rates, JointState& to) {
         for (std::int64_t k = 0; k < from.qd.size(); ++k) to.qd.set(k, plus_scaled(from.qd[k], h, rates.qdd[k]));

@@ -96,9 +96,9 @@ double largest_difference(Scene const& scene, Solution const& found, std::vector
                 bool const linear = accelerations_of(chain, k) == 6 && i >= found.acceleration_offset[body] + 3;
                 bool const slides = chain.bodies.size() > 0 && chain.bodies.joint[k] == JointType::prismatic;
                 int const kind = chain.is_beads() || (chain.is_linked() && accelerations_of(chain, k) == 3) ? bead
-                                 : slides                                                                  ? sliding
-                                 : linear                                                                  ? base
-                                                                                                           : angular;
+                                 : slides                                                                   ? sliding
+                                 : linear                                                                   ? base
+                                                                                                            : angular;
                 difference[kind] = larger(difference[kind], std::abs(found.acceleration[i] - reference[i]));
                 largest[kind] = std::max(largest[kind], std::abs(reference[i]));
             }

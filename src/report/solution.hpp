@@ -12,7 +12,8 @@ namespace catena {
 /// On rank 0; empty on the others. Body b's numbers are entries [offset[b], offset[b + 1]).
 struct Solution {
     /// Second derivatives of the joint's coordinates (universal 2, weld none); spherical: derivative of the components of qd (B); free:
-    /// {alpha (B), acceleration of the origin (W)}; link: the bead's acceleration (W), a rigid body's {alpha (B), of its centre of mass (W)}.
+    /// {alpha (B), acceleration of the origin (W)}; link: the bead's acceleration (W), a rigid body's {alpha (B), of its centre of mass
+    /// (W)}.
     std::vector<double> acceleration;
     std::vector<std::int64_t> acceleration_offset;
     /// Constraint wrench [torque, force] on body b at its inboard joint (W); link: its tension, positive when it pulls its ends together (0

@@ -41,7 +41,8 @@ bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& firs
     for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
         if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd])) return false;
     bool const pinned = chain.tip == Tip::jointed && chain.tip_joint.type == JointType::spherical;  // turns about any axis
-    if (chain.tip == Tip::jointed && !pinned && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation)) return false;
+    if (chain.tip == Tip::jointed && !pinned && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation))
+        return false;
     return axes.any();
 }
 

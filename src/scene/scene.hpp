@@ -60,9 +60,9 @@ struct BodyArrays {
     Vec3 free_velocity = Vec3::zero();     // free base: its velocity, W
     std::vector<Vec3> first_axis;          // universal: the first axis, J; not parallel to `axis`
     std::vector<double> pitch;             // helical: shift a radian
-    std::vector<Vec3> torque;              // joint torque (prismatic: force) on body k + 1 along each coordinate; spherical: components in B
-    std::vector<Vec3> stiffness;           // a coordinate; spherical: on the components of the rotation vector from `rest`
-    std::vector<Vec3> damping;             // on qd, as stiffness
+    std::vector<Vec3> torque;     // joint torque (prismatic: force) on body k + 1 along each coordinate; spherical: components in B
+    std::vector<Vec3> stiffness;  // a coordinate; spherical: on the components of the rotation vector from `rest`
+    std::vector<Vec3> damping;    // on qd, as stiffness
     std::vector<std::array<double, 4>> rest;    // as q
     std::vector<std::pair<Vec3, Vec3>> wrench;  // external {torque, force} at com, W
     std::vector<std::array<double, 2>> drag;    // {linear, angular}: force -linear v at com, torque -angular omega
@@ -99,8 +99,8 @@ struct TipJoint {
     Mat3 rotation = Mat3::identity();
     Vec3 translation = Vec3::zero();
     std::array<double, 4> q{0, 0, 0, 0};  // as BodyArrays::q
-    std::optional<Vec3> anchor;           // W: where G's origin must be (closure error above 1e-9 of the chain's reach: refused); link: needed
-    double length = 0;                    // link; 0: the distance at the start
+    std::optional<Vec3> anchor;  // W: where G's origin must be (closure error above 1e-9 of the chain's reach: refused); link: needed
+    double length = 0;           // link; 0: the distance at the start
 };
 
 /// Point beads on rigid links; entry k is bead k + 1 and the link on its inboard side.
@@ -151,7 +151,7 @@ struct OpenMmSpec {
 };
 
 struct ForceSpec {
-    Vec3 gravity = Vec3::zero();  // W
+    Vec3 gravity = Vec3::zero();               // W
     double linear_drag = 0, angular_drag = 0;  // of every body that has none of its own
     std::optional<OpenMmSpec> openmm;
 };
@@ -159,7 +159,6 @@ struct ForceSpec {
 enum class Integrator { rk4, velocity_verlet, rattle, g_baoab };
 /// Whether the state is in joint coordinates (else: absolute ones).
 inline bool uses_joint_coordinates(Integrator i) { return i == Integrator::rk4 || i == Integrator::velocity_verlet; }
-
 
 struct DynamicsSpec {
     bool given = false;  // the scene has a `dynamics` section

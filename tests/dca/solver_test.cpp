@@ -112,19 +112,25 @@ TEST_P(Solver, RandomChainsAgreeWithTheArticulatedBodyAlgorithm) {
         ChainSpec const chain = random_chain(seed, options);
         oracle::Loads const loads{{{0.3, -2.0, 9.0}}, {}};
         SCOPED_TRACE("seed " + std::to_string(seed));
-        bool const held_twice = options.tip && options.joints == RandomJoints::planar;  // the plane holds both ends as well
-        if (held_twice && GetParam().handles == Handles::full) {
+        // The plane holds both ends of a planar chain too; a chain that cannot turn is held twice by a tip that keeps it from turning.
+        bool const planar = options.joints == RandomJoints::planar && options.base == Base::fixed;
+        bool const held_twice = options.tip && planar;
+        bool const stiff =
+            options.tip && options.joints == RandomJoints::prismatic && options.base == Base::fixed && *options.tip != JointType::spherical;
+        if (stiff || (held_twice && (GetParam().handles == Handles::full || !chain.bodies.driven.empty()))) {
             EXPECT_THROW(compare(scene_of(chain, loads.gravity), chain, loads, *communicator_), ComputationError);
             continue;
         }
-        Compared c = compare(scene_of(chain, loads.gravity), chain, loads, *communicator_);
+        Compared c;
+        ASSERT_NO_THROW(c = compare(scene_of(chain, loads.gravity), chain, loads, *communicator_));
         if (held_twice) {  // moving it out of its plane locks it: no growth to measure; and joint forces are not unique
             c.bound = 64 * static_cast<double>(options.bodies) * oracle::condition_estimate(chain) * eps;
             c.force_error = 0;
         }
         worst = std::max(worst, c.error / c.bound);
         ASSERT_LE(c.error, c.bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints);
-        ASSERT_LE(c.force_error, 8 * c.bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints);
+        ASSERT_LE(c.force_error, (options.tip ? 4 : 1) * 8 * c.bound)
+            << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints);
         ASSERT_LE(c.residual, c.residual_bound) << "seed " << seed;
     }
     RecordProperty("worst_error_over_bound", std::to_string(worst));

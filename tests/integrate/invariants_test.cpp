@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "integrate/constrained_integrator.hpp"
-#include "integrate/observables.hpp"
 #include "integrate/joint_integrators.hpp"
+#include "integrate/observables.hpp"
 
 namespace catena::test {
 namespace {
