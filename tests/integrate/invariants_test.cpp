@@ -146,13 +146,13 @@ double order_of(Scene const& scene, bool fourth) {
     auto const end_of = [&](int steps, bool reference) {
         ChainSystem system(scene, Axes::joint, *communicator);
         JointDynamics& dynamics = *system.joint().front();
-        auto const integrator = reference || fourth ? make_runge_kutta4(dynamics) : make_velocity_verlet(dynamics);
-        dynamics.close_tips(system.joint_state(0));
+        auto const integrator = reference || fourth ? make_runge_kutta4(system) : make_velocity_verlet(system);
+        dynamics.close_tips(system.joint_states()[0]);
         for (int i = 0; i < steps; ++i) {
-            system.joint_state(0).time = i * time / steps;
-            integrator->step(system.joint_state(0), time / steps);
+            system.joint_states()[0].time = i * time / steps;
+            integrator->step(system.joint_states(), time / steps);
         }
-        EXPECT_LE(dynamics.closure_error(system.joint_state(0)), 1e-12);
+        EXPECT_LE(dynamics.closure_error(system.joint_states()[0]), 1e-12);
         return system.snapshot().position;
     };
     auto const exact = end_of(1280, true);
