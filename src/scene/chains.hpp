@@ -9,11 +9,16 @@
 
 namespace catena::scene {
 
+/// Whether a chain without a place may take another shape to find one: a free chain of residues whose shape is not given may, where it is
+/// self-avoiding or one of several without a `conformation`, or else if the scene asked for self-avoidance.
+enum class Regrown : std::uint8_t { no, if_asked, yes };
+
 /// A chain of the scene before it has its place.
 struct Draft {
     ChainSpec chain;
     Node const* node = nullptr;  // its entry in `chains`
     bool movable = false;        // the scene does not say where it stands
+    Regrown regrown = Regrown::no;
 };
 
 /// Reads the entry `index` (from 0) of `chains` into `count` chains and appends them. `scene` holds everything but the chains; `warm`: it
