@@ -170,9 +170,9 @@ class ChainReader {
         return request_.fields.find("positions") || source_.key == "pdb" || (conformation && conformation->kind == Node::Kind::map);
     }
     Regrown regrown(ChainSpec const& chain) const {
-        if (!is_free(chain) || is_given() || (source_.key != "sequence" && source_.key != "fasta")) return Regrown::no;
+        if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta")) return Regrown::no;
         Node const* const conformation = request_.fields.find("conformation");
-        bool const any_shape = conformation ? conformation->text == "self_avoiding" : count_ > 1;
+        bool const any_shape = conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
         return any_shape ? Regrown::yes : Regrown::if_asked;
     }
     /// What cannot fit is refused before it is tried.

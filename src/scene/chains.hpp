@@ -9,8 +9,8 @@
 
 namespace catena::scene {
 
-/// Whether a chain without a place may take another shape to find one: a free chain of residues whose shape is not given may, where it is
-/// self-avoiding or one of several without a `conformation`, or else if the scene asked for self-avoidance.
+/// Whether a chain without a place may take another shape to find one: a free chain of residues may where it is self-avoiding
+/// or one of several copies whose shape the scene does not say; others of them may if the scene asks for self-avoidance instead.
 enum class Regrown : std::uint8_t { no, if_asked, yes };
 
 /// A chain of the scene before it has its place.

@@ -16,6 +16,7 @@ namespace {
 double constexpr densest = 0.64;   // random close packing of spheres
 double constexpr narrowest = 2.5;  // excluded distances: a narrower box shows a bead two images of another
 std::int64_t constexpr most_steps = 2000;
+std::size_t constexpr most_points = std::size_t{1} << 28;  // numbers of points and cells are of 32 bits
 
 std::string text_of(Vec3 const& box) { return fmt::format("{:.6g} x {:.6g} x {:.6g}", box[0], box[1], box[2]); }
 
@@ -32,15 +33,17 @@ double volume_of(Crowd const& crowd) {
 
 void refuse_impossible(Crowd const& crowd, Node const& node) {
     Vec3 const& box = crowd.box;
+    if (crowd.at.size() > most_points)
+        fail(node, fmt::format("{} beads to pack", crowd.at.size()), fmt::format("pack {} or fewer, or enlarge the box", most_points));
     double const edge = std::min({box[0], box[1], box[2]});
-    if (edge < narrowest * crowd.excluded)
+    if (edge < narrowest * crowd.excluded * (1 - 1e-9))
         fail(node, fmt::format("the box {} is too narrow to pack chains whose beads keep {:.4g} nm apart", text_of(box), crowd.excluded),
              fmt::format("give edges of {:.4g} nm or more", narrowest * crowd.excluded));
     double const filled = volume_of(crowd) / (box[0] * box[1] * box[2]);
     if (filled > densest)
         fail(node,
-             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of the box {}; spheres fill {:.2g} at most", crowd.movable(),
-                         crowd.excluded, filled, text_of(box), densest),
+             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of the box {}, random packings of spheres fill {:.2g}",
+                         crowd.movable(), crowd.excluded, filled, text_of(box), densest),
              fmt::format("make each edge {:.3g} times as long or longer, or lower `count`", std::cbrt(filled / densest) + 5e-4));
 }
 

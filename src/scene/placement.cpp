@@ -102,8 +102,9 @@ std::vector<Vec3> find_cells(Grid const& grid, std::size_t wanted, double width,
     fail(*draft.node,
          fmt::format("the box {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within a sphere {:.4g} wide, not for {}",
                      box[0], box[1], box[2], room, width, wanted),
-         residues ? "enlarge the box, lower `count` or write `conformation: self_avoiding`: such chains are grown among each other"
-                  : "enlarge the box or lower `count`; only free chains of residues without `positions` are packed more densely");
+         residues
+             ? "enlarge the box, lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"
+             : "enlarge the box or lower `count`; only free chains of residues without `positions` are packed more densely");
 }
 
 /// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box has no room for chains that can be grown
