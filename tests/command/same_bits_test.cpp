@@ -2,6 +2,7 @@
 // one rank of the same backend, threads with `segments`, whose tree they share.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "report/solution.hpp"
@@ -66,6 +67,19 @@ TEST(SameBits, SeveralChainsOfDifferentKinds) {
     expect_same_bits(scene_of(random_chain("link", 70, true) + random_chain("revolute", 9, false) + random_chain("link", 300, false) +
                               random_chain("spherical", 130, true) + random_chain("revolute", 1, true)),
                      "several chains", threads_fit() || (cpu_backends().size() > 2 && testing::world().size() == 2));
+}
+
+// Every rank packs the box by itself. Velocities made of the positions let accelerations tell places apart.
+TEST(SameBits, PackedChains) {
+    Scene scene =
+        parse_scene("box: {periodic: [6, 6, 6]}\nchains: [{count: 40, sequence: GGGGGGGGGGGGGGGGGGGG, model: calvados2}]", "test");
+    for (ChainSpec& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.beads.size(); ++k) {
+            Vec3 const& at = chain.beads.position[k];
+            chain.beads.velocity[k] = {{at[1], at[2], at[0]}};
+        }
+    EXPECT_GT(std::abs(solve(scene, Backend::segments, Handles::projected, 1, *serial_communicator()).acceleration[0]), 0);
+    expect_same_bits(scene, "packed chains", threads_fit());
 }
 
 // The comparison itself: another state has other bits.
