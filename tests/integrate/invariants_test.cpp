@@ -67,6 +67,12 @@ std::string const beads = "chains: [{name: a, generator: {freely_jointed: {beads
 std::string const hanging =
     "chains: [{name: a, base: fixed, generator: {random: {bodies: 8, joint: spherical, seed: 4}}}]\nforces: {gravity: [0, 0, -5]}\n";
 
+std::string const linked = "chains: [{name: a, base: free, generator: {random: {bodies: 14, joint: link, seed: 2}}}]\n";
+std::string const held =
+    "chains: [{name: a, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 8, joint: spherical, seed: 4}}},"
+    " {name: b, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 9, joint: link, seed: 4}}}]\n"
+    "forces: {gravity: [0, 0, -5]}\n";
+
 struct Momenta {
     Vec3 linear = Vec3::zero(), angular = Vec3::zero();
     double size = 0;
@@ -76,11 +82,14 @@ Momenta momenta(Scene const& scene, ChainSystem::Snapshot const& s) {
     std::size_t i = 0;
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 0; k < chain.size(); ++k, ++i) {
-            double const mass = chain.is_beads() ? chain.beads.mass[k] : chain.bodies.mass[k];
+            double const mass = chain.is_beads() ? chain.beads.mass[k] : chain.is_linked() ? chain.linked.mass[k] : chain.bodies.mass[k];
             Vec3 const p = mass * s.velocity[i];
             m.linear = m.linear + p;
             m.angular = m.angular + cross(s.position[i], p);
-            if (!chain.is_beads()) m.angular = m.angular + to_matrix(s.orientation[i]) * (chain.bodies.inertia[k] * s.omega[i]);
+            if (!chain.is_beads()) {
+                Sym3 const& inertia = chain.is_linked() ? chain.linked.inertia[k] : chain.bodies.inertia[k];
+                m.angular = m.angular + to_matrix(s.orientation[i]) * (inertia * s.omega[i]);
+            }
             m.size += norm(p) * (1 + norm(s.position[i]));
         }
     return m;
@@ -89,7 +98,7 @@ Momenta momenta(Scene const& scene, ChainSystem::Snapshot const& s) {
 // Impulses act equal and opposite at one point, up to the joints' closing: eps a step from rounding and the constraint error from
 // the point's two places.
 TEST(Rattle, FreeChainsKeepTheirMomenta) {
-    for (std::string const& text : {bodies, beads}) {
+    for (std::string const& text : {bodies, beads, linked}) {
         Constrained run(text, 0.004);
         Momenta const before = momenta(run.scene(), run.snapshot());
         run.run(2000);
@@ -102,7 +111,7 @@ TEST(Rattle, FreeChainsKeepTheirMomenta) {
 }
 
 TEST(Rattle, EnergyErrorFallsByFourWhenTheStepIsHalved) {
-    for (std::string const& text : {bodies, beads, hanging}) {
+    for (std::string const& text : {bodies, beads, hanging, linked, held}) {
         double rms[2];
         for (int half = 0; half < 2; ++half) {
             double const step = half ? 0.002 : 0.004;
@@ -122,7 +131,7 @@ TEST(Rattle, EnergyErrorFallsByFourWhenTheStepIsHalved) {
 }
 
 TEST(Langevin, HeatsAColdChainToItsTemperature) {
-    for (std::string const& text : {bodies, beads}) {
+    for (std::string const& text : {bodies, beads, linked}) {
         Constrained run(text, 0.004, Integrator::g_baoab, 5.0, 0.00831446261815324 * 150);
         run.run(500);
         double mean = 0;
@@ -132,7 +141,7 @@ TEST(Langevin, HeatsAColdChainToItsTemperature) {
             mean += 2 * kinetic_energy(run.scene(), run.snapshot()) /
                     (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) / samples;
         }
-        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 and 61 squares.
+        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 squares and more.
         double const error = 150 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom(run.scene())) / 100);
         EXPECT_NEAR(mean, 150, 4 * error) << text;
         EXPECT_LE(run.constraint_error(), 1e-10);
