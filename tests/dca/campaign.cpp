@@ -76,7 +76,7 @@ bool tip_fits(CampaignCase const& c) {
     }
     Freedom const f = freedom(chain);
     bool const shifts_alone = f.turns == 0 && f.all >= 3 && chain.tip_joint.type == JointType::spherical;
-    return (f.turns >= 3 && f.all >= 6) || shifts_alone;
+    return (f.turns >= 3 && f.all >= 8) || shifts_alone;
 }
 
 /// What is compared: every vector of a quantity, one after the other.
@@ -126,8 +126,8 @@ long double largest(std::vector<V> const& values) {
     return most;
 }
 
-/// Largest difference, each quantity relative to its largest component; where the model keeps a quantity at zero, to the largest of
-/// all, and where all of them are zero (nothing but welds), to one of these chains' units.
+/// Largest difference, each quantity relative to its largest component; where that is below a thousandth of
+/// the largest of all, to the latter, and where all of them are zero (nothing but welds), to one of these chains' units.
 double difference(std::vector<std::vector<V>> const& found, std::vector<std::vector<V>> const& expected) {
     long double overall = 1, worst = 0;
     for (auto const& quantity : expected) overall = std::max(overall, largest(quantity));
@@ -135,27 +135,62 @@ double difference(std::vector<std::vector<V>> const& found, std::vector<std::vec
         std::vector<V> error;
         for (std::size_t k = 0; k < expected[i].size(); ++k) error.push_back(found[i][k] - expected[i][k]);
         long double const own = largest(expected[i]);
-        long double const relative = largest(error) / (own > 1e-6L * overall ? own : overall);
+        long double const relative = largest(error) / (own > 1e-3L * overall ? own : overall);
         if (!(relative <= worst)) worst = relative;  // a NaN is the worst
     }
     return static_cast<double>(worst);
 }
 
+/// The wrench on every body moved by up to `size` of the forces and moments that act on it: what a rounding in each of its equations
+/// comes to. Lengths are those of these chains, up to 0.5.
+void push(ChainSpec& chain, oracle::OracleResult<long double> const& exact, std::uint64_t seed, double size) {
+    Random random(seed);
+    BodyArrays& b = chain.bodies;
+    b.wrench.resize(b.size(), {Vec3::zero(), Vec3::zero()});
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        auto const& inboard = exact.joint_force[k];
+        auto const& outboard = k + 1 < b.size() ? exact.joint_force[k + 1] : exact.tip_force;
+        auto const force = static_cast<double>(norm(inboard.force) + norm(outboard.force)) + norm(b.wrench[k].second);
+        auto const moment = static_cast<double>(norm(inboard.torque) + norm(outboard.torque)) + norm(b.wrench[k].first) + 0.5 * force;
+        b.wrench[k].first = b.wrench[k].first + random.vector(size * moment);
+        b.wrench[k].second = b.wrench[k].second + random.vector(size * force);
+    }
+}
+
 struct Growth {
     double accelerations = 1, forces = 1;
 };
-Growth growth_of(CampaignCase const& c, Answer const& exact) {
+Growth growth_of(CampaignCase const& c, oracle::OracleResult<long double> const& exact) {
     double constexpr size = 0x1p-30;
+    Answer const answer = answer_of(exact);
     Growth g;
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {  // one random direction may happen to matter little
-        Answer const moved = answer_of(oracle::aba<long double>(perturbed(seed, c.chain, size), c.loads));
-        g.accelerations = std::max(g.accelerations, difference(moved.accelerations, exact.accelerations) / size);
-        g.forces = std::max(g.forces, difference(moved.forces, exact.forces) / size);
+        ChainSpec moved = perturbed(seed, c.chain, size);
+        if (moved.bodies.size() > 0) push(moved, exact, seed, size);
+        Answer const other = answer_of(oracle::aba<long double>(moved, c.loads));
+        g.accelerations = std::max(g.accelerations, difference(other.accelerations, answer.accelerations) / size);
+        g.forces = std::max(g.forces, difference(other.forces, answer.forces) / size);
     }
     return g;
 }
 
-void set_bounds(CampaignCase const& c, Answer const& exact, CampaignErrors& e) {
+/// Largest over smallest force that joints carry. Where forces die away along a chain (its far end falls freely), one rounding of the
+/// largest terms counts that many times in the residual of the equations with the smallest.
+double span_of_forces(Answer const& exact) {
+    std::vector<double> sizes;
+    for (std::size_t k = 0; k < exact.forces.front().size(); ++k) {
+        double size = 0;
+        for (auto const& quantity : exact.forces) size += static_cast<double>(norm(quantity[k]));
+        if (size > 0) sizes.push_back(size);
+    }
+    if (sizes.empty()) return 1;
+    auto const [least, most] = std::minmax_element(sizes.begin(), sizes.end());
+    return *most / *least;
+}
+
+void set_bounds(CampaignCase const& c, oracle::OracleResult<long double> const& exact, CampaignErrors& e) {
+    e.dying = e.residual > e.residual_bound;
+    e.residual_bound += span_of_forces(answer_of(exact)) * eps;
     double constexpr least = 1e-11;
     auto const n = static_cast<double>(c.chain.size());
     bool const held_twice = c.chain.tip == Tip::jointed && in_a_plane(c.chain);
@@ -178,7 +213,7 @@ std::vector<Backend> const& backends() {
 }
 
 struct Row {
-    int seeds = 0, tips = 0, dense = 0;
+    int seeds = 0, tips = 0, dense = 0, dying = 0;
     double acceleration = 0, force = 0, over_bound = 0, above_least = 0, residual_over_bound = 0, oracles = 0;
     void add(CampaignCase const& c, CampaignErrors const& e) {
         ++seeds;
@@ -188,17 +223,18 @@ struct Row {
         force = std::max(force, e.force);
         over_bound = std::max({over_bound, e.acceleration / e.acceleration_bound, e.force / e.force_bound});
         above_least += e.acceleration > 1e-11 || e.force > 1e-11;
+        dying += e.dying;
         residual_over_bound = std::max(residual_over_bound, e.residual / e.residual_bound);
         oracles = std::max(oracles, e.oracles);
     }
 };
 
 void print(std::map<std::string, Row> const& table) {
-    fmt::print("{:<20}{:>7}{:>7}{:>7}{:>11}{:>11}{:>13}{:>13}{:>10}{:>14}\n", "kind", "seeds", "tips", "dense", "q'' error", "force err.",
-               "above 1e-11", "error/bound", "res./b.", "aba - dense");
+    fmt::print("{:<20}{:>7}{:>7}{:>7}{:>11}{:>11}{:>13}{:>13}{:>12}{:>7}{:>13}\n", "kind", "seeds", "tips", "dense", "q'' error",
+               "force err.", "above 1e-11", "error/bound", "res./bound", "dying", "aba - dense");
     for (auto const& [kind, r] : table)
-        fmt::print("{:<20}{:>7}{:>7}{:>7}{:>11.1e}{:>11.1e}{:>13}{:>13.3f}{:>10.3f}{:>14.1e}\n", kind, r.seeds, r.tips, r.dense,
-                   r.acceleration, r.force, r.above_least, r.over_bound, r.residual_over_bound, r.oracles);
+        fmt::print("{:<20}{:>7}{:>7}{:>7}{:>11.1e}{:>11.1e}{:>13}{:>13.3f}{:>12.3f}{:>7}{:>13.1e}\n", kind, r.seeds, r.tips, r.dense,
+                   r.acceleration, r.force, r.above_least, r.over_bound, r.residual_over_bound, r.dying, r.oracles);
     std::fflush(stdout);
 }
 
@@ -269,15 +305,16 @@ CampaignErrors campaign_errors(CampaignCase const& c, ChainSpec const& solved) {
     scene.solver.threads = 2;
     ChainSystem system(scene, Axes::joint, *communicator);
     system.evaluate();
-    Answer const found = answer_of(system, c.chain), exact = answer_of(oracle::aba<long double>(c.chain, c.loads));
+    auto const exact = oracle::aba<long double>(c.chain, c.loads);
+    Answer const found = answer_of(system, c.chain), expected = answer_of(exact);
     CampaignErrors e;
-    e.acceleration = difference(found.accelerations, exact.accelerations);
-    e.force = difference(found.forces, exact.forces);
+    e.acceleration = difference(found.accelerations, expected.accelerations);
+    e.force = difference(found.forces, expected.forces);
     if (c.chain.size() <= 12) {
         Answer const dense = answer_of(oracle::dense<long double>(c.chain, c.loads));
         e.acceleration = std::max(e.acceleration, difference(found.accelerations, dense.accelerations));
         e.force = std::max(e.force, difference(found.forces, dense.forces));
-        e.oracles = difference(dense.accelerations, exact.accelerations);
+        e.oracles = difference(dense.accelerations, expected.accelerations);
     }
     e.residual = system.residual();
     e.residual_bound = system.residual_bound();

@@ -31,6 +31,7 @@ struct CampaignErrors {
     double acceleration = 0, acceleration_bound = 0;
     double force = 0, force_bound = 0;
     double residual = 0, residual_bound = 0;
+    bool dying = false;  // residual above the solver's own bound, where forces die away along the chain: see span_of_forces
     double oracles = 0;  // dense against articulated bodies, both in long double; 0 above 12 bodies
     bool good() const { return acceleration <= acceleration_bound && force <= force_bound && residual <= residual_bound; }
     std::string text() const;
