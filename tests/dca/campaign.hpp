@@ -14,6 +14,7 @@
 namespace catena::test {
 
 struct CampaignCase {
+    std::uint64_t seed = 0;
     std::string kind;  // the table's row
     ChainSpec chain;
     oracle::Loads loads;
@@ -24,15 +25,16 @@ CampaignCase campaign_case(std::uint64_t seed);
 
 /// Errors are relative to the largest component of each quantity: accelerations (joints, centres of mass, angular, base) and
 /// constraint forces (torques, forces) by the articulated-body algorithm in long double and, up to 12 bodies, by one dense system.
-/// Bounds: 32 (n + 8) eps times the growth of the chain's own errors, which is measured by three random changes of all its
-/// numbers; never below 1e-11. A chain that its tip holds twice (planar, on joints that keep its plane): 64 n eps times the condition
-/// number, and no forces, which are not unique there.
+/// Bounds: of errors 1e-11, and where that is not kept the solver's residual bound times the growth of such residuals (rounding.hpp); of
+/// the residual the solver's own, where forces die away along the chain and one eps times how far. Of a chain that its tip holds twice
+/// (planar, on joints that keep its plane) accelerations alone: forces are not unique there.
 struct CampaignErrors {
     double acceleration = 0, acceleration_bound = 0;
     double force = 0, force_bound = 0;
     double residual = 0, residual_bound = 0;
-    bool dying = false;  // residual above the solver's own bound, where forces die away along the chain: see span_of_forces
-    double oracles = 0;  // dense against articulated bodies, both in long double; 0 above 12 bodies
+    bool dying = false;    // the residual is above the solver's bound and within that and the span of the forces: see span_of_forces
+    double in_double = 0;  // of the articulated-body algorithm in double
+    double oracles = 0;    // dense against articulated bodies, both in long double; 0 above 12 bodies
     bool good() const { return acceleration <= acceleration_bound && force <= force_bound && residual <= residual_bound; }
     std::string text() const;
 };
@@ -42,7 +44,7 @@ CampaignErrors campaign_errors(CampaignCase const&, ChainSpec const& solved);
 /// The smallest chain found for which `good` is false or throws; precondition: the case itself is one.
 Shrunk smallest_failing(CampaignCase const&, std::function<bool(CampaignCase const&)> const& good);
 
-/// Runs seeds first to last, prints a table with a row a kind, and fails the test at the first chain that is not good, shrunk.
+/// Runs seeds first to last, prints a table with a row a kind, and fails the test if a chain is not good, the first of them shrunk.
 void run_campaign(std::uint64_t first, std::uint64_t last);
 
 }  // namespace catena::test
