@@ -145,6 +145,27 @@ void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, st
     group.length.set(k, {{b.length[body]}});
 }
 
+/// Beads that bodies carry, where any chain of the group has some.
+void fill_carried(ChainGroup& group, Scene const& scene) {
+    auto const carried_of = [&](int chain) -> CarriedBeads const& { return scene.chains[group.chain[chain]].carried(); };
+    bool any = false;
+    for (std::size_t chain = 0; chain < group.chain.size(); ++chain) any = any || carried_of(static_cast<int>(chain)).size() > 0;
+    if (!any) return;
+    group.carried_in_scene = true;
+    group.bead_offset.push_back(0);
+    for (dca::Piece const& piece : group.pieces) {
+        CarriedBeads const& carried = carried_of(piece.chain);
+        for (std::int64_t body = piece.body; body < piece.body + piece.count; ++body) {
+            for (std::int64_t i = carried.size() > 0 ? carried.offset[body] : 0; carried.size() > 0 && i < carried.offset[body + 1]; ++i) {
+                Vec3 const place = carried.position[static_cast<std::size_t>(i)];
+                // Joint chains say it from the origin, their inboard joint.
+                group.bead_place.push_back(group.linked ? place : place + group.r1[piece.local + body - piece.body]);
+            }
+            group.bead_offset.push_back(static_cast<std::int64_t>(group.bead_place.size()));
+        }
+    }
+}
+
 void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     TipJoint const& tip = spec.tip_joint;
     LocalTip local{k, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
@@ -274,6 +295,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     if (std::find(tips.begin(), tips.end(), 1) != tips.end()) group.jointed_tip.assign(static_cast<std::size_t>(group.size), 0);
     allocate(group);
     fill(group, scene);
+    if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene);
     find_neighbours(group, communicator.rank());
     if (group.has_screws) exchange_from_outboard(communicator, group, group.screw.view());

@@ -63,15 +63,18 @@ struct ChainGroup {
     Field<1> length;  // of the inboard link
     // bodies
     Field<6> inertia,
-        inverse_inertia;         // about the centre of mass, B (lower triangle: xx yx yy zx zy zz); planar: the inverse about the axis
-    Field<3> r1, r2;             // inboard and outboard joint from the centre of mass, B (sliding outboard joint: at q = 0)
-    Field<9> axes1;              // joint's axes in M; the same components in B turn with the joint
-    Field<9> axes2;              // the outboard joint's axes in B (universal: at q = 0)
-    Field<4> joint_rotation;     // quaternion of J of the inboard joint in the inboard body's axes (first body: W)
-    Field<3> joint_translation;  // origin of J from the inboard body's origin, its axes (first body: W)
-    Field<3> first_axis;         // of a universal joint, J; empty where there is none
-    Field<3> screw;              // {c, s, rate}: the joint turns by c rate q about its axis and slides by s rate q along it;
-                                 // empty where no joint slides
+        inverse_inertia;            // about the centre of mass, B (lower triangle: xx yx yy zx zy zz); planar: the inverse about the axis
+    Field<3> r1, r2;                // inboard and outboard joint from the centre of mass, B (sliding outboard joint: at q = 0)
+    Field<9> axes1;                 // joint's axes in M; the same components in B turn with the joint
+    Field<9> axes2;                 // the outboard joint's axes in B (universal: at q = 0)
+    Field<4> joint_rotation;        // quaternion of J of the inboard joint in the inboard body's axes (first body: W)
+    Field<3> joint_translation;     // origin of J from the inboard body's origin, its axes (first body: W)
+    Field<3> first_axis;            // of a universal joint, J; empty where there is none
+    Field<3> screw;                 // {c, s, rate}: the joint turns by c rate q about its axis and slides by s rate q along it;
+                                    // empty where no joint slides
+    bool carried_in_scene = false;  // some body of the group carries beads, on whatever rank
+    std::vector<std::int64_t> bead_offset;  // size + 1: beads that body k carries; empty where none does
+    std::vector<Vec3> bead_place;           // of carried beads from the centre of mass, B
     std::vector<LocalDrive> drives;
     std::vector<LocalTip> tips;
 
@@ -81,6 +84,7 @@ struct ChainGroup {
     /// `none`: 0).
     std::vector<std::uint8_t> restricted_of_joint;
     bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] != 0; }
+    std::int64_t carried_beads() const { return bead_offset.empty() ? 0 : bead_offset.back(); }
     bool has_tips() const { return !jointed_tip.empty(); }
     /// Whether handle 2 of a body depends on the joint there.
     bool moving_meeting() const { return has_universal || has_screws; }

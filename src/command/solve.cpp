@@ -39,9 +39,8 @@ Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
             if (s.acceleration_offset[body + 1] - first == 6)
                 for (int i = 0; i < 3; ++i) base[i] = s.acceleration[first + 3 + i];
         }
-        if (!s.bead_force.empty() && chain.is_beads())
-            loads.bead_forces.assign(s.bead_force.begin() + bead, s.bead_force.begin() + bead + chain.size());
-        bead += chain.beads.size();
+        if (!s.bead_force.empty()) loads.bead_forces.assign(s.bead_force.begin() + bead, s.bead_force.begin() + bead + chain.bead_count());
+        bead += chain.bead_count();
         worst = larger(worst, oracle::rnea_residual(chain, loads, accelerations, base));
     }
     return worst;

@@ -63,29 +63,29 @@ class Grid {
 
 }  // namespace
 
-std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::int64_t first, std::int64_t last, double radius,
+std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,
                                     std::optional<Vec3> const& box) {
     std::vector<std::int64_t> ghosts;
-    if (first >= last) return ghosts;
+    if (own.empty()) return ghosts;
     Grid const grid(radius, box);
+    std::vector<bool> is_own(positions.size(), false);
     std::unordered_map<Cell, std::vector<std::int64_t>, CellHash> near;  // own beads in and around each cell
-    for (std::int64_t k = first; k < last; ++k)
+    for (std::int64_t const k : own) {
+        is_own[k] = true;
         grid.around(grid.cell(positions[k]), [&](Cell const& c) {
             auto& beads = near[c];
             if (beads.empty() || beads.back() != k) beads.push_back(k);
         });
-    auto const examine = [&](std::int64_t from, std::int64_t to) {
-        for (std::int64_t k = from; k < to; ++k) {
-            auto const beads = near.find(grid.cell(positions[k]));
-            if (beads == near.end()) continue;
-            bool const is_near = std::any_of(beads->second.begin(), beads->second.end(), [&](std::int64_t own) {
-                return grid.squared_distance(positions[k], positions[own]) < radius * radius;
-            });
-            if (is_near) ghosts.push_back(k);
-        }
-    };
-    examine(0, first);
-    examine(last, std::ssize(positions));
+    }
+    for (std::int64_t k = 0; k < std::ssize(positions); ++k) {
+        if (is_own[k]) continue;
+        auto const beads = near.find(grid.cell(positions[k]));
+        if (beads == near.end()) continue;
+        bool const is_near = std::any_of(beads->second.begin(), beads->second.end(), [&](std::int64_t inside) {
+            return grid.squared_distance(positions[k], positions[inside]) < radius * radius;
+        });
+        if (is_near) ghosts.push_back(k);
+    }
     return ghosts;
 }
 

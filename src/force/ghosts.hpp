@@ -10,9 +10,9 @@
 
 namespace catena {
 
-/// Beads outside [first, last) that lie within `radius` of a bead inside it, ascending. `box`: edges of the periodic box (nearest images).
+/// Beads that are not among `own` and lie within `radius` of one of these, ascending. `box`: edges of the periodic box (nearest images).
 /// Preconditions: radius > 0, positions finite.
-std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::int64_t first, std::int64_t last, double radius,
+std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,
                                     std::optional<Vec3> const& box);
 
 /// The largest distance between a bead's two positions.

@@ -80,10 +80,18 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa con
 
 void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSystem const& beads, int group) {
     for (auto const& link : beads.links) force.addExclusion(static_cast<int>(link.inboard), static_cast<int>(link.outboard));
+    for (auto const& [first, last] : beads.rigid)
+        for (std::int64_t a = first; a < last; ++a)
+            for (std::int64_t b = a + 1; b < last; ++b) force.addExclusion(static_cast<int>(a), static_cast<int>(b));
     force.setNonbondedMethod(beads.box ? OpenMM::CustomNonbondedForce::CutoffPeriodic : OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
     force.setUseSwitchingFunction(spec.switch_width > 0);
     if (spec.switch_width > 0) force.setSwitchingDistance(force.getCutoffDistance() - spec.switch_width);
     force.setForceGroup(group);
+}
+
+std::string rigid_note(BeadSystem const& beads) {
+    if (beads.rigid.empty()) return {};
+    return fmt::format("no forces within {} rigid {}; ", beads.rigid.size(), beads.rigid.size() == 1 ? "body" : "bodies");
 }
 
 std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& beads, calvados2::Yukawa const& y) {
@@ -93,7 +101,8 @@ std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& bead
     return {fmt::format("CALVADOS 2 at {} K, {} mol/l: Debye length {:.4g} nm, {}", spec.temperature, spec.ionic_strength, 1 / y.kappa,
                         histidine),
             fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge, calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
-            fmt::format("{} links replace the model's harmonic bonds of {} nm", beads.links.size(), calvados2::bond_length)};
+            fmt::format("{}{} links replace the model's harmonic bonds of {} nm", rigid_note(beads), beads.links.size(),
+                        calvados2::bond_length)};
 }
 
 }  // namespace

@@ -51,16 +51,27 @@ class OpenMmForces final : public OpenMmForce {
     OpenMmModel model_;
     OpenMmPlatform platform_;
     std::optional<Vec3> box_;  // where the forces are periodic
+    std::vector<std::int64_t> by_rank_;
     RankForces rank_;
     PathChoice path_;
     std::unique_ptr<ForceContext> energy_context_;  // every bead, on rank 0 of several
-    std::vector<Vec3> own_, all_, forces_;
+    std::vector<Vec3> own_, all_, ordered_, forces_;
     bool under_way_ = false, evaluated_ = false;
     double begun_ = 0;
     Interval interval_;
     std::exception_ptr error_;
     std::unique_ptr<Worker> worker_;  // last: its thread ends before what it uses
 };
+
+}  // namespace
+
+std::vector<std::int64_t> BeadSystem::beads_of(int rank) const {
+    std::vector<std::int64_t> own;
+    for (std::int64_t i = first_of_rank[rank]; i < first_of_rank[rank + 1]; ++i) own.push_back(by_rank.empty() ? i : by_rank[i]);
+    return own;
+}
+
+namespace {
 
 std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
     return model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
@@ -73,8 +84,8 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
       model_(std::move(model)),
       platform_(choose_platform(spec, beads, communicator)),
       box_(box_of(model_, beads)),
-      rank_(model_, platform_, first_of_rank_[communicator.rank()], first_of_rank_[communicator.rank() + 1],
-            communicator.size() == 1 || spec.replicate, box_),
+      by_rank_(beads.by_rank),
+      rank_(model_, platform_, beads.beads_of(communicator.rank()), communicator.size() == 1 || spec.replicate, box_),
       path_(spec.path, platform_.on_cpu(), beads.scene_file),
       own_(static_cast<std::size_t>(own_count())),
       all_(static_cast<std::size_t>(beads.size())),
@@ -89,6 +100,10 @@ void OpenMmForces::gather(ConstView<3> positions) {
         all_ = own_;
     else
         communicator_.all_gather(std::as_bytes(std::span(own_)), std::as_writable_bytes(std::span(all_)), bytes_of_rank_);
+    if (by_rank_.empty()) return;
+    ordered_.resize(all_.size());
+    for (std::size_t i = 0; i < all_.size(); ++i) ordered_[static_cast<std::size_t>(by_rank_[i])] = all_[i];
+    std::swap(all_, ordered_);
 }
 
 void OpenMmForces::evaluate() noexcept {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "chain/field.hpp"
@@ -14,7 +15,8 @@
 
 namespace catena {
 
-/// All beads of a scene (the bead chains, one after the other), known to every rank, and the run of them that this rank owns.
+/// All beads of a scene (those of chains that have some, one chain after the other; bodies' carried beads in their place), known to
+/// every rank, and which of them a rank owns.
 struct BeadSystem {
     struct Link {
         std::int64_t inboard, outboard;
@@ -22,14 +24,18 @@ struct BeadSystem {
     };
     std::vector<double> mass;
     std::vector<std::string> residue;
-    std::vector<std::string> chain_name;      // one a chain
-    std::vector<std::int64_t> chain_offset;   // first bead of each chain, then the number of beads
-    std::vector<Link> links;                  // between beads (a link to ground is not among them)
-    std::vector<std::int64_t> first_of_rank;  // size ranks + 1: rank r owns beads [first_of_rank[r], first_of_rank[r + 1])
+    std::vector<std::string> chain_name;                       // one a chain
+    std::vector<std::int64_t> chain_offset;                    // first bead of each chain, then the number of beads
+    std::vector<Link> links;                                   // between beads (a link to ground is not among them)
+    std::vector<std::pair<std::int64_t, std::int64_t>> rigid;  // beads [first, last) of one rigid body, where there are several
+    std::vector<std::int64_t>
+        first_of_rank;                  // size ranks + 1: rank r owns beads by_rank[first_of_rank[r]] .. by_rank[first_of_rank[r + 1] - 1]
+    std::vector<std::int64_t> by_rank;  // beads in the order in which ranks own them; empty: as they are
     std::optional<Vec3> box;
     std::string scene_file;  // for messages
 
     std::int64_t size() const { return static_cast<std::int64_t>(mass.size()); }
+    std::vector<std::int64_t> beads_of(int rank) const;
 };
 
 struct EnergyTerm {
@@ -45,7 +51,8 @@ struct Interval {
 class OpenMmForce {
   public:
     virtual ~OpenMmForce() = default;
-    /// Starts the computation of the forces at `positions` (own beads, nm, W, unwrapped). Collective. Returns at once on path `host`.
+    /// Starts the computation of the forces at `positions` (own beads in the order of BeadSystem::by_rank, nm, W, unwrapped). Collective.
+    /// Returns at once on path `host`.
     virtual void begin(ConstView<3> positions) = 0;
     /// Waits for it and adds the forces (kJ/mol/nm) to `forces` (own beads). Throws ComputationError if OpenMM failed, perhaps on this rank
     /// alone.

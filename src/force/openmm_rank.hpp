@@ -15,13 +15,13 @@ namespace catena {
 
 class RankForces {
   public:
-    /// The rank owns beads [first, last). `whole`: its Context holds every bead (one rank, or `replicate`); else its own beads and ghosts:
+    /// The rank owns the beads `own`. `whole`: its Context holds every bead (one rank, or `replicate`); else its own beads and ghosts:
     /// every bead within reach + skin, renewed when a bead has moved so far that one might be missing. A rank without beads builds nothing.
     /// `box`: edges of the box where the forces are periodic. Throws what OpenMM throws if it refuses the forces.
-    RankForces(OpenMmModel const& model, OpenMmPlatform const& platform, std::int64_t first, std::int64_t last, bool whole,
+    RankForces(OpenMmModel const& model, OpenMmPlatform const& platform, std::vector<std::int64_t> own, bool whole,
                std::optional<Vec3> const& box);
 
-    /// Forces on own beads at the positions of all beads. Throws ComputationError and what OpenMM throws.
+    /// Forces on own beads, in the order of `own`, at the positions of all beads. Throws ComputationError and what OpenMM throws.
     void evaluate(std::span<Vec3 const> all, std::span<Vec3> own_forces);
 
     /// The Context with every particle of the model in its order; nullptr if this rank has none.
@@ -43,7 +43,7 @@ class RankForces {
 
     OpenMmModel const& model_;
     OpenMmPlatform const& platform_;
-    std::int64_t first_, last_;
+    std::vector<std::int64_t> own_;
     bool whole_;
     std::optional<Vec3> box_;
     std::vector<int> particle_of_bead_;

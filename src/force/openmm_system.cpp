@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "error.hpp"
@@ -186,6 +187,29 @@ std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& li
     return left_out.count > 0 ? std::vector{left_out.note("harmonic bonds")} : std::vector<std::string>{};
 }
 
+/// Beads of one rigid body do not act on each other: what nonbonded terms add there has no effect but rounding.
+std::vector<std::string> exclude_within_bodies(System& system, BeadSystem const& beads, std::vector<int> const& particle_of_bead) {
+    if (beads.rigid.empty()) return {};
+    std::set<std::pair<int, int>> pairs;
+    for (auto const& [first, last] : beads.rigid)
+        for (std::int64_t a = first; a < last; ++a)
+            for (std::int64_t b = a + 1; b < last; ++b) pairs.insert(std::minmax({particle_of_bead[a], particle_of_bead[b]}));
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        std::set<std::pair<int, int>> missing = pairs;
+        if (auto* custom = dynamic_cast<OpenMM::CustomNonbondedForce*>(&system.getForce(i))) {
+            for (int e = 0; e < custom->getNumExclusions(); ++e) {
+                int a, b;
+                custom->getExclusionParticles(e, a, b);
+                missing.erase(std::minmax({a, b}));
+            }
+            for (auto const& [a, b] : missing) custom->addExclusion(a, b);
+        } else if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&system.getForce(i))) {
+            for (auto const& [a, b] : pairs) charges->addException(a, b, 0, 1, 0, true);
+        }
+    }
+    return {fmt::format("no nonbonded forces within {} rigid {}", beads.rigid.size(), beads.rigid.size() == 1 ? "body" : "bodies")};
+}
+
 /// Keeps the groups that the scene asks for.
 std::vector<std::string> remove_other_groups(System& system, std::vector<int> const& groups) {
     std::vector<std::string> notes;
@@ -253,6 +277,7 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     add(remove_constraints(*model.system, links, where));
     add(remove_other_groups(*model.system, spec.force_groups));
     add(remove_linked_bonds(*model.system, links));
+    add(exclude_within_bodies(*model.system, beads, particle_of_bead));
     settle_box(*model.system, beads, model.notes);
     model.terms = name_terms(*model.system, where);
     return model;

@@ -45,9 +45,11 @@ class AbsoluteDynamics {
     virtual void assemble_matrices() = 0;
     /// Sets the forces of gravity, wrenches and joint springs at the configuration updated last. Collective.
     virtual void set_simple_forces() = 0;
-    /// Forces on beads, for others to add to; absent for bodies.
+    /// Forces on beads and on beads that bodies carry, for others to add to, W; absent where there are none. After set_simple_forces();
+    /// they count once take_bead_forces() has run.
     virtual View<3> bead_forces() = 0;
-    virtual ConstView<3> bead_positions() const = 0;
+    virtual ConstView<3> bead_positions() = 0;
+    virtual void take_bead_forces() = 0;
 
     /// v <- P (v + h M^-1 f), P the projection on the joints' velocities at the current configuration. Collective.
     virtual void kick(double h) = 0;
@@ -86,8 +88,11 @@ class AbsoluteDynamics {
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
                                                      std::unique_ptr<ChainSolver>);
-std::unique_ptr<AbsoluteDynamics> make_body_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                                                     std::unique_ptr<ChainSolver>);
+std::unique_ptr<AbsoluteDynamics> make_spherical_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                                                          std::unique_ptr<ChainSolver>);
+
+std::unique_ptr<AbsoluteDynamics> make_linked_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                                                       std::unique_ptr<ChainSolver>);
 
 /// One array of the given name; throws ComputationError if it is not there.
 StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);

@@ -31,8 +31,11 @@ class BeadDynamics final : public AbsoluteDynamics {
           momentum_(group.size),
           change_(group.size),
           direction_(group.size),
+          tip_direction_(group.has_tips() ? group.size : 0),
           bias_(group.size + 1, group.directions),
-          joint_force_(group.size + 1, group.directions) {
+          joint_force_(group.size + 1, group.directions),
+          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         for (dca::Piece const& piece : group.pieces) {
             BeadArrays const& beads = scene.chains[group.chain[piece.chain]].beads;
             anchor_[piece.chain] = beads.anchor;
@@ -41,6 +44,8 @@ class BeadDynamics final : public AbsoluteDynamics {
                 velocity_.set(piece.local + i, beads.velocity[piece.body + i]);
             }
         }
+        for (LocalTip const& tip : group.tips)
+            tip_length_.push_back(tip.joint.length > 0 ? tip.joint.length : norm(*tip.joint.anchor - position_[tip.body]));
     }
 
     void update_configuration() override {
@@ -52,13 +57,20 @@ class BeadDynamics final : public AbsoluteDynamics {
             Vec3 const d = link(k);
             direction_.set(k, (1.0 / norm(d)) * d);
         });
+        for (std::size_t i = 0; i < tip_length_.size(); ++i) {
+            Vec3 const d = tip_link(i);
+            tip_direction_.set(group_.tips[i].body, (1.0 / norm(d)) * d);
+        }
     }
-    void assemble_matrices() override { solver_->assemble_matrices({direction_.view(), {}, {}, {}, {}}); }
+    void assemble_matrices() override {
+        solver_->assemble_matrices({direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
+    }
     void set_simple_forces() override {
         executor_.for_each(group_.size, [&](std::int64_t k) { force_.set(k, group_.mass.view().at(k, 0) * gravity_); });
     }
     View<3> bead_forces() override { return force_.view(); }
-    ConstView<3> bead_positions() const override { return position_.view(); }
+    ConstView<3> bead_positions() override { return position_.view(); }
+    void take_bead_forces() override {}
 
     void kick(double h) override { project(h, velocity_.view()); }
     void observe(double h) override { project(h, observed_.view()); }
@@ -67,8 +79,11 @@ class BeadDynamics final : public AbsoluteDynamics {
         executor_.for_each(group_.size, [&](std::int64_t k) { position_.set(k, plus_scaled(position_[k], h, velocity_[k])); });
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             exchange_from_inboard(communicator_, group_, position_.view());
-            executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, has_link(k) ? excess(k) : 0.0); });
-            solver_->solve({{}, {}, {}, bias_.view(), {}}, {{}, change_.view(), {}, {}});
+            executor_.for_each(group_.size,
+                               [&](std::int64_t k) { set_bias(k, has_link(k) ? excess(link(k), direction_[k], length(k)) : 0.0); });
+            for (std::size_t i = 0; i < tip_length_.size(); ++i)
+                tip_bias_.view().origin[group_.tips[i].body] = excess(tip_link(i), tip_direction_[group_.tips[i].body], tip_length_[i]);
+            solver_->solve({{}, {}, {}, bias_.view(), tips(tip_bias_)}, {{}, change_.view(), {}, {}});
             executor_.for_each(group_.size, [&](std::int64_t k) {
                 Vec3 const change = change_[k];
                 position_.set(k, position_[k] + change);
@@ -99,10 +114,10 @@ class BeadDynamics final : public AbsoluteDynamics {
         double error = 0;
         for (std::int64_t k = 0; k < group_.size; ++k) {
             if (!has_link(k)) continue;
-            double const length = group_.length.view().at(k, 0);
-            double const e = std::abs(norm(link(k)) - length) / length;
-            error = larger(error, e);
+            error = larger(error, std::abs(norm(link(k)) - length(k)) / length(k));
         }
+        for (std::size_t i = 0; i < tip_length_.size(); ++i)
+            error = larger(error, std::abs(norm(tip_link(i)) - tip_length_[i]) / tip_length_[i]);
         return communicator_.max(error);
     }
 
@@ -118,7 +133,8 @@ class BeadDynamics final : public AbsoluteDynamics {
     void evaluate() override {
         exchange_from_inboard(communicator_, group_, observed_.view());
         executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, has_link(k) ? swing(k) : 0.0); });
-        solver_->solve({{}, force_.view(), {}, bias_.view(), {}}, {{}, change_.view(), joint_force_.view(), {}});
+        for (std::size_t i = 0; i < tip_length_.size(); ++i) tip_bias_.view().origin[group_.tips[i].body] = tip_swing(i);
+        solver_->solve({{}, force_.view(), {}, bias_.view(), tips(tip_bias_)}, {{}, change_.view(), joint_force_.view(), tips(tip_force_)});
     }
     BodyResults results() const override {
         BodyResults r;
@@ -135,12 +151,16 @@ class BeadDynamics final : public AbsoluteDynamics {
         for (std::int64_t k = 0; k < group_.size; ++k) {
             Vec3 const ma = group_.mass.view().at(k, 0) * change_[k], f = force_[k];
             Vec3 const inboard = joint_force_.view().load<1>(k)[0] * direction_[k];
-            Vec3 const outboard = group_.is_last[k] ? Vec3::zero() : joint_force_.view().load<1>(k + 1)[0] * direction_.view().load(k + 1);
+            Vec3 const outboard = outboard_force(k);
             double const size = norm(f) + norm(inboard) + norm(outboard);
             worst = larger(worst, relative(norm(ma - f - inboard + outboard), norm(ma) + size));
             terms.set(k, {{change_[k][0], change_[k][1], change_[k][2], group_.inverse_mass.view().at(k, 0) * size}});
         }
         exchange_from_inboard(communicator_, group_, terms.view());
+        for (std::size_t i = 0; i < tip_length_.size(); ++i) {
+            std::int64_t const k = group_.tips[i].body;
+            worst = larger(worst, relative(tip_swing(i) - dot(tip_direction_[k], change_[k]), terms[k][3] + tip_swing(i)));
+        }
         for (std::int64_t k = 0; k < group_.size; ++k) {
             if (!has_link(k)) continue;
             Vector<double, 4> const mine = terms[k], before = to_ground(k) ? Vector<double, 4>::zero() : terms.view().load(k - 1);
@@ -169,18 +189,31 @@ class BeadDynamics final : public AbsoluteDynamics {
     void set_bias(std::int64_t k, double value) {
         bias_.view().origin[k] = value;  // the link's direction comes first; full handles' other directions stay 0
     }
-    /// How far link k is too long along its direction at the step's start: the s with |d - s u| = length.
-    double excess(std::int64_t k) const {
-        Vec3 const d = link(k);
-        double const length = group_.length.view().at(k, 0), along = dot(d, direction_[k]);
-        double const e = dot(d, d) - length * length;
+    double length(std::int64_t k) const { return group_.length.view().at(k, 0); }
+    /// How far a link d is too long along its direction u at the step's start: the s with |d - s u| = length.
+    static double excess(Vec3 const& d, Vec3 const& u, double length) {
+        double const along = dot(d, u), e = dot(d, d) - length * length;
         return e / (along + std::sqrt(std::max(along * along - e, 0.0)));
     }
-    /// |v_rel, perpendicular|^2 / length of link k (formulas: -c).
+    /// |v_rel, perpendicular|^2 / length (formulas: -c).
+    static double swing(Vec3 const& v, Vec3 const& u, double length) {
+        Vec3 const across = plus_scaled(v, -dot(v, u), u);
+        return dot(across, across) / length;
+    }
     double swing(std::int64_t k) const {
         Vec3 const v = observed_.view().load(k) - (to_ground(k) ? Vec3::zero() : observed_.view().load(k - 1));
-        Vec3 const across = plus_scaled(v, -dot(v, direction_[k]), direction_[k]);
-        return dot(across, across) / group_.length.view().at(k, 0);
+        return swing(v, direction_[k], length(k));
+    }
+    /// From the last bead to the ground.
+    Vec3 tip_link(std::size_t i) const { return *group_.tips[i].joint.anchor - position_[group_.tips[i].body]; }
+    double tip_swing(std::size_t i) const {
+        std::int64_t const k = group_.tips[i].body;
+        return swing(observed_[k], tip_direction_[k], tip_length_[i]);
+    }
+    DirectionsView tips(DirectionsField& field) { return group_.has_tips() ? field.view() : DirectionsView{}; }
+    Vec3 outboard_force(std::int64_t k) const {
+        if (group_.has_jointed_tip(k)) return tip_force_.view().load<1>(k)[0] * tip_direction_[k];
+        return group_.is_last[k] ? Vec3::zero() : joint_force_.view().load<1>(k + 1)[0] * direction_.view().load(k + 1);
     }
     /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
     void project(double h, View<3> out) {
@@ -195,8 +228,9 @@ class BeadDynamics final : public AbsoluteDynamics {
     std::unique_ptr<ChainSolver> solver_;
     Vec3 gravity_;
     std::vector<Vec3> anchor_;
-    Field<3> position_, velocity_, observed_, force_, momentum_, change_, direction_;
-    DirectionsField bias_, joint_force_;
+    Field<3> position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
+    DirectionsField bias_, joint_force_, tip_bias_, tip_force_;
+    std::vector<double> tip_length_;
 };
 
 }  // namespace

@@ -39,6 +39,7 @@ void add_drag(ChainGroup const& group, Scene const& scene, BodyLoads& loads) {
 BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
     BodyLoads loads;
     loads.gravity = scene.forces.gravity;
+    if (group.linked) return loads;  // these have gravity and the forces on their beads
     for (int const chain : group.chain) {
         BodyArrays const& b = scene.chains[chain].bodies;
         loads.springs = loads.springs || any(b.stiffness);

@@ -33,9 +33,10 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
         auto solver = make_tree_solver(*group, *executor_, communicator);
         if (group->beads) {
             absolute_.push_back(make_bead_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
-            beads_ = absolute_.back().get();
+        } else if (group->linked) {
+            absolute_.push_back(make_linked_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         } else if (axes == Axes::world) {
-            absolute_.push_back(make_body_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
+            absolute_.push_back(make_spherical_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         } else {
             joint_.push_back(std::make_unique<JointDynamics>(*group, scene, *executor_, communicator, std::move(solver)));
             joint_states_.push_back(make_joint_state(*group, scene));
@@ -45,27 +46,88 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     if (scene.forces.openmm) make_openmm();
 }
 
-void ChainSystem::make_openmm() {
-    if (!beads_)
-        throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
-                         "add a bead chain or remove forces.openmm");
-    BeadSystem system;
+/// Every bead of the scene in the order of its chains.
+void ChainSystem::describe_beads() {
+    BeadSystem& system = bead_system_;
     system.chain_offset.push_back(0);
-    for (int const index : beads_->group().chain) {
-        ChainSpec const& chain = scene_.chains[index];
+    for (ChainSpec const& chain : scene_.chains) {
+        if (chain.bead_count() == 0) continue;
         std::int64_t const first = system.size();
-        system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
-        system.residue.insert(system.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
-        for (std::int64_t k = 1; k < static_cast<std::int64_t>(chain.size()); ++k)
-            system.links.push_back({first + k - 1, first + k, chain.beads.length[k]});
+        auto const link = [&](std::int64_t bead, double length) { system.links.push_back({first + bead - 1, first + bead, length}); };
+        if (chain.is_beads()) {
+            system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
+            system.residue.insert(system.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
+            for (std::int64_t k = 1; k < static_cast<std::int64_t>(chain.size()); ++k)
+                link(k, chain.beads.length[static_cast<std::size_t>(k)]);
+        } else {
+            CarriedBeads const& carried = chain.carried();
+            system.mass.insert(system.mass.end(), carried.mass.begin(), carried.mass.end());
+            system.residue.insert(system.residue.end(), carried.residue.begin(), carried.residue.end());
+            for (std::size_t k = 0; k < chain.size(); ++k) {
+                std::int64_t const begin = carried.offset[k], end = carried.offset[k + 1];
+                if (end - begin > 1) system.rigid.emplace_back(first + begin, first + end);
+                // Rigid domains of one sequence: the link joins the residues at their ends.
+                if (chain.is_linked() && k > 0 && begin > 0 && end > begin) link(begin, chain.linked.length[k]);
+            }
+        }
         system.chain_name.push_back(chain.name);
         system.chain_offset.push_back(system.size());
     }
-    system.first_of_rank = beads_->group().first_of_rank();
     system.box = scene_.box;
     system.scene_file = scene_.file;
-    openmm_force_ = Field<3>(beads_->group().size);
-    openmm_ = make_openmm_force(*scene_.forces.openmm, system, communicator_);
+}
+
+/// A rank owns the beads of its bodies, group after group.
+void ChainSystem::order_beads_by_rank() {
+    std::vector<std::int64_t> first_of_chain;
+    std::int64_t beads = 0;
+    for (ChainSpec const& chain : scene_.chains) {
+        first_of_chain.push_back(beads);
+        beads += static_cast<std::int64_t>(chain.bead_count());
+    }
+    auto const bead_of = [&](int chain, std::int64_t body) {  // first of a body's; body = size: one past the chain's last
+        ChainSpec const& spec = scene_.chains[chain];
+        if (spec.is_beads()) return first_of_chain[chain] + body;
+        return first_of_chain[chain] + (spec.bead_count() == 0 ? 0 : spec.carried().offset[static_cast<std::size_t>(body)]);
+    };
+    std::vector<std::int64_t> order;
+    bead_system_.first_of_rank = {0};
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+        for (AbsoluteDynamics const* host : bead_hosts_)
+            for (dca::Piece const& piece : dca::pieces_of(host->group().partition, rank)) {
+                int const chain = host->group().chain[piece.chain];
+                for (std::int64_t i = bead_of(chain, piece.body); i < bead_of(chain, piece.body + piece.count); ++i) order.push_back(i);
+            }
+        bead_system_.first_of_rank.push_back(static_cast<std::int64_t>(order.size()));
+    }
+    if (!std::is_sorted(order.begin(), order.end())) bead_system_.by_rank = std::move(order);
+}
+
+void ChainSystem::make_openmm() {
+    for (auto const& group : absolute_)
+        if (group->group().beads || group->group().carried_in_scene) bead_hosts_.push_back(group.get());
+    for (auto const& group : joint_)
+        if (group->group().carried_in_scene)
+            throw not_in_this_version(
+                "OpenMM's forces on beads of bodies in joint coordinates (use links or spherical joints with rattle or g-baoab)");
+    if (bead_hosts_.empty())
+        throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
+                         "add a bead chain, beads on bodies, or remove forces.openmm");
+    describe_beads();
+    order_beads_by_rank();
+    std::int64_t const own = bead_system_.first_of_rank[communicator_.rank() + 1] - bead_system_.first_of_rank[communicator_.rank()];
+    bead_position_ = Field<3>(own);
+    openmm_force_ = Field<3>(own);
+    openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_);
+}
+
+ConstView<3> ChainSystem::own_bead_positions() {
+    std::int64_t next = 0;
+    for (AbsoluteDynamics* host : bead_hosts_) {
+        ConstView<3> const positions = host->bead_positions();
+        for (std::int64_t k = 0; k < positions.size; ++k) bead_position_.set(next++, positions.load(k));
+    }
+    return std::as_const(bead_position_).view();
 }
 
 void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
@@ -73,13 +135,14 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     auto const note = [&](char const* name, char const* lane, double begin, double end) {
         if (timeline) timeline->phases.push_back({name, lane, begin - start, end - start});
     };
-    if (openmm_) openmm_->begin(beads_->bead_positions());
+    if (openmm_) openmm_->begin(own_bead_positions());
     double const begun = seconds_now();
     for (auto const& group : absolute_) group->assemble_matrices();
     double const assembled = seconds_now();
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
     if (openmm_) add_openmm_forces();
+    for (auto const& group : absolute_) group->take_bead_forces();
     double const finished = seconds_now();
     note("matrix sweep", "catena", begun, assembled);
     note("simple forces", "catena", assembled, simple);
@@ -97,11 +160,13 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
 }
 
 void ChainSystem::add_openmm_forces() {
-    std::int64_t const n = beads_->group().size;
-    for (std::int64_t k = 0; k < n; ++k) openmm_force_.set(k, Vec3::zero());
+    for (std::int64_t k = 0; k < openmm_force_.size(); ++k) openmm_force_.set(k, Vec3::zero());
     openmm_->finish(openmm_force_.view());
-    View<3> const forces = beads_->bead_forces();
-    for (std::int64_t k = 0; k < n; ++k) forces.store(k, forces.load(k) + openmm_force_[k]);
+    std::int64_t next = 0;
+    for (AbsoluteDynamics* host : bead_hosts_) {
+        View<3> const forces = host->bead_forces();
+        for (std::int64_t k = 0; k < forces.size; ++k) forces.store(k, forces.load(k) + openmm_force_[next++]);
+    }
 }
 
 void ChainSystem::evaluate() {

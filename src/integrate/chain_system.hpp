@@ -46,12 +46,15 @@ class ChainSystem {
     /// Accelerations and joint forces of the last evaluate() in scene order on rank 0; for bodies in joint coordinates `joint_acceleration`
     /// holds qdd (revolute: first entry) and `base_acceleration` a free base's. Collective.
     struct Accelerations {
-        std::vector<Vec3> joint_acceleration, acceleration, bead_force;
+        std::vector<Vec3> joint_acceleration, acceleration;
+        std::vector<Vec3> bead_force;         // OpenMM's, one a bead (BeadSystem's order); empty without OpenMM
         std::vector<Vec3> alpha;              // angular, W; zero for beads
         std::vector<Vec3> base_acceleration;  // one a body; counts for the first body of a free base
         std::vector<Vector<double, 6>> joint_force;
     };
     Accelerations accelerations();
+    /// OpenMM's forces of the last evaluation alone. Collective.
+    std::vector<Vec3> bead_forces() const;
     /// The joint forces alone. Collective.
     std::vector<Vector<double, 6>> joint_forces();
 
@@ -80,6 +83,9 @@ class ChainSystem {
 
   private:
     void make_openmm();
+    void describe_beads();
+    void order_beads_by_rank();
+    ConstView<3> own_bead_positions();
     void add_openmm_forces();
     /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
     std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
@@ -96,9 +102,10 @@ class ChainSystem {
     std::vector<JointState> joint_states_;
     std::vector<JointRates> joint_rates_;
     std::vector<std::unique_ptr<AbsoluteDynamics>> absolute_;
-    AbsoluteDynamics* beads_ = nullptr;
+    std::vector<AbsoluteDynamics*> bead_hosts_;  // groups that are beads or carry some
+    BeadSystem bead_system_;
     std::unique_ptr<OpenMmForce> openmm_;
-    Field<3> openmm_force_;  // of the last evaluation, own beads
+    Field<3> bead_position_, openmm_force_;  // of the last evaluation, own beads, host after host
     std::map<std::string, double> seconds_;
     double matrix_seconds_ = 0, hidden_seconds_ = 0;
 };

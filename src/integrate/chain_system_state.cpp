@@ -95,10 +95,24 @@ std::vector<Vector<double, 6>> ChainSystem::joint_forces() {
     return forces;
 }
 
+std::vector<Vec3> ChainSystem::bead_forces() const {
+    if (!openmm_) return {};
+    std::vector<std::int64_t> const& first = bead_system_.first_of_rank;
+    std::vector<std::int64_t> bytes;
+    for (int rank = 0; rank < communicator_.size(); ++rank)
+        bytes.push_back((first[rank + 1] - first[rank]) * static_cast<std::int64_t>(sizeof(Vec3)));
+    std::vector<Vec3> own, all(communicator_.rank() == 0 ? static_cast<std::size_t>(bead_system_.size()) : 0);
+    for (std::int64_t k = 0; k < openmm_force_.size(); ++k) own.push_back(openmm_force_[k]);
+    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
+    if (bead_system_.by_rank.empty()) return all;
+    std::vector<Vec3> ordered(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) ordered[static_cast<std::size_t>(bead_system_.by_rank[i])] = all[i];
+    return ordered;
+}
+
 ChainSystem::Accelerations ChainSystem::accelerations() {
     std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
-    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), alpha(3 * n), bead_force;
-    if (openmm_) bead_force.resize(3 * n);
+    std::vector<double> joint(3 * n), body(3 * n), base(3 * n), alpha(3 * n);
     auto const add = [&](ChainGroup const& group, BodyResults const& r) {
         gather_to_scene(communicator_, group, 3, flat(r.acceleration), body);
         if (!group.beads) gather_to_scene(communicator_, group, 3, flat(r.alpha), alpha);
@@ -106,8 +120,6 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
     for (auto const& group : absolute_) {
         add(group->group(), group->results());
         gather_to_scene(communicator_, group->group(), 3, flat(group->results().acceleration), joint);
-        if (group.get() != beads_ || !openmm_) continue;
-        gather_to_scene(communicator_, group->group(), 3, to_array<3>("", std::as_const(openmm_force_).view()).values, bead_force);
     }
     for (std::size_t i = 0; i < joint_.size(); ++i) {
         ChainGroup const& group = joint_[i]->group();
@@ -115,7 +127,7 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
         gather_to_scene(communicator_, group, 3, to_array<3>("", std::as_const(joint_rates_[i]).qdd.view()).values, joint);
         gather_to_scene(communicator_, group, 3, flat(at_starts(group, joint_rates_[i].base_acceleration)), base);
     }
-    return {triples(joint), triples(body), triples(bead_force), triples(alpha), triples(base), joint_forces()};
+    return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces()};
 }
 
 std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays,

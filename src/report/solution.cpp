@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/gather.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -28,23 +27,6 @@ double tension(ChainSpec const& chain, std::size_t k, ChainSystem::Snapshot cons
     return -dot((1.0 / norm(link)) * link, Vec3{{wrench[3], wrench[4], wrench[5]}});
 }
 
-/// The forces that the last evaluation used, less gravity's; in scene order on rank 0.
-std::vector<double> openmm_forces(ChainSystem& system) {
-    if (!system.openmm()) return {};
-    std::vector<double> forces(system.communicator().rank() == 0 ? static_cast<std::size_t>(3 * system.scene().bodies()) : 0);
-    for (AbsoluteDynamics* dynamics : system.absolute()) {
-        ChainGroup const& group = dynamics->group();
-        if (!group.beads) continue;
-        std::vector<double> own;
-        for (std::int64_t k = 0; k < group.size; ++k) {
-            Vec3 const force = dynamics->bead_forces().load(k) - group.mass.view().at(k, 0) * system.scene().forces.gravity;
-            append(own, force);
-        }
-        gather_to_scene(system.communicator(), group, 3, own, forces);
-    }
-    return forces;
-}
-
 }  // namespace
 
 char const* kind_of(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
@@ -56,10 +38,10 @@ int accelerations_of(ChainSpec const& chain, std::size_t k) {
 }
 
 Solution solution_of(ChainSystem& system) {
-    std::vector<double> const bead_force = openmm_forces(system);
     ChainSystem::Accelerations const a = system.accelerations();
     ChainSystem::Snapshot const at = system.snapshot();
     Solution s;
+    s.bead_force = a.bead_force;
     if (system.communicator().rank() != 0) return s;
     std::size_t body = 0;
     for (ChainSpec const& chain : system.scene().chains)
@@ -71,8 +53,6 @@ Solution solution_of(ChainSystem& system) {
                 if (!bead) append(s.acceleration, transposed_times(to_matrix(at.orientation[body]), a.alpha[body]));
                 append(s.acceleration, a.acceleration[body]);
                 if (chain.is_beads()) s.bead_acceleration.push_back(a.acceleration[body]);
-                if (chain.is_beads() && system.openmm())
-                    s.bead_force.push_back({{bead_force[3 * body], bead_force[3 * body + 1], bead_force[3 * body + 2]}});
                 s.joint_force.push_back(tension(chain, k, at, body, a.joint_force[body]));
                 continue;
             }

@@ -27,9 +27,8 @@ std::vector<double> oracle_accelerations(Scene const& scene, std::vector<Vec3> c
     };
     for (ChainSpec const& chain : scene.chains) {
         oracle::Loads loads{scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
-        if (chain.is_beads() && !bead_force.empty())
-            loads.bead_forces.assign(bead_force.begin() + bead, bead_force.begin() + bead + chain.size());
-        bead += chain.beads.size();
+        if (!bead_force.empty()) loads.bead_forces.assign(bead_force.begin() + bead, bead_force.begin() + bead + chain.bead_count());
+        bead += chain.bead_count();
         oracle::OracleResult<Scalar> const r = oracle::aba<Scalar>(chain, loads);
         for (std::size_t k = 0; k < chain.size(); ++k) {
             int const numbers = accelerations_of(chain, k);

@@ -55,7 +55,8 @@ bool is_planar(ChainSpec const& chain) {
 
 std::int64_t restricted_by_tip(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return 0;
-    return is_planar(chain) ? 2 : 6 - coordinates_of(chain.tip_joint.type);
+    int const in_plane = chain.tip_joint.type == JointType::weld ? 3 : 2;
+    return is_planar(chain) ? in_plane : 6 - coordinates_of(chain.tip_joint.type);
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {

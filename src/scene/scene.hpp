@@ -129,6 +129,9 @@ struct ChainSpec {
     bool is_beads() const { return beads.size() > 0; }
     bool is_linked() const { return linked.size() > 0; }
     std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
+    CarriedBeads const& carried() const { return is_linked() ? linked.carried : bodies.carried; }
+    /// Points that OpenMM knows: beads, and those that bodies carry.
+    std::size_t bead_count() const { return is_beads() ? beads.size() : carried().size(); }
 };
 
 struct OpenMmSpec {

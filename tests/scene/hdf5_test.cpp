@@ -47,11 +47,12 @@ class Hdf5Bodies : public testing::Test {
         return "chains: [{base: " + base_ + ", bodies: {hdf5: " + file_ + "}}]";
     }
     std::string refusal() { return refusal_of(write()); }
-    static std::string at(std::string const& name, int body = 0) {
-        return " (hdf5_test.h5: dataset `" + name + "`" + (body > 0 ? ", body " + std::to_string(body) : "") + "): ";
+    std::string at(std::string const& name, int body = 0) const {
+        return " (" + file_ + ": dataset `" + name + "`" + (body > 0 ? ", body " + std::to_string(body) : "") + "): ";
     }
 
-    std::string file_ = "hdf5_test.h5";
+    /// Of this test alone: others may run beside it.
+    std::string file_ = std::string("hdf5_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".h5";
 };
 
 TEST_F(Hdf5Bodies, are_those_of_the_list) {
