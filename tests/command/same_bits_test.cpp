@@ -115,6 +115,16 @@ TEST_P(EveryKind, GroundedTip) {
                      planar ? std::vector{Handles::projected} : both);
 }
 
+TEST(SameBits, Links) {
+    for (Tip const tip : {Tip::free, Tip::jointed})
+        for (std::size_t const bodies : {3, 300}) {
+            std::string const name = std::to_string(bodies) + (tip == Tip::jointed ? ", grounded tip" : "");
+            Base const base = tip == Tip::jointed ? Base::fixed : Base::free;
+            expect_same_bits(scene_of({random_linked_chain(bodies, bodies, base, tip)}), "bodies on links " + name, threads_fit());
+            expect_same_bits(scene_of({random_bead_chain(bodies, bodies, base, tip)}), "beads on links " + name, threads_fit());
+        }
+}
+
 TEST(SameBits, ShortChainsOfEveryKind) {
     std::vector<ChainSpec> chains;
     for (Kind const& kind : kinds)

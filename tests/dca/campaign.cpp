@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
+#include "report/solution.hpp"
 #include "report/solver_errors.hpp"
 #include "tests/dca/rounding.hpp"
 #include "tests/support/random_chain.hpp"
@@ -19,7 +20,6 @@ namespace {
 
 using V = Vector<long double, 3>;
 double constexpr least = 1e-11, eps = 0x1p-53;
-bool constexpr links_hold_tips = false;  // chains of beads with a jointed tip: not solved yet
 
 struct Kind {
     char const* name;
@@ -90,7 +90,8 @@ template <class Scalar>
 Answer answer_of(oracle::OracleResult<Scalar> const& r) {
     auto const wide = [](std::vector<Vector<Scalar, 3>> const& values) { return converted<long double>(values); };
     Answer a{{wide(r.com_acceleration)}, {}};
-    if (!r.qdd.empty()) a.accelerations.insert(a.accelerations.end(), {wide(r.qdd), wide(r.alpha), wide({r.base_acceleration})});
+    if (!r.alpha.empty()) a.accelerations.push_back(wide(r.alpha));
+    if (!r.constraint_force.empty()) a.accelerations.insert(a.accelerations.end(), {wide(r.qdd), wide({r.base_acceleration})});
     std::vector<Vector<Scalar, 3>> torque, force;
     for (auto const& f : r.constraint_force) torque.push_back(f.torque), force.push_back(f.force);
     if (!force.empty()) a.forces = {wide(torque), wide(force)};
@@ -103,22 +104,18 @@ Answer answer_of(oracle::OracleResult<Scalar> const& r) {
 Answer answer_of(ChainSystem& system, ChainSpec const& chain) {
     ChainSystem::Accelerations const found = system.accelerations();
     Answer a{{converted<long double>(found.acceleration)}, {}};
-    std::vector<Vec3> torque, force;
-    for (auto const& f : found.joint_force) torque.push_back({{f[0], f[1], f[2]}}), force.push_back({{f[3], f[4], f[5]}});
-    if (chain.is_beads()) {  // the force of a link on its bead, along it: the tension pulls towards the bead before
-        for (std::size_t k = 0; k < force.size(); ++k) {
-            BeadArrays const& b = chain.beads;
-            bool const first = k == 0;
-            Vec3 const from = first ? b.anchor : b.position[k - 1], along = b.position[k] - from;
-            double const tension = first && chain.base == Base::free ? 0 : -dot(force[k], along) / norm(along);
-            force[k] = {{tension, 0, 0}};
-        }
-        a.forces = {converted<long double>(force)};
+    if (chain.is_linked()) a.accelerations.push_back(converted<long double>(found.alpha));
+    if (chain.bodies.size() == 0) {
+        std::vector<double> const tension = solution_of(system).joint_force;
+        a.forces = {{}};
+        for (double const t : tension) a.forces[0].push_back({{t, 0, 0}});
         return a;
     }
+    std::vector<Vec3> torque, force;
+    for (auto const& f : found.joint_force) torque.push_back({{f[0], f[1], f[2]}}), force.push_back({{f[3], f[4], f[5]}});
     std::vector<V> const base = converted<long double>(std::vector<Vec3>{found.base_acceleration[0]});
     a.accelerations.insert(a.accelerations.end(),
-                           {converted<long double>(found.joint_acceleration), converted<long double>(found.alpha), base});
+                           {converted<long double>(found.alpha), converted<long double>(found.joint_acceleration), base});
     a.forces = {converted<long double>(torque), converted<long double>(force)};
     return a;
 }
@@ -236,16 +233,18 @@ std::string CampaignErrors::text() const {
 CampaignCase campaign_case(std::uint64_t seed) {
     Random random(seed * 0x9e3779b97f4a7c15U + 1);
     CampaignCase c{.seed = seed, .kind = {}, .chain = {}, .loads = {}};
-    std::size_t const kind = pick(random, kind_count + 1), n = 1 + pick(random, 64);
+    std::size_t const kind = pick(random, kind_count + 2), n = 1 + pick(random, 64);
     Base const base = random.chance(0.5) ? Base::fixed : Base::free;
     bool const tip = random.chance(0.4);
     JointType const tip_type = tips[pick(random, std::size(tips))];
     if (random.chance(0.8)) c.loads.gravity = random.vector(10);
     c.backend = backends()[pick(random, backends().size())];
     c.handles = random.chance(0.5) ? Handles::projected : Handles::full;
-    if (kind == kind_count) {
-        c.kind = "beads on links";
-        c.chain = random_bead_chain(seed, n, base, links_hold_tips && tip ? Tip::jointed : Tip::free);
+    if (kind >= kind_count) {
+        bool const linked = kind > kind_count;
+        Tip const end = tip ? Tip::jointed : Tip::free;
+        c.kind = linked ? "bodies on links" : "beads on links";
+        c.chain = linked ? random_linked_chain(seed, n, base, end) : random_bead_chain(seed, n, base, end);
         return c;
     }
     c.kind = kinds[kind].name;
