@@ -8,13 +8,14 @@
 #include "report/solution.hpp"
 #include "report/solver_errors.hpp"
 #include "tests/mpi/world.hpp"
+#include "tests/support/random_chain.hpp"
 
 namespace catena::test {
 namespace {
 
 Scene scene_of(std::string const& chains) { return parse_scene("units: si\nforces: {gravity: [0, 0, -9.81]}\nchains:\n" + chains, "test"); }
 
-std::string random_chain(std::string const& joint, int bodies, bool fixed) {
+std::string generated(std::string const& joint, int bodies, bool fixed) {
     return "  - {base: " + std::string(fixed ? "fixed" : "free") + ", generator: {random: {bodies: " + std::to_string(bodies) +
            ", joint: " + joint + ", seed: 5}}}\n";
 }
@@ -35,10 +36,12 @@ bool same_bits(std::vector<double> const& a, std::vector<double> const& b) {
 /// Threads are there, and are not more than usual machines' cores: waiting for each other then takes long.
 bool threads_fit() { return cpu_backends().size() > 2 && testing::world().size() == 1; }
 
-void expect_same_bits(Scene const& scene, std::string const& what, bool with_threads) {
+std::vector<Handles> const both{Handles::projected, Handles::full};
+
+void expect_same_bits(Scene const& scene, std::string const& what, bool with_threads, std::vector<Handles> const& kinds = both) {
     Communicator const& world = testing::world();
     auto const alone = serial_communicator();
-    for (Handles const handles : {Handles::projected, Handles::full})
+    for (Handles const handles : kinds)
         for (Backend const backend : {Backend::serial, Backend::segments}) {
             Solution const expected = solve(scene, backend, handles, 1, *alone);
             auto const expect = [&](Backend other, int threads) {
@@ -59,13 +62,13 @@ void expect_same_bits(Scene const& scene, std::string const& what, bool with_thr
 TEST(SameBits, OneChain) {
     for (char const* const joint : {"link", "spherical", "revolute"})
         for (int const bodies : {1, 2, 3, 255, 256, 257, 10000})
-            expect_same_bits(scene_of(random_chain(joint, bodies, bodies % 2 == 1)), std::string(joint) + " " + std::to_string(bodies),
+            expect_same_bits(scene_of(generated(joint, bodies, bodies % 2 == 1)), std::string(joint) + " " + std::to_string(bodies),
                              threads_fit());
 }
 
 TEST(SameBits, SeveralChainsOfDifferentKinds) {
-    expect_same_bits(scene_of(random_chain("link", 70, true) + random_chain("revolute", 9, false) + random_chain("link", 300, false) +
-                              random_chain("spherical", 130, true) + random_chain("revolute", 1, true)),
+    expect_same_bits(scene_of(generated("link", 70, true) + generated("revolute", 9, false) + generated("link", 300, false) +
+                              generated("spherical", 130, true) + generated("revolute", 1, true)),
                      "several chains", threads_fit() || (cpu_backends().size() > 2 && testing::world().size() == 2));
 }
 
@@ -82,11 +85,72 @@ TEST(SameBits, PackedChains) {
     expect_same_bits(scene, "packed chains", threads_fit());
 }
 
+Scene scene_of(std::vector<ChainSpec> chains) {
+    Scene scene;
+    scene.chains = std::move(chains);
+    for (std::size_t i = 0; i < scene.chains.size(); ++i) scene.chains[i].name = "chain " + std::to_string(i);
+    scene.forces.gravity = {{1, 2, -9.81}};
+    return scene;
+}
+
+struct Kind {
+    char const* name;
+    RandomChainOptions options;
+    JointType tip;
+};
+std::vector<Kind> const kinds{{"planar", {.joints = RandomJoints::planar}, JointType::revolute},
+                              {"universal", {.joints = RandomJoints::universal}, JointType::weld},
+                              {"weld", {.joints = RandomJoints::weld}, JointType::universal},
+                              {"prismatic", {.joints = RandomJoints::prismatic}, JointType::spherical},
+                              {"helical", {.joints = RandomJoints::helical}, JointType::prismatic},
+                              {"mixed", {.joints = RandomJoints::any, .springs = true, .drag = true}, JointType::helical},
+                              {"driven", {.joints = RandomJoints::any, .driven = 0.3}, JointType::spherical}};
+
+ChainSpec chain_of(Kind const& kind, std::size_t bodies, Base base) {
+    RandomChainOptions options = kind.options;
+    options.bodies = bodies;
+    options.base = base;
+    return random_chain(bodies, options);
+}
+
+class EveryKind : public ::testing::TestWithParam<Kind> {};
+INSTANTIATE_TEST_SUITE_P(SameBits, EveryKind, ::testing::ValuesIn(kinds), [](auto const& kind) { return std::string(kind.param.name); });
+
+TEST_P(EveryKind, FreeTip) {
+    for (std::size_t const bodies : {2, 300})
+        expect_same_bits(scene_of({chain_of(GetParam(), bodies, Base::free)}), std::to_string(bodies), threads_fit());
+}
+
+TEST_P(EveryKind, GroundedTip) {
+    Kind kind = GetParam();
+    kind.options.tip = kind.tip;
+    bool const planar = kind.options.joints == RandomJoints::planar;  // held twice out of its plane, which only `projected` leaves out
+    expect_same_bits(scene_of({chain_of(kind, 257, Base::fixed)}), kind.name, threads_fit(),
+                     planar ? std::vector{Handles::projected} : both);
+}
+
+TEST(SameBits, Links) {
+    for (Tip const tip : {Tip::free, Tip::jointed})
+        for (std::size_t const bodies : {3, 300}) {
+            std::string const name = std::to_string(bodies) + (tip == Tip::jointed ? ", grounded tip" : "");
+            Base const base = tip == Tip::jointed ? Base::fixed : Base::free;
+            expect_same_bits(scene_of({random_linked_chain(bodies, bodies, base, tip)}), "bodies on links " + name, threads_fit());
+            expect_same_bits(scene_of({random_bead_chain(bodies, bodies, base, tip)}), "beads on links " + name, threads_fit());
+        }
+}
+
+TEST(SameBits, ShortChainsOfEveryKind) {
+    std::vector<ChainSpec> chains;
+    for (Kind const& kind : kinds)
+        for (std::size_t const bodies : {1, 3, 64}) chains.push_back(chain_of(kind, bodies, Base::fixed));
+    expect_same_bits(scene_of(chains), "short chains", threads_fit());
+}
+
 // The comparison itself: another state has other bits.
 TEST(SameBits, AnotherChainHasOthers) {
     auto const alone = serial_communicator();
-    Solution const a = solve(scene_of(random_chain("link", 257, true)), Backend::segments, Handles::projected, 1, *alone);
-    Solution const b = solve(scene_of(random_chain("link", 257, false)), Backend::segments, Handles::projected, 1, *alone);
+    Solution const a = solve(scene_of(generated("link", 257, true)), Backend::segments, Handles::projected, 1, *alone);
+    Solution const b = solve(scene_of(generated("link", 257, false)), Backend::segments, Handles::projected, 1, *alone);
     EXPECT_EQ(a.acceleration.size(), b.acceleration.size());
     EXPECT_FALSE(same_bits(a.acceleration, b.acceleration));
 }

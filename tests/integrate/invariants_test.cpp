@@ -1,99 +1,23 @@
 // Momentum, angular momentum, energy and closed joints under the integrators, and their order.
 #include <gtest/gtest.h>
 
-#include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
-#include "integrate/observables.hpp"
+#include "tests/integrate/constrained_run.hpp"
 
 namespace catena::test {
 namespace {
-
-/// A constrained run without output.
-class Constrained {
-  public:
-    Constrained(std::string const& text, double step, Integrator kind = Integrator::rattle, double friction = 0, double kt = 0)
-        : scene_(quiet(parse_scene(text, "scene.yaml"))),
-          system_(scene_, Axes::world, *communicator_),
-          integrator_({kind, step, friction, kt, 1, 1e-12}, system_.absolute()) {
-        for (AbsoluteDynamics* group : system_.absolute()) {
-            group->update_configuration();
-            group->assemble_matrices();
-            group->draw_velocities(scene_.boltzmann() * 300, 7, std::vector<bool>(scene_.chains.size(), true));
-        }
-        system_.forces_and_matrices(nullptr);
-        integrator_.choose_sweeps();
-    }
-    void run(std::int64_t steps) {
-        for (std::int64_t i = 0; i < steps; ++i) {
-            integrator_.step(done_++);
-            system_.forces_and_matrices(nullptr);
-        }
-    }
-    ChainSystem::Snapshot snapshot() {
-        integrator_.observe();
-        return system_.snapshot();
-    }
-    double energy() {
-        ChainSystem::Snapshot const s = snapshot();
-        double e = kinetic_energy(scene_, s);
-        for (EnergyTerm const& term : system_.potential_energy()) e += term.value;
-        return e;
-    }
-    double constraint_error() {
-        double worst = 0;
-        for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
-        return worst;
-    }
-    Scene const& scene() const { return scene_; }
-
-  private:
-    /// Without the generator's torques and wrenches, so that energy and momentum are kept.
-    static Scene quiet(Scene scene) {
-        for (ChainSpec& chain : scene.chains) {
-            chain.bodies.torque.clear();
-            chain.bodies.wrench.clear();
-        }
-        return scene;
-    }
-    std::unique_ptr<Communicator> communicator_ = serial_communicator();
-    Scene scene_;
-    ChainSystem system_;
-    ConstrainedIntegrator integrator_;
-    std::int64_t done_ = 0;
-};
 
 std::string const bodies = "chains: [{name: a, base: free, generator: {random: {bodies: 12, joint: spherical, seed: 1}}}]\n";
 std::string const beads = "chains: [{name: a, generator: {freely_jointed: {beads: 30, length: 0.38}}}]\n";
 std::string const hanging =
     "chains: [{name: a, base: fixed, generator: {random: {bodies: 8, joint: spherical, seed: 4}}}]\nforces: {gravity: [0, 0, -5]}\n";
 
-std::string const linked = "chains: [{name: a, base: free, generator: {random: {bodies: 14, joint: link, seed: 2}}}]\n";
+std::string const linked = "chains: [{name: a, base: free, generator: {random: {bodies: 14, joint: link, rigid: 0.5, seed: 2}}}]\n";
 std::string const held =
     "chains: [{name: a, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 8, joint: spherical, seed: 4}}},"
-    " {name: b, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 9, joint: link, seed: 4}}}]\n"
+    " {name: b, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 9, joint: link, rigid: 0.5, seed: "
+    "4}}}]\n"
     "forces: {gravity: [0, 0, -5]}\n";
-
-struct Momenta {
-    Vec3 linear = Vec3::zero(), angular = Vec3::zero();
-    double size = 0;
-};
-Momenta momenta(Scene const& scene, ChainSystem::Snapshot const& s) {
-    Momenta m;
-    std::size_t i = 0;
-    for (ChainSpec const& chain : scene.chains)
-        for (std::size_t k = 0; k < chain.size(); ++k, ++i) {
-            double const mass = chain.is_beads() ? chain.beads.mass[k] : chain.is_linked() ? chain.linked.mass[k] : chain.bodies.mass[k];
-            Vec3 const p = mass * s.velocity[i];
-            m.linear = m.linear + p;
-            m.angular = m.angular + cross(s.position[i], p);
-            if (!chain.is_beads()) {
-                Sym3 const& inertia = chain.is_linked() ? chain.linked.inertia[k] : chain.bodies.inertia[k];
-                m.angular = m.angular + to_matrix(s.orientation[i]) * (inertia * s.omega[i]);
-            }
-            m.size += norm(p) * (1 + norm(s.position[i]));
-        }
-    return m;
-}
 
 // Impulses act equal and opposite at one point, up to the joints' closing: eps a step from rounding and the constraint error from
 // the point's two places.

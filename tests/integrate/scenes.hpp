@@ -52,8 +52,9 @@ inline RunScene const run_scenes[] = {
      "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10, "
      "joint_forces: true}\n"},
     {"langevin_linked",
-     "chains: [{name: a, velocities: thermal, generator: {random: {bodies: 60, joint: link, seed: 8}}}, {name: b, base: fixed, velocities: "
-     "thermal, generator: {random: {bodies: 25, joint: link, seed: 9}}}]\n"
+     "chains: [{name: a, velocities: thermal, generator: {random: {bodies: 60, joint: link, rigid: 0.5, seed: 8}}}, {name: b, base: fixed, "
+     "velocities: "
+     "thermal, generator: {random: {bodies: 25, joint: link, rigid: 0.3, seed: 9}}}]\n"
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"rk4_every_joint",
      "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: mixed, seed: 1}}}, {name: b, base: fixed, tip: {joint: {type: "

@@ -1,6 +1,7 @@
 """Runs the program and reads what it writes: shared by the physics checks of this folder."""
 import argparse
 import csv
+import json
 import os
 import shutil
 import subprocess
@@ -41,13 +42,28 @@ class Runs:
     def run(self, name, scene, settings):
         """Runs a scene with `key=value` settings; returns the run's folder."""
         folder = os.path.join(self.folder, name)
-        command = [self.program, "run", scene, "--output", folder, "--overwrite", "--quiet"]
+        command = ["run", scene, "--output", folder, "--overwrite", "--quiet"]
         for key, value in settings.items():
             command += ["--set", f"{key}={value}"]
-        done = subprocess.run(command, capture_output=True, text=True)
-        if done.returncode != 0:
-            sys.exit(f"{' '.join(command)}\nended with status {done.returncode}: {done.stderr.strip() or done.stdout.strip()}")
+        self.call(command)
         return folder
+
+    def write(self, name, scene):
+        """A scene as a file: JSON is YAML."""
+        path = os.path.join(self.folder, name + ".yaml")
+        with open(path, "w") as file:
+            json.dump(scene, file)
+        return path
+
+    def solve(self, name, scene):
+        """What `catena solve` writes of a scene given as a dictionary."""
+        return json.loads(self.call(["solve", self.write(name, scene), "--repeat", "1", "--json", "-"]))
+
+    def call(self, words):
+        done = subprocess.run([self.program] + words, capture_output=True, text=True)
+        if done.returncode != 0:
+            sys.exit(f"{' '.join([self.program] + words)}\nended with status {done.returncode}: {done.stderr.strip() or done.stdout.strip()}")
+        return done.stdout
 
 
 def columns(folder):

@@ -170,6 +170,7 @@ class Solver {
         a.closure = {cross(w_here, link.rate) + link.drift,
                      transposed_times(link.rotation, cross(w, cross(w, link.translation))) + S(2) * cross(w_here, link.slide)};
         if (link.driven) a.closure = a.closure + along(link, link.prescribed);
+        a.closure = a.closure + link.gap;
         if (link.type == JointType::spherical)
             pass_spherical(link, k, a);
         else

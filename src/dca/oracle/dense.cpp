@@ -91,6 +91,7 @@ class Assembly {
         V3<S> const inboard = k == 0 ? V3<S>::zero() : bodies_[k - 1].omega, slide = b.orientation * link.slide;
         b.closure = {cross(inboard, b.orientation * link.rate) + b.orientation * link.drift, S(2) * cross(inboard, slide)};
         if (link.driven) b.closure = b.closure + rotated(b.orientation, along(link, link.prescribed));
+        b.closure = b.closure + rotated(b.orientation, link.gap);
         SpatialForce<S> const given = spread(link, link.effort);
         b.given = {b.orientation * given.torque, b.orientation * given.force};
         for (Motion<S> const& d : restricted(link)) b.locked.push_back(rotated(b.orientation, d));

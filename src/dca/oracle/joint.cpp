@@ -136,6 +136,8 @@ void read_loads(BodyArrays const& b, Loads const& loads, std::vector<Link<S>>& l
         link.applied_torque = lift<S>(wrench.first) - S(drag[1]) * omega;
         link.applied_force = lift<S>(wrench.second) - S(drag[0]) * velocity;
         add_bead_forces(b.carried, k, loads, r, link);
+        auto const gap = entry(loads.gaps, k);
+        link.gap = {transposed_times(r, lift<S>(gap.first)), transposed_times(r, lift<S>(gap.second))};
     }
 }
 

@@ -40,6 +40,7 @@ struct Link {
     V3<S> rate, slide;                 // angular velocity and the origin's velocity relative to the inboard body, B (free: slide in W)
     V3<S> drift = V3<S>::zero();       // angular acceleration that the rates give beside inboard omega x rate, B (universal)
     V3<S> prescribed = V3<S>::zero();  // driven: q''
+    Motion<S> gap;                     // Loads::gaps, B
     V3<S> effort = V3<S>::zero();      // along the coordinates: given force, springs, dampers
     S spring_energy = S(0);
     S mass;

@@ -18,6 +18,9 @@ struct Loads {
     double linear_drag = 0, angular_drag = 0;          // force -linear v, torque -angular omega on every body without a drag of its own
     std::vector<std::pair<Vec3, Vec3>> wrenches = {};  // bodies of a linked chain: external {torque, force} at com, W; empty: zero
     double time = 0;                                   // at which driven joints are taken
+    /// Rigid bodies: acceleration {angular, linear} (of the body's origin, W) by which each inboard joint fails to close: what an error
+    /// in those equations comes to. Empty: zero.
+    std::vector<std::pair<Vec3, Vec3>> gaps = {};
 };
 
 template <class Scalar>

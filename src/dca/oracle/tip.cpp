@@ -11,6 +11,7 @@ namespace {
 template <class S>
 Link<S> silent(Link<S> link) {
     link.rate = link.slide = link.drift = link.prescribed = link.effort = link.applied_torque = link.applied_force = V3<S>::zero();
+    link.gap = {};
     return link;
 }
 

@@ -1,0 +1,11 @@
+#include <gtest/gtest.h>
+
+#include "tests/dca/campaign.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST(Campaign, ChainsOf10000SeedsAgreeWithTheOracles) { run_campaign(1, 10000); }
+
+}  // namespace
+}  // namespace catena::test
