@@ -10,6 +10,7 @@
 #include "chain/chain_group.hpp"
 #include "dca/philox.hpp"
 #include "dca/solver.hpp"
+#include "integrate/carried_beads.hpp"
 
 namespace catena {
 
@@ -35,20 +36,15 @@ struct StateArray {
     std::vector<double> values;  // this rank's bodies, one after the other
 };
 
-class AbsoluteDynamics {
+class AbsoluteDynamics : public BeadHost {
   public:
-    virtual ~AbsoluteDynamics() = default;
-
     /// Directions and neighbours' positions for the current positions. Collective.
     virtual void update_configuration() = 0;
     /// Matrices at the configuration updated last. Needs no forces. Collective.
     virtual void assemble_matrices() = 0;
     /// Sets the forces of gravity, wrenches and joint springs at the configuration updated last. Collective.
     virtual void set_simple_forces() = 0;
-    /// Forces on beads and on beads that bodies carry, for others to add to, W; absent where there are none. After set_simple_forces();
-    /// they count once take_bead_forces() has run.
-    virtual View<3> bead_forces() = 0;
-    virtual ConstView<3> bead_positions() = 0;
+    /// What others added to bead_forces() since set_simple_forces() counts from here on.
     virtual void take_bead_forces() = 0;
 
     /// v <- P (v + h M^-1 f), P the projection on the joints' velocities at the current configuration. Collective.
@@ -82,7 +78,6 @@ class AbsoluteDynamics {
     /// At the current positions. Collective.
     virtual PotentialEnergy potential() = 0;
 
-    virtual ChainGroup const& group() const = 0;
     virtual ChainSolver const& solver() const = 0;
 };
 

@@ -93,7 +93,7 @@ void ChainSystem::order_beads_by_rank() {
     std::vector<std::int64_t> order;
     bead_system_.first_of_rank = {0};
     for (int rank = 0; rank < communicator_.size(); ++rank) {
-        for (AbsoluteDynamics const* host : bead_hosts_)
+        for (BeadHost const* host : bead_hosts_)
             for (dca::Piece const& piece : dca::pieces_of(host->group().partition, rank)) {
                 int const chain = host->group().chain[piece.chain];
                 for (std::int64_t i = bead_of(chain, piece.body); i < bead_of(chain, piece.body + piece.count); ++i) order.push_back(i);
@@ -107,9 +107,7 @@ void ChainSystem::make_openmm() {
     for (auto const& group : absolute_)
         if (group->group().beads || group->group().carried_in_scene) bead_hosts_.push_back(group.get());
     for (auto const& group : joint_)
-        if (group->group().carried_in_scene)
-            throw not_in_this_version(
-                "OpenMM's forces on beads of bodies in joint coordinates (use links or spherical joints with rattle or g-baoab)");
+        if (group->group().carried_in_scene) bead_hosts_.push_back(group.get());
     if (bead_hosts_.empty())
         throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
                          "add a bead chain, beads on bodies, or remove forces.openmm");
@@ -123,7 +121,7 @@ void ChainSystem::make_openmm() {
 
 ConstView<3> ChainSystem::own_bead_positions() {
     std::int64_t next = 0;
-    for (AbsoluteDynamics* host : bead_hosts_) {
+    for (BeadHost* host : bead_hosts_) {
         ConstView<3> const positions = host->bead_positions();
         for (std::int64_t k = 0; k < positions.size; ++k) bead_position_.set(next++, positions.load(k));
     }
@@ -138,32 +136,56 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     if (openmm_) openmm_->begin(own_bead_positions());
     double const begun = seconds_now();
     for (auto const& group : absolute_) group->assemble_matrices();
+    for (auto const& group : joint_) group->assemble_matrices();
     double const assembled = seconds_now();
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
-    if (openmm_) add_openmm_forces();
+    if (openmm_) finish_openmm();
     for (auto const& group : absolute_) group->take_bead_forces();
     double const finished = seconds_now();
     note("matrix sweep", "catena", begun, assembled);
     note("simple forces", "catena", assembled, simple);
-    matrix_seconds_ += assembled - begun;
-    seconds_["matrix sweep"] += assembled - begun;
     seconds_["kinematics and loads"] += simple - assembled;
+    note_overlap(start, begun, assembled, simple, finished);
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation();
-    hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
     note("hand over positions", "catena", start, begun);
     note("wait for forces", "catena", simple, finished);
     note("forces", "openmm", ran.begin, ran.end);
-    seconds_["forces"] += ran.end - ran.begin;
-    seconds_["waiting for forces"] += (finished - simple) + (begun - start);
 }
 
-void ChainSystem::add_openmm_forces() {
+void ChainSystem::evaluate(std::vector<JointState> const& states, std::vector<JointRates>& rates) {
+    double const start = seconds_now();
+    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->update_configuration(states[i]);
+    double const moved = seconds_now();
+    if (openmm_) openmm_->begin(own_bead_positions());
+    double const begun = seconds_now();
+    for (auto const& group : joint_) group->assemble_matrices();
+    double const assembled = seconds_now();
+    if (openmm_) finish_openmm();
+    double const finished = seconds_now();
+    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->solve(states[i], rates[i]);
+    seconds_["kinematics and loads"] += moved - start;
+    seconds_["bias sweep"] += seconds_now() - finished;
+    note_overlap(moved, begun, assembled, assembled, finished);
+}
+
+/// Positions are handed over from `start` to `begun`, matrices assembled until `assembled`, forces waited for from `waits` to `finished`.
+void ChainSystem::note_overlap(double start, double begun, double assembled, double waits, double finished) {
+    matrix_seconds_ += assembled - begun;
+    seconds_["matrix sweep"] += assembled - begun;
+    if (!openmm_) return;
+    Interval const ran = openmm_->last_evaluation();
+    hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
+    seconds_["forces"] += ran.end - ran.begin;
+    seconds_["waiting for forces"] += (finished - waits) + (begun - start);
+}
+
+void ChainSystem::finish_openmm() {
     for (std::int64_t k = 0; k < openmm_force_.size(); ++k) openmm_force_.set(k, Vec3::zero());
     openmm_->finish(openmm_force_.view());
     std::int64_t next = 0;
-    for (AbsoluteDynamics* host : bead_hosts_) {
+    for (BeadHost* host : bead_hosts_) {
         View<3> const forces = host->bead_forces();
         for (std::int64_t k = 0; k < forces.size; ++k) forces.store(k, forces.load(k) + openmm_force_[next++]);
     }
@@ -171,12 +193,13 @@ void ChainSystem::add_openmm_forces() {
 
 void ChainSystem::evaluate() {
     for (auto const& group : absolute_) group->update_configuration();
+    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->update_configuration(joint_states_[i]);
     forces_and_matrices(nullptr);
     for (auto const& group : absolute_) {
         group->observe(0.0);
         group->evaluate();
     }
-    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->evaluate(joint_states_[i], joint_rates_[i]);
+    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->solve(joint_states_[i], joint_rates_[i]);
 }
 
 double ChainSystem::residual() {

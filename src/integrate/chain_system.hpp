@@ -61,7 +61,9 @@ class ChainSystem {
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;
     std::vector<JointDynamics*> joint() const;
-    JointState& joint_state(std::size_t i) { return joint_states_[i]; }
+    std::vector<JointState>& joint_states() { return joint_states_; }
+    /// Rates of the groups in joint coordinates at these states, one a group; OpenMM computes while matrices are assembled. Collective.
+    void evaluate(std::vector<JointState> const& states, std::vector<JointRates>& rates);
     OpenMmForce* openmm() const { return openmm_.get(); }
     Executor const& executor() const { return *executor_; }
     Scene const& scene() const { return scene_; }
@@ -86,7 +88,8 @@ class ChainSystem {
     void describe_beads();
     void order_beads_by_rank();
     ConstView<3> own_bead_positions();
-    void add_openmm_forces();
+    void finish_openmm();
+    void note_overlap(double start, double begun, double assembled, double waits, double finished);
     /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
     std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
                                  int width) const;
@@ -102,7 +105,7 @@ class ChainSystem {
     std::vector<JointState> joint_states_;
     std::vector<JointRates> joint_rates_;
     std::vector<std::unique_ptr<AbsoluteDynamics>> absolute_;
-    std::vector<AbsoluteDynamics*> bead_hosts_;  // groups that are beads or carry some
+    std::vector<BeadHost*> bead_hosts_;  // groups that are beads or carry some
     BeadSystem bead_system_;
     std::unique_ptr<OpenMmForce> openmm_;
     Field<3> bead_position_, openmm_force_;  // of the last evaluation, own beads, host after host

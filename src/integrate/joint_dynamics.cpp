@@ -58,8 +58,10 @@ JointDynamics::JointDynamics(ChainGroup const& group, Scene const& scene, Execut
       given_(make_body_loads(group, scene)),
       motion_(motion_at_start(group, scene, kinematics_)),
       tips_(group, scene, motion_, reach_of(group, communicator)),
-      has_forces_(given_.wrenches || given_.dragged || (given_.joint_loads && group.has_screws)),
-      needs_positions_(given_.dragged || group.has_tips()),
+      carried_(group),
+      has_wrenches_(given_.wrenches || carried_.any()),
+      has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
+      needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
       joint_load_(given_.joint_loads ? group.size : 0),
       torque_(group.size),
       force_(has_forces_ ? group.size : 0),
@@ -86,12 +88,25 @@ BodyMotion const& JointDynamics::motion(JointState const& state) {
 }
 
 void JointDynamics::evaluate(JointState const& state, JointRates& out) {
+    update_configuration(state);
+    assemble_matrices();
+    solve(state, out);
+}
+
+void JointDynamics::update_configuration(JointState const& state) {
     kinematics_.evaluate(state, needs_positions_, motion_);
+    if (group_.moving_meeting()) tips_.set_meetings(motion_);
+    carried_.clear();
+}
+
+void JointDynamics::assemble_matrices() {
     bool const moving = group_.moving_meeting();
-    if (moving) tips_.set_meetings(motion_);
     auto const& m = motion_;
     solver_->assemble_matrices(
         {{}, m.joint_turn.view(), {}, moving ? m.r2.view() : ConstView<3>{}, moving ? m.axes2.view() : ConstView<9>{}});
+}
+
+void JointDynamics::solve(JointState const& state, JointRates& out) {
     if (given_.joint_loads) joint_torques(state);
     loads(state);
     if (group_.has_tips()) tips_.set_acceleration_bias(motion_, given_.gravity, tip_bias_.view());
@@ -99,6 +114,19 @@ void JointDynamics::evaluate(JointState const& state, JointRates& out) {
                     group_.has_tips() ? tip_bias_.view() : DirectionsView{}},
                    {alpha_.view(), acceleration_.view(), joint_force_.view(), group_.has_tips() ? tip_force_.view() : DirectionsView{}});
     rates(state, out);
+}
+
+ConstView<3> JointDynamics::bead_positions() {
+    return carried_.positions(
+        executor_, [&](std::int64_t k) { return motion_.origin[k] - orientation(k) * group_.r1[k]; },
+        [&](std::int64_t k) { return orientation(k); });
+}
+
+Wrench JointDynamics::wrench(std::int64_t k) const {
+    Wrench w{Vec3::zero(), Vec3::zero()};
+    if (carried_.any()) w = carried_.on_body(k, orientation(k));
+    if (given_.wrenches) w = {w.torque + given_.wrench_torque[k], w.force + given_.wrench_force[k]};
+    return w;
 }
 
 /// Known loads along the joint's free directions: given, spring and damper.
@@ -179,10 +207,10 @@ void JointDynamics::loads(JointState const& state) {
         Mat3 const axes1 = as_matrix(group_.axes1.view().load(k));
         Vec3 torque = -cross(w, as_symmetric(group_.inertia.view().load(k)) * w), force = Vec3::zero();
         if (given_.joint_loads) add_joint_loads(k, turn, torque, force);
-        if (given_.wrenches) {
-            Mat3 const orientation = to_matrix(as_quaternion(motion_.orientation.view().load(k)));
-            torque = torque + transposed_times(orientation, given_.wrench_torque.view().load(k));
-            force = force + transposed_times(orientation, given_.wrench_force.view().load(k));
+        if (has_wrenches_) {
+            Wrench const w_out = wrench(k);
+            torque = torque + transposed_times(orientation(k), w_out.torque);
+            force = force + transposed_times(orientation(k), w_out.force);
         }
         if (given_.dragged) {
             Vector<double, 2> const drag = given_.drag.view().load(k);
@@ -204,9 +232,8 @@ void JointDynamics::loads(JointState const& state) {
         }
         if (group_.is_first[k] && type != JointType::free) {
             Mat3 const to_meeting = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
-            Mat3 const orientation = to_matrix(as_quaternion(motion_.orientation.view().load(k)));
-            linear =
-                linear + transposed_times(axes1, to_meeting * transposed_times(orientation, given_.gravity));  // ground accelerates by -g
+            linear = linear +
+                     transposed_times(axes1, to_meeting * transposed_times(orientation(k), given_.gravity));  // ground accelerates by -g
         }
         Screw<double> const s = screw(k);
         double const b[6] = {linear[0],  linear[1],  s.c * linear[2] - s.s * angular[2],
@@ -307,8 +334,8 @@ BodyResults JointDynamics::results() const {
 void JointDynamics::add_across_plane(BodyResults& r) const {
     std::vector<NeededWrench> needed;
     for (std::int64_t k = 0; k < group_.size; ++k) {
-        Mat3 const to_ground = to_matrix(as_quaternion(motion_.orientation[k]));
-        Vec3 const wrench_force = given_.wrenches ? given_.wrench_force[k] : Vec3::zero();
+        Mat3 const to_ground = orientation(k);
+        Vec3 const wrench_force = has_wrenches_ ? wrench(k).force : Vec3::zero();
         Vec3 drag = Vec3::zero();
         if (given_.dragged) drag = (-given_.drag[k][0]) * (motion_.velocity[k] - cross(motion_.omega[k], group_.r1[k]));
         Vec3 const force =

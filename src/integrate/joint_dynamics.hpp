@@ -18,13 +18,21 @@ struct JointRates {
     std::vector<Vec3> base_acceleration;  // one a piece: of a free base's origin, W
 };
 
-class JointDynamics {
+class JointDynamics final : public BeadHost {
   public:
     JointDynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
 
     JointRates make_rates() const;
-    /// Collective.
+    /// Kinematics, matrices and rates: the three below. Collective.
     void evaluate(JointState const&, JointRates&);
+    /// What a state alone decides, and where carried beads are. Clears their forces. Collective.
+    void update_configuration(JointState const&);
+    /// At the configuration updated last. Needs no forces. Collective.
+    void assemble_matrices();
+    /// With the forces of now, at the state of the configuration updated last. Collective.
+    void solve(JointState const&, JointRates&);
+    ConstView<3> bead_positions() override;
+    View<3> bead_forces() override { return carried_.forces(); }
     /// Only the kinematics of a state, positions included. Collective.
     BodyMotion const& motion(JointState const&);
     /// Of the state and solution evaluated last. Collective.
@@ -39,7 +47,7 @@ class JointDynamics {
     /// Largest opening of a jointed tip over the chains' reach, over all ranks. Collective.
     double closure_error(JointState const&);
     ChainSolver const& solver() const { return *solver_; }
-    ChainGroup const& group() const { return group_; }
+    ChainGroup const& group() const override { return group_; }
 
   private:
     void joint_torques(JointState const&);
@@ -53,6 +61,9 @@ class JointDynamics {
     Mat3 axes2(std::int64_t k) const { return as_matrix(group_.moving_meeting() ? motion_.axes2[k] : group_.axes2[k]); }
     Vec3 r2(std::int64_t k) const { return group_.moving_meeting() ? motion_.r2[k] : group_.r2[k]; }
     Screw<double> screw(std::int64_t k) const;
+    Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(motion_.orientation[k])); }
+    /// From outside the chain and from carried beads.
+    Wrench wrench(std::int64_t k) const;
 
     ChainGroup const& group_;
     Executor const& executor_;
@@ -62,7 +73,8 @@ class JointDynamics {
     BodyLoads given_;
     BodyMotion motion_;
     JointedTips tips_;
-    bool has_forces_, needs_positions_;
+    CarriedBeadForces carried_;
+    bool has_wrenches_, has_forces_, needs_positions_;
     Field<4>
         joint_load_;  // known load of joint k on body k: torque along the joint's axes and force along its last one; halo from outboard
     Field<3> torque_, force_;

@@ -2,30 +2,31 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
-#include "integrate/joint_dynamics.hpp"
+#include "integrate/chain_system.hpp"
 
 namespace catena {
 
 class JointIntegrator {
   public:
     virtual ~JointIntegrator() = default;
-    /// One step of length h from `state`, whose time is its own. Collective.
-    virtual void step(JointState& state, double h) = 0;
+    /// One step of length h of all groups' states, whose time is their own. Collective.
+    virtual void step(std::vector<JointState>& states, double h) = 0;
     virtual int evaluations_a_step() const = 0;
-    /// What the next step needs beside the state, for checkpoints; null: nothing.
-    virtual JointRates* carried() { return nullptr; }
+    /// What the next step needs beside the states, one a group, for checkpoints; null: nothing.
+    virtual std::vector<JointRates>* carried() { return nullptr; }
     /// `carried` was set from outside.
     virtual void restored() {}
 };
 
 /// The classical fourth-order Runge-Kutta step (the chapter's integrator). Quaternions follow q' = 1/2 q (0, omega) and are normalised
 /// at the end of the step.
-std::unique_ptr<JointIntegrator> make_runge_kutta4(JointDynamics&);
+std::unique_ptr<JointIntegrator> make_runge_kutta4(ChainSystem&);
 
 /// Velocity Verlet for accelerations that depend on velocities, one evaluation a step, second order (Groot & Warren, J. Chem. Phys. 107,
 /// 4423, 1997, with lambda = 1): q moves by h q' + h^2/2 q'', the acceleration is taken there with q' + h q'', and q' gets the
 /// mean of both accelerations. Orientations move by the exponential of that rotation vector.
-std::unique_ptr<JointIntegrator> make_velocity_verlet(JointDynamics&);
+std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem&);
 
 }  // namespace catena

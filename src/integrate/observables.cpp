@@ -17,13 +17,14 @@ double kinetic_energy(Scene const& scene, ChainSystem::Snapshot const& snapshot)
     double energy = 0;
     std::size_t i = 0;
     for (ChainSpec const& chain : scene.chains) {
-        for (double const mass : chain.beads.mass) {
+        auto const add = [&](double mass, Sym3 const* inertia) {
             energy += 0.5 * mass * dot(snapshot.velocity[i], snapshot.velocity[i]);
+            if (inertia) energy += 0.5 * dot(snapshot.omega[i], *inertia * snapshot.omega[i]);
             ++i;
-        }
-        for (std::size_t k = 0; k < chain.bodies.size(); ++k, ++i)
-            energy += 0.5 * chain.bodies.mass[k] * dot(snapshot.velocity[i], snapshot.velocity[i]) +
-                      0.5 * dot(snapshot.omega[i], chain.bodies.inertia[k] * snapshot.omega[i]);
+        };
+        for (double const mass : chain.beads.mass) add(mass, nullptr);
+        for (std::size_t k = 0; k < chain.bodies.size(); ++k) add(chain.bodies.mass[k], &chain.bodies.inertia[k]);
+        for (std::size_t k = 0; k < chain.linked.size(); ++k) add(chain.linked.mass[k], &chain.linked.inertia[k]);
     }
     return energy;
 }
@@ -40,11 +41,8 @@ double radius_of_gyration(std::vector<double> const& mass, std::vector<Vec3> con
     return std::sqrt(square / total);
 }
 
-Observables::Observables(Scene const& scene, std::vector<EnergyTerm> const& terms) : scene_(scene), dof_(degrees_of_freedom(scene)) {
-    for (ChainSpec const& chain : scene.chains) {
-        mass_.insert(mass_.end(), chain.beads.mass.begin(), chain.beads.mass.end());
-        mass_.insert(mass_.end(), chain.bodies.mass.begin(), chain.bodies.mass.end());
-    }
+Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
+    : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)) {
     std::string const energy = scene.si ? " [J]" : " [kJ/mol]", length = scene.si ? " [m]" : " [nm]";
     if (wants("energy")) {
         for (EnergyTerm const& term : terms) columns_.push_back(term.name + "_energy" + energy);
@@ -68,8 +66,8 @@ bool Observables::wants(std::string const& name) const {
     return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
 }
 
-std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std::vector<EnergyTerm> const& terms,
-                                     double constraint_error) const {
+std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std::vector<Vec3> const& positions,
+                                     std::vector<EnergyTerm> const& terms, double constraint_error) const {
     std::vector<double> row;
     double const kinetic = kinetic_energy(scene_, snapshot);
     if (wants("energy")) {
@@ -85,13 +83,9 @@ std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std:
     for (bool const gyration : {true, false}) {
         if (!wants(gyration ? "radius_of_gyration" : "end_to_end_distance")) continue;
         std::vector<double> values;
-        std::int64_t first = 0;
-        for (ChainSpec const& chain : scene_.chains) {
-            auto const count = static_cast<std::int64_t>(chain.size());
-            values.push_back(gyration ? radius_of_gyration(mass_, snapshot.position, first, count)
-                                      : norm(snapshot.position[first + count - 1] - snapshot.position[first]));
-            first += count;
-        }
+        for (Topology::Chain const& chain : topology_.chains)
+            values.push_back(gyration ? radius_of_gyration(topology_.mass, positions, chain.first, chain.count)
+                                      : norm(positions[chain.first + chain.count - 1] - positions[chain.first]));
         if (values.size() <= most_single_chains_) {
             row.insert(row.end(), values.begin(), values.end());
             continue;

@@ -51,8 +51,7 @@ RigidDynamics::RigidDynamics(ChainGroup const& group, Scene const& scene, Execut
       joint_force_(group.size + 1, group.directions),
       tip_bias_(group.has_tips() ? group.size : 0, group.directions),
       tip_force_(group.has_tips() ? group.size : 0, group.directions),
-      bead_force_(group.carried_beads()),
-      bead_position_(group.carried_beads()) {
+      carried_(group) {
     for (std::int64_t k = 0; k < group.size; ++k) principal_.push_back(principal_frame(as_symmetric(group.inertia[k])));
 }
 
@@ -66,31 +65,21 @@ void RigidDynamics::set_simple_forces() {
     });
     add_joint_torques();
     executor_.for_each(group_.size, [&](std::int64_t k) { torque_.set(k, transposed_times(turn(orientation_, k), torque_[k])); });
-    for (std::int64_t i = 0; i < bead_force_.size(); ++i) bead_force_.set(i, Vec3::zero());
+    carried_.clear();
 }
 
 ConstView<3> RigidDynamics::bead_positions() {
-    if (bead_position_.size() == 0) return {};
-    executor_.for_each(group_.size, [&](std::int64_t k) {
-        Mat3 const r = turn(orientation_, k);
-        for (std::int64_t i = group_.bead_offset[k]; i < group_.bead_offset[k + 1]; ++i)
-            bead_position_.set(i, position_[k] + r * group_.bead_place[static_cast<std::size_t>(i)]);
-    });
-    return std::as_const(bead_position_).view();
+    return carried_.positions(
+        executor_, [&](std::int64_t k) { return position_[k]; }, [&](std::int64_t k) { return turn(orientation_, k); });
 }
 
 void RigidDynamics::take_bead_forces() {
-    if (bead_force_.size() == 0) return;
+    if (!carried_.any()) return;
     executor_.for_each(group_.size, [&](std::int64_t k) {
         Mat3 const r = turn(orientation_, k);
-        Vec3 force = force_[k], torque = torque_[k];
-        for (std::int64_t i = group_.bead_offset[k]; i < group_.bead_offset[k + 1]; ++i) {
-            Vec3 const f = bead_force_[i];
-            force = force + f;
-            torque = torque + cross(group_.bead_place[static_cast<std::size_t>(i)], transposed_times(r, f));
-        }
-        force_.set(k, force);
-        torque_.set(k, torque);
+        Wrench const w = carried_.on_body(k, r);
+        force_.set(k, force_[k] + w.force);
+        torque_.set(k, torque_[k] + transposed_times(r, w.torque));
     });
 }
 

@@ -16,7 +16,7 @@ class RigidDynamics : public AbsoluteDynamics {
   public:
     void assemble_matrices() override { solver_->assemble_matrices(configuration()); }
     void set_simple_forces() override;
-    View<3> bead_forces() override { return bead_force_.size() > 0 ? bead_force_.view() : View<3>{}; }
+    View<3> bead_forces() override { return carried_.forces(); }
     ConstView<3> bead_positions() override;
     void take_bead_forces() override;
 
@@ -81,7 +81,7 @@ class RigidDynamics : public AbsoluteDynamics {
     Field<4> trial_orientation_;
     Field<3> outboard_point_;  // handle 2, W; halo from inboard
     DirectionsField bias_, joint_force_, tip_bias_, tip_force_;
-    Field<3> bead_force_, bead_position_;  // of carried beads, W
+    CarriedBeadForces carried_;
 
   private:
     struct HandleAcceleration {

@@ -6,6 +6,7 @@
 
 #include "error.hpp"
 #include "integrate/run_folder.hpp"
+#include "integrate/sites.hpp"
 #include "integrate/start_velocities.hpp"
 #include "integrate/stepper.hpp"
 
@@ -19,24 +20,6 @@ constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
 /// The constraint error is looked at with every output and checkpoint, at the last step, and this often.
 constexpr std::int64_t check_every = 100;
-
-Topology topology_of(Scene const& scene) {
-    Topology t;
-    t.title = scene.title;
-    t.box = scene.box;
-    t.si = scene.si;
-    std::int64_t first = 0;
-    for (ChainSpec const& chain : scene.chains) {
-        auto const count = static_cast<std::int64_t>(chain.size());
-        t.chains.push_back({chain.name, first, count, chain.is_beads(), false});
-        t.residue.insert(t.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
-        t.residue.insert(t.residue.end(), chain.bodies.size(), "BDY");
-        t.mass.insert(t.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
-        t.mass.insert(t.mass.end(), chain.bodies.mass.begin(), chain.bodies.mass.end());
-        first += count;
-    }
-    return t;
-}
 
 json timeline_json(std::vector<StepTimeline> const& steps) {
     json list = json::array();
@@ -74,6 +57,7 @@ class Run {
           options_(options),
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene_.dynamics.steps)),
+          sites_(scene_),
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator) {
         stepper_ = make_stepper(system_, scene_.dynamics);
     }
@@ -120,13 +104,10 @@ class Run {
         Frame f;
         f.step = n;
         f.time = time(n);
-        f.positions = s.position;
-        if (scene_.output.velocities) f.velocities = s.velocity;
-        std::size_t site = 0;
-        for (ChainSpec const& chain : scene_.chains)  // of the bodies alone
-            for (std::size_t k = 0; k < chain.size() && !s.orientation.empty(); ++k, ++site)
-                if (!chain.is_beads()) f.orientations.push_back(s.orientation[site]);
-        if (scene_.output.joint_forces) f.joint_forces = system_.joint_forces();
+        f.positions = sites_.positions(s);
+        if (scene_.output.velocities) f.velocities = sites_.velocities(s);
+        f.orientations = sites_.orientations(s);
+        if (scene_.output.joint_forces) f.joint_forces = sites_.joint_forces(system_.joint_forces());
         return f;
     }
 
@@ -135,8 +116,8 @@ class Run {
         folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
         stepper_->observe(scene_.output.joint_forces);
         std::vector<EnergyTerm> const terms = system_.potential_energy();
-        observables_ = std::make_unique<Observables>(scene_, terms);
-        folder_->open(topology_of(scene_), frame(n, system_.snapshot()), observables_->columns());
+        observables_ = std::make_unique<Observables>(scene_, sites_.topology(), terms);
+        folder_->open(sites_.topology(), frame(n, system_.snapshot()), observables_->columns());
     }
 
     void output(std::int64_t n) {
@@ -146,7 +127,7 @@ class Run {
         std::vector<EnergyTerm> const terms = system_.potential_energy();
         Frame const f = frame(n, snapshot);
         if (!root_) return;
-        last_row_ = observables_->row(snapshot, terms, error);
+        last_row_ = observables_->row(snapshot, f.positions, terms, error);
         folder_->write(f, last_row_);
     }
 
@@ -303,6 +284,7 @@ class Run {
     RunOptions options_;
     bool root_;
     std::int64_t last_;
+    Sites sites_;
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
     std::unique_ptr<RunFolder> folder_;

@@ -4,14 +4,13 @@
 
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena {
 namespace {
 
 bool is_thermal(ChainSpec const& chain) { return chain.velocities == StartVelocities::thermal; }
-bool has_revolute(ChainSpec const& chain) {
-    return std::find(chain.bodies.joint.begin(), chain.bodies.joint.end(), JointType::revolute) != chain.bodies.joint.end();
-}
+bool has_absolute_coordinates(ChainSpec const& chain) { return !scene::joint_without_absolute_coordinates(chain); }
 
 /// State in absolute coordinates, every body of the scene, on every rank.
 struct Drawn {
@@ -42,6 +41,10 @@ Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& commun
 void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
     chain.velocities = StartVelocities::given;
     for (std::size_t k = 0; k < chain.beads.size(); ++k) chain.beads.velocity[k] = drawn.velocity_of(first + k);
+    for (std::size_t k = 0; k < chain.linked.size(); ++k) {
+        chain.linked.velocity[k] = drawn.velocity_of(first + k);
+        chain.linked.omega[k] = drawn.omega_of(first + k);
+    }
     BodyArrays& bodies = chain.bodies;
     bodies.qd.resize(bodies.size(), Vec3::zero());
     for (std::size_t k = 0; k < bodies.size(); ++k) {  // relative to the inboard body, B
@@ -60,11 +63,11 @@ Scene with_start_velocities(Scene scene, Communicator const& communicator) {
     if (std::none_of(scene.chains.begin(), scene.chains.end(), is_thermal)) return scene;
     Scene sampled = scene;
     sampled.forces.openmm.reset();
-    std::erase_if(sampled.chains, has_revolute);  // they have no absolute coordinates, and are never thermal
+    std::erase_if(sampled.chains, [](ChainSpec const& c) { return !has_absolute_coordinates(c); });  // these are never thermal
     Drawn const drawn = draw(sampled, scene.dynamics, communicator);
     std::size_t body = 0;
     for (ChainSpec& chain : scene.chains) {
-        if (has_revolute(chain)) continue;
+        if (!has_absolute_coordinates(chain)) continue;
         if (is_thermal(chain)) set_velocities(chain, drawn, body);
         body += chain.size();
     }

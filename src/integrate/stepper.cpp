@@ -13,30 +13,28 @@ using nlohmann::json;
 
 class JointStepper final : public Stepper {
   public:
-    JointStepper(ChainSystem& system, DynamicsSpec const& d) : system_(system), h_(d.step) {
-        for (std::size_t i = 0; i < system.joint().size(); ++i) {
-            JointDynamics& dynamics = *system.joint()[i];
-            integrators_.push_back(d.integrator == Integrator::rk4 ? make_runge_kutta4(dynamics) : make_velocity_verlet(dynamics));
-            dynamics.close_tips(system.joint_state(i));
-        }
+    JointStepper(ChainSystem& system, DynamicsSpec const& d)
+        : system_(system),
+          h_(d.step),
+          integrator_(d.integrator == Integrator::rk4 ? make_runge_kutta4(system) : make_velocity_verlet(system)) {
+        for (std::size_t i = 0; i < system.joint().size(); ++i) system.joint()[i]->close_tips(system.joint_states()[i]);
     }
     void prepare(StepTimeline*) override {}
+    /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at the step's end.
     void observe(bool joint_forces) override {
-        if (joint_forces) system_.evaluate();
+        if (joint_forces || system_.openmm()) system_.evaluate();
     }
     void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();
-        for (std::size_t i = 0; i < integrators_.size(); ++i) {
-            system_.joint_state(i).time = static_cast<double>(n) * h_;
-            integrators_[i]->step(system_.joint_state(i), h_);
-        }
+        for (JointState& state : system_.joint_states()) state.time = static_cast<double>(n) * h_;
+        integrator_->step(system_.joint_states(), h_);
         if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
     /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is finite.
     double constraint_error() override {
         double worst = 0;
-        for (std::size_t i = 0; i < integrators_.size(); ++i) {
-            JointState const& state = system_.joint_state(i);
+        for (std::size_t i = 0; i < system_.joint().size(); ++i) {
+            JointState const& state = system_.joint_states()[i];
             for (std::int64_t k = 0; k < state.q.size(); ++k)
                 worst = larger(worst, 0.0 * (dot(state.q[k], state.q[k]) + dot(state.qd[k], state.qd[k])));
             worst = larger(worst, system_.joint()[i]->closure_error(state));
@@ -45,27 +43,24 @@ class JointStepper final : public Stepper {
     }
     bool add_sweep() override { return false; }
     void save(Checkpoint& c) const override {
-        for (std::size_t i = 0; i < integrators_.size(); ++i)
-            if (JointRates* const rates = integrators_[i]->carried()) system_.collect_rates(i, *rates, c.arrays);
+        std::vector<JointRates>* const carried = integrator_->carried();
+        for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.collect_rates(i, (*carried)[i], c.arrays);
     }
     void restore(Checkpoint const& c) override {
-        for (std::size_t i = 0; i < integrators_.size(); ++i) {
-            system_.joint_state(i).time = static_cast<double>(c.step) * h_;
-            JointRates* const rates = integrators_[i]->carried();
-            if (!rates) continue;
-            system_.distribute_rates(i, c.arrays, *rates);
-            integrators_[i]->restored();
-        }
+        for (JointState& state : system_.joint_states()) state.time = static_cast<double>(c.step) * h_;
+        std::vector<JointRates>* const carried = integrator_->carried();
+        for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.distribute_rates(i, c.arrays, (*carried)[i]);
+        integrator_->restored();
     }
     json describe() const override {
-        int const evaluations = integrators_.empty() ? 0 : integrators_.front()->evaluations_a_step();
+        int const evaluations = integrator_->evaluations_a_step();
         return {{"matrix_sweeps_a_step", evaluations}, {"bias_sweeps_a_step", evaluations}};
     }
 
   private:
     ChainSystem& system_;
     double h_;
-    std::vector<std::unique_ptr<JointIntegrator>> integrators_;
+    std::unique_ptr<JointIntegrator> integrator_;
 };
 
 class ConstrainedStepper final : public Stepper {

@@ -7,33 +7,42 @@ namespace {
 
 class VelocityVerlet final : public JointIntegrator {
   public:
-    explicit VelocityVerlet(JointDynamics& dynamics) : dynamics_(dynamics), rates_(dynamics.make_rates()), next_(dynamics.make_rates()) {}
+    explicit VelocityVerlet(ChainSystem& system) : system_(system), groups_(system.joint()) {
+        for (JointDynamics const* group : groups_) {
+            rates_.push_back(group->make_rates());
+            next_.push_back(group->make_rates());
+        }
+    }
     int evaluations_a_step() const override { return 1; }
-    JointRates* carried() override { return &rates_; }
+    std::vector<JointRates>* carried() override { return &rates_; }
     void restored() override { ready_ = true; }
 
-    void step(JointState& state, double h) override {
-        if (!ready_) dynamics_.evaluate(state, rates_);
+    void step(std::vector<JointState>& states, double h) override {
+        if (!ready_) system_.evaluate(states, rates_);
         ready_ = true;
-        start_ = state;
-        ChainGroup const& group = dynamics_.group();
-        move(state, h);
-        state.time = start_.time + h;
-        add_to_velocities(start_, h, rates_, state);
-        follow_courses(group, state);
-        dynamics_.evaluate(state, next_);
-        add_to_velocities(start_, 0.5 * h, rates_, state);
-        add_to_velocities(state, 0.5 * h, next_, state);
-        follow_courses(group, state);
-        std::swap(rates_, next_);
-        dynamics_.close_tips(state);
+        start_ = states;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            move(g, states[g], h);
+            states[g].time = start_[g].time + h;
+            add_to_velocities(start_[g], h, rates_[g], states[g]);
+            follow_courses(groups_[g]->group(), states[g]);
+        }
+        system_.evaluate(states, next_);
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            add_to_velocities(start_[g], 0.5 * h, rates_[g], states[g]);
+            add_to_velocities(states[g], 0.5 * h, next_[g], states[g]);
+            follow_courses(groups_[g]->group(), states[g]);
+            std::swap(rates_[g], next_[g]);
+            groups_[g]->close_tips(states[g]);
+        }
     }
 
   private:
-    void move(JointState& state, double h) const {
-        ChainGroup const& group = dynamics_.group();
+    void move(std::size_t g, JointState& state, double h) const {
+        ChainGroup const& group = groups_[g]->group();
+        JointRates const& rates = rates_[g];
         for (std::int64_t k = 0; k < group.size; ++k) {
-            Vec3 const by = plus_scaled(h * state.qd[k], 0.5 * h * h, rates_.qdd[k]);
+            Vec3 const by = plus_scaled(h * state.qd[k], 0.5 * h * h, rates.qdd[k]);
             Vector<double, 4> const q = state.q[k];
             if (group.joint[k] == JointType::spherical || group.joint[k] == JointType::free)
                 state.q.set(k, as_vector(normalized(as_quaternion(q) * from_rotation_vector(by))));
@@ -42,7 +51,7 @@ class VelocityVerlet final : public JointIntegrator {
         }
         for (std::size_t p = 0; p < group.pieces.size(); ++p)
             state.base_position[p] =
-                state.base_position[p] + plus_scaled(h * state.base_velocity[p], 0.5 * h * h, rates_.base_acceleration[p]);
+                state.base_position[p] + plus_scaled(h * state.base_velocity[p], 0.5 * h * h, rates.base_acceleration[p]);
     }
     static void add_to_velocities(JointState const& from, double h, JointRates const& rates, JointState& to) {
         for (std::int64_t k = 0; k < from.qd.size(); ++k) to.qd.set(k, plus_scaled(from.qd[k], h, rates.qdd[k]));
@@ -50,14 +59,15 @@ class VelocityVerlet final : public JointIntegrator {
             to.base_velocity[p] = plus_scaled(from.base_velocity[p], h, rates.base_acceleration[p]);
     }
 
-    JointDynamics& dynamics_;
-    JointState start_;
-    JointRates rates_, next_;
+    ChainSystem& system_;
+    std::vector<JointDynamics*> groups_;
+    std::vector<JointState> start_;
+    std::vector<JointRates> rates_, next_;
     bool ready_ = false;
 };
 
 }  // namespace
 
-std::unique_ptr<JointIntegrator> make_velocity_verlet(JointDynamics& dynamics) { return std::make_unique<VelocityVerlet>(dynamics); }
+std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem& system) { return std::make_unique<VelocityVerlet>(system); }
 
 }  // namespace catena

@@ -15,18 +15,20 @@
 
 namespace catena {
 
-/// What a trajectory shows: one site a bead (its position) or a rigid body (its centre of mass), chains one after the other.
+/// What a trajectory shows: one site a bead, a bead that a body carries, or a body that carries none (its centre of mass), chains one
+/// after the other.
 struct Topology {
     struct Chain {
         std::string name;
         std::int64_t first = 0, count = 0;  // sites
-        bool beads = true;
+        bool beads = true;                  // every site is one
         bool ring = false;
     };
     std::string title;
     std::vector<Chain> chains;
     std::vector<std::string> residue;  // three-letter name of each site; bodies: "BDY"
     std::vector<double> mass;
+    std::vector<std::int64_t> bodies;  // a rigid body's site, or the first of those it carries
     std::optional<Vec3> box;
     bool si = false;  // units stay the user's: no unit attributes are written but "m", "s", ...
 };
@@ -34,10 +36,11 @@ struct Topology {
 struct Frame {
     std::int64_t step = 0;
     double time = 0;
-    std::vector<Vec3> positions;                  // W, unwrapped
-    std::vector<Vec3> velocities;                 // empty: not written
-    std::vector<Quat> orientations;               // of bodies, W; empty when the scene has beads alone
-    std::vector<Vector<double, 6>> joint_forces;  // [torque, force] on each site at its inboard joint, W; empty: not written
+    std::vector<Vec3> positions;     // W, unwrapped
+    std::vector<Vec3> velocities;    // empty: not written
+    std::vector<Quat> orientations;  // of the topology's bodies, W
+    std::vector<Vector<double, 6>>
+        joint_forces;  // [torque, force] on each site at its inboard joint (on a body's first), W; empty: not written
 };
 
 /// H5MD 1.1 file for MDAnalysis and others.

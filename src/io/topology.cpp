@@ -71,7 +71,7 @@ void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     for (std::size_t at = 0, part = 1; at < title.size(); at += 68, ++part)
         out.write(part == 1 ? fmt::format("TITLE     {}\n", title.substr(at, 68))
                             : fmt::format("TITLE   {:2} {}\n", part % 100, title.substr(at, 68)));
-    out.write("REMARK   1 WRITTEN BY CATENA: ONE SITE A BEAD OR RIGID BODY (BDY, CENTRE OF MASS)\n");
+    out.write("REMARK   1 WRITTEN BY CATENA: ONE SITE A BEAD OR A BODY WITHOUT BEADS (BDY, CENTRE OF MASS)\n");
     if (topology.si) out.write(fmt::format("REMARK   1 COORDINATES: 1 ANGSTROM STANDS FOR {:.0E} M\n", 1 / scale));
     if (topology.box) {
         Vec3 const edges = scale * *topology.box;

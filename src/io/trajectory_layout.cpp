@@ -80,7 +80,7 @@ class Builder {
             put_array(at(element), "site", H5T_NATIVE_HSIZE, contents_.bodies.data(), std::span(&bodies, 1));
         }
         if (!contents_.joint_forces) return;
-        std::string const frame = "W, on each site at its inboard joint";
+        std::string const frame = "W, on each body at its inboard joint; at the first of its sites";
         add_element(at(own), "joint_torque", {contents_.sites, 3}, units_.torque, series_.torque, frame);
         add_element(at(own), "joint_force", {contents_.sites, 3}, units_.force, series_.force, frame);
     }
@@ -158,8 +158,7 @@ TrajectoryContents contents_of(Topology const& topology, bool velocities, bool j
     contents.periodic = topology.box.has_value();
     contents.si = topology.si;
     contents.sites = topology.mass.size();
-    for (Topology::Chain const& chain : topology.chains)
-        for (std::int64_t k = 0; !chain.beads && k < chain.count; ++k) contents.bodies.push_back(static_cast<hsize_t>(chain.first + k));
+    contents.bodies.assign(topology.bodies.begin(), topology.bodies.end());
     return contents;
 }
 

@@ -1,14 +1,16 @@
 // What a Catena trajectory holds, by name: H5MD 1.1 (https://www.nongnu.org/h5md/releases/h5md-1.1.0.html) and Catena's own group.
 //
 //   /h5md                         version [1, 1], author, creator "catena", modules/units
-//   /particles/trajectory         one site a bead or body, in the order of the topology
+//   /particles/trajectory         one site a bead, carried or not, or body without beads, in the order of the topology
 //       box                       dimension, boundary; edges when periodic
 //       position, velocity        {step, time, value [frames][sites][3]}, ground axes, unwrapped
 //       mass, id                  [sites], id from 1
 //   /catena                       format_version, title
 //       chains                    first, count, beads, ring, name: [chains]
-//       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to ground axes; site [bodies] from 0
-//       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each site at its inboard joint, ground axes
+//       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to ground axes; site [bodies] from 0, the
+//                                 body's or that of its first bead
+//       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each body (at its first site) at its inboard joint, ground
+//                                 axes
 //
 // All steps are one dataset and all times another, linked hard from each element, so the elements cannot disagree. MDAnalysis
 // 2.11 wants exactly one group in /particles, named `trajectory`, and `unit` attributes of variable length.
@@ -26,7 +28,7 @@ namespace catena::hdf5 {
 
 /// What of the optional parts a trajectory has.
 struct TrajectoryContents {
-    std::vector<hsize_t> bodies;  // the sites that are bodies
+    std::vector<hsize_t> bodies;  // their sites
     bool velocities = false, joint_forces = false, periodic = false, si = false;
     hsize_t sites = 0;
 };

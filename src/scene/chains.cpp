@@ -92,12 +92,13 @@ class ChainReader {
         ChainSpec first = make(0);
         refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
         bool const free_to_move = movable(first);
+        Regrown const shape = regrown(first);
         for (std::int64_t copy = 1; copy < count_; ++copy) {
-            drafts.push_back({is_random() ? make(copy) : first, &request_.node, free_to_move});
+            drafts.push_back({is_random() ? make(copy) : first, &request_.node, free_to_move, shape});
             drafts.back().chain.name = fmt::format("{}-{}", name, copy + 1);
         }
         first.name = count_ == 1 ? name : name + "-1";
-        drafts.insert(drafts.end() - (count_ - 1), Draft{std::move(first), &request_.node, free_to_move});
+        drafts.insert(drafts.end() - (count_ - 1), Draft{std::move(first), &request_.node, free_to_move, shape});
     }
 
   private:
@@ -160,10 +161,19 @@ class ChainReader {
     }
     bool movable(ChainSpec const& chain) const {
         if (count_ > 1) return true;
+        return is_free(chain) && source_.key != "bodies" && !is_given();
+    }
+    bool is_free(ChainSpec const& chain) const { return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free; }
+    /// Whether a file says where the beads are.
+    bool is_given() const {
         Node const* const conformation = request_.fields.find("conformation");
-        bool const from_file =
-            request_.fields.find("positions") || source_.key == "pdb" || (conformation && conformation->kind == Node::Kind::map);
-        return chain.is_beads() && chain.base == Base::free && tip_.kind == Tip::free && source_.key != "bodies" && !from_file;
+        return request_.fields.find("positions") || source_.key == "pdb" || (conformation && conformation->kind == Node::Kind::map);
+    }
+    Regrown regrown(ChainSpec const& chain) const {
+        if (!is_free(chain) || (source_.key != "sequence" && source_.key != "fasta")) return Regrown::no;
+        Node const* const conformation = request_.fields.find("conformation");
+        bool const any_shape = conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
+        return any_shape ? Regrown::yes : Regrown::if_asked;
     }
     /// What cannot fit is refused before it is tried.
     void refuse_too_large(std::int64_t size, bool beads) const {

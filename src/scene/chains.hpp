@@ -9,11 +9,16 @@
 
 namespace catena::scene {
 
+/// Whether a chain without a place may take another shape to find one: a free chain of residues may where it is self-avoiding
+/// or one of several copies whose shape the scene does not say; others of them may if the scene asks for self-avoidance instead.
+enum class Regrown : std::uint8_t { no, if_asked, yes };
+
 /// A chain of the scene before it has its place.
 struct Draft {
     ChainSpec chain;
     Node const* node = nullptr;  // its entry in `chains`
     bool movable = false;        // the scene does not say where it stands
+    Regrown regrown = Regrown::no;
 };
 
 /// Reads the entry `index` (from 0) of `chains` into `count` chains and appends them. `scene` holds everything but the chains; `warm`: it

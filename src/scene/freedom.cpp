@@ -117,4 +117,13 @@ std::int64_t degrees_of_freedom(ChainSpec const& chain) {
     return dof;
 }
 
+std::optional<std::pair<std::size_t, JointType>> joint_without_absolute_coordinates(ChainSpec const& chain) {
+    auto const held = [](JointType t) { return t == JointType::free || t == JointType::spherical || t == JointType::link; };
+    auto const& joints = chain.bodies.joint;
+    auto const found = std::find_if_not(joints.begin(), joints.end(), held);
+    if (found != joints.end()) return std::pair{static_cast<std::size_t>(found - joints.begin()), *found};
+    if (chain.tip == Tip::jointed && !held(chain.tip_joint.type)) return std::pair{joints.size(), chain.tip_joint.type};
+    return std::nullopt;
+}
+
 }  // namespace catena::scene

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "scene/scene.hpp"
 
@@ -24,5 +26,9 @@ char const* name_of(HandleKind kind);
 /// Coordinates of the joints, those that are driven left out, less what the tip's joint restricts; links: 6 a rigid body, 3 a bead, less
 /// one a link.
 std::int64_t degrees_of_freedom(ChainSpec const& chain);
+
+/// The first joint, from 0, that absolute coordinates do not hold (they hold links and spherical joints); the size: the tip's; nothing:
+/// there is none.
+std::optional<std::pair<std::size_t, JointType>> joint_without_absolute_coordinates(ChainSpec const& chain);
 
 }  // namespace catena::scene

@@ -6,7 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "scene/pose.hpp"
+#include "scene/outline.hpp"
+#include "scene/packing.hpp"
 
 namespace catena::scene {
 
@@ -18,56 +19,8 @@ struct Sphere {
     double gap = 0;  // two links
 };
 
-/// Origins, centres of mass and the longest stretch between two of them along the chain.
-struct Outline {
-    std::vector<Vec3> points;
-    double link = 0;
-};
-
-void add_carried(Outline& outline, CarriedBeads const& carried, std::size_t k, Pose const& pose) {
-    if (carried.offset.empty()) return;
-    for (auto b = static_cast<std::size_t>(carried.offset[k]); b < static_cast<std::size_t>(carried.offset[k + 1]); ++b)
-        outline.points.push_back(pose.origin + to_matrix(pose.orientation) * carried.position[b]);
-}
-
-Outline outline_of(BeadArrays const& beads) {
-    Outline outline{beads.position, 0};
-    for (double const length : beads.length) outline.link = std::max(outline.link, length);
-    return outline;
-}
-
-Outline outline_of(BodyArrays const& bodies) {
-    Outline outline;
-    Pose pose;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-        Pose const next = next_pose(bodies, k, pose);
-        if (k > 0) outline.link = std::max(outline.link, norm(next.origin - pose.origin));
-        pose = next;
-        outline.points.push_back(pose.origin);
-        outline.points.push_back(pose.origin + to_matrix(pose.orientation) * bodies.com[k]);
-        outline.link = std::max(outline.link, norm(bodies.com[k]));
-        add_carried(outline, bodies.carried, k, pose);
-    }
-    return outline;
-}
-
-Outline outline_of(LinkedArrays const& linked) {
-    Outline outline;
-    for (std::size_t k = 0; k < linked.size(); ++k) {
-        auto const& q = linked.orientation[k];
-        Pose const pose{{q[0], q[1], q[2], q[3]}, linked.position[k]};
-        for (Vec3 const& end : {Vec3::zero(), linked.inboard[k], linked.outboard[k]})
-            outline.points.push_back(pose.origin + to_matrix(pose.orientation) * end);
-        outline.link = std::max({outline.link, linked.length[k], norm(linked.inboard[k]), norm(linked.outboard[k])});
-        add_carried(outline, linked.carried, k, pose);
-    }
-    return outline;
-}
-
 Sphere sphere_around(ChainSpec const& chain) {
-    Outline const outline = chain.is_beads()    ? outline_of(chain.beads)
-                            : chain.is_linked() ? outline_of(chain.linked)
-                                                : outline_of(chain.bodies);
+    Outline const outline = outline_of(chain);
     Vec3 low = outline.points[0], high = low;
     for (Vec3 const& p : outline.points)
         for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
@@ -90,6 +43,8 @@ void move(ChainSpec& chain, Vec3 const& by) {
         place = place + by;
     }
 }
+
+bool is_regrown(Draft const* draft) { return draft->regrown == Regrown::yes; }
 
 class Grid {
   public:
@@ -128,7 +83,8 @@ class Grid {
     std::optional<Vec3> const& box_;
 };
 
-std::vector<Vec3> find_cells(Grid const& grid, std::size_t wanted, double width, std::optional<Vec3> const& box, Node const& node) {
+/// Middles of clear cells: `wanted` of them or, where the box has no room, all that were found.
+std::vector<Vec3> find_cells(Grid const& grid, std::size_t wanted, double width, std::optional<Vec3> const& box) {
     std::array<std::int64_t, 3> most{INT64_MAX, INT64_MAX, INT64_MAX};
     for (int i = 0; i < 3 && box; ++i) most[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::floor((*box)[i] / width));
     std::int64_t const largest = *std::max_element(most.begin(), most.end());
@@ -138,31 +94,55 @@ std::vector<Vec3> find_cells(Grid const& grid, std::size_t wanted, double width,
         cells = grid.clear_cells({std::min(n, most[0]), std::min(n, most[1]), std::min(n, most[2])}, wanted);
         if (n >= largest) break;
     }
-    if (cells.size() == wanted) return cells;
-    fail(node,
+    return cells;
+}
+
+[[noreturn]] void refuse(Draft const& draft, Vec3 const& box, std::size_t room, double width, std::size_t wanted) {
+    bool const residues = draft.regrown == Regrown::if_asked;
+    fail(*draft.node,
          fmt::format("the box {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within a sphere {:.4g} wide, not for {}",
-                     (*box)[0], (*box)[1], (*box)[2], cells.size(), width, wanted),
-         "enlarge the box, lower `count` or start from compacter `positions`; denser packings are not in this version");
+                     box[0], box[1], box[2], room, width, wanted),
+         residues
+             ? "enlarge the box, lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"
+             : "enlarge the box or lower `count`; only free chains of residues without `positions` are packed more densely");
+}
+
+/// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box has no room for chains that can be grown
+/// into it instead.
+bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed, std::optional<Vec3> const& box) {
+    std::vector<Sphere> spheres;
+    double width = 0;
+    for (Draft const* const draft : moving) {
+        spheres.push_back(sphere_around(draft->chain));
+        width = std::max(width, 2 * spheres.back().radius + spheres.back().gap);
+    }
+    if (width == 0) width = 1;  // lone beads: any distance will do
+    Grid const grid(placed, width, box);
+    std::vector<Vec3> const cells = find_cells(grid, moving.size(), width, box);
+    if (cells.size() < moving.size()) {
+        if (std::any_of(moving.begin(), moving.end(), is_regrown)) return false;
+        refuse(*moving.front(), *box, cells.size(), width, moving.size());
+    }
+    for (std::size_t i = 0; i < moving.size(); ++i) move(moving[i]->chain, cells[i] - spheres[i].centre);
+    return true;
 }
 
 }  // namespace
 
-void place_side_by_side(std::vector<Draft>& drafts, std::optional<Vec3> const& box) {
-    std::vector<Draft*> movable;
-    for (Draft& draft : drafts)
-        if (draft.movable) movable.push_back(&draft);
-    if (movable.empty()) return;
-    std::vector<Sphere> placed, moving;
-    double width = 0;
-    for (Draft const& draft : drafts) {
-        Sphere const sphere = sphere_around(draft.chain);
-        (draft.movable ? moving : placed).push_back(sphere);
-        if (draft.movable) width = std::max(width, 2 * sphere.radius + sphere.gap);
+void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed) {
+    std::vector<Draft*> moving;
+    std::vector<Sphere> placed;
+    for (Draft& draft : drafts) {
+        if (draft.movable)
+            moving.push_back(&draft);
+        else
+            placed.push_back(sphere_around(draft.chain));
     }
-    if (width == 0) width = 1;  // lone beads: any distance will do
-    Grid const grid(placed, width, box);
-    std::vector<Vec3> const cells = find_cells(grid, movable.size(), width, box, *movable.front()->node);
-    for (std::size_t i = 0; i < movable.size(); ++i) move(movable[i]->chain, cells[i] - moving[i].centre);
+    if (moving.empty() || place_side_by_side(moving, placed, box)) return;
+    // Chains that keep their shape take their places first, the others grow around them.
+    moving.erase(std::remove_if(moving.begin(), moving.end(), is_regrown), moving.end());
+    if (!moving.empty()) place_side_by_side(moving, placed, box);
+    pack(drafts, *box, seed);
 }
 
 }  // namespace catena::scene

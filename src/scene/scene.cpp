@@ -73,7 +73,7 @@ Scene parse_scene(std::string const& text, std::string const& name, std::vector<
     Scene made = read_frame(fields, name);
     std::vector<scene::Draft> drafts = read_chains(fields, made);
     scene::check_together(*root, made, drafts);
-    scene::place_side_by_side(drafts, made.box);
+    scene::give_places(drafts, made.box, made.dynamics.seed);
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
     made.hash = scene::fingerprint(made);
     return made;

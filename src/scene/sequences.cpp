@@ -11,9 +11,6 @@ namespace catena::scene {
 
 namespace {
 
-/// Nearer pairs of CALVADOS beads repel each other by several kT (mean diameters are 0.45 to 0.68 nm).
-double constexpr excluded_distance = 0.56;  // nm
-
 using Residues = std::vector<Calvados2Residue const*>;
 
 Residues residues_of(std::string const& letters, Node const& source) {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 #include <set>
 
 #include "force/calvados2.hpp"
 #include "scene/fields.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena::scene {
 
@@ -21,16 +21,6 @@ void check_names(std::vector<Draft> const& drafts) {
 }
 
 std::string const joint_integrators = "use `integrator: rk4` or `velocity-verlet`";
-
-/// The first joint, from 0, that integrators in absolute coordinates do not move; the size: the tip's; nothing: there is none.
-std::optional<std::pair<std::size_t, JointType>> immovable_joint(ChainSpec const& chain) {
-    auto const movable = [](JointType t) { return t == JointType::free || t == JointType::spherical || t == JointType::link; };
-    auto const& joints = chain.bodies.joint;
-    auto const found = std::find_if_not(joints.begin(), joints.end(), movable);
-    if (found != joints.end()) return std::pair{static_cast<std::size_t>(found - joints.begin()), *found};
-    if (chain.tip == Tip::jointed && !movable(chain.tip_joint.type)) return std::pair{joints.size(), chain.tip_joint.type};
-    return std::nullopt;
-}
 
 template <class Value>
 void refuse_at_body(Draft const& draft, std::vector<Value> const& values, bool (*acts)(Value const&), std::string const& what,
@@ -65,7 +55,7 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
                  "use `integrator: rattle` or `g-baoab`");
         return;
     }
-    if (auto const odd = immovable_joint(chain)) {
+    if (auto const odd = joint_without_absolute_coordinates(chain)) {
         std::string const place = odd->first < chain.bodies.size() ? fmt::format("joint {}", odd->first + 1) : "its tip";
         fail(at,
              fmt::format("integrator {} moves chains of links or spherical joints, chain `{}` has a {} joint ({})", name_of(integrator),
@@ -91,7 +81,7 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     bool const named = section && (section->find("temperature") || dynamics.integrator == Integrator::g_baoab);
     if (!named || !(dynamics.temperature > 0))
         fail(at, "thermal velocities without a temperature above 0", "add `dynamics: {temperature: 300}`, or write `velocities: zero`");
-    if (auto const odd = immovable_joint(draft.chain))
+    if (auto const odd = joint_without_absolute_coordinates(draft.chain))
         fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
              "write `velocities: zero`, or give each joint its `qd`");
 }

@@ -2,6 +2,7 @@
 // one rank of the same backend, threads with `segments`, whose tree they share.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 
 #include "report/solution.hpp"
@@ -130,6 +131,19 @@ TEST(SameBits, ShortChainsOfEveryKind) {
     for (Kind const& kind : kinds)
         for (std::size_t const bodies : {1, 3, 64}) chains.push_back(chain_of(kind, bodies, Base::fixed));
     expect_same_bits(scene_of(chains), "short chains", threads_fit());
+}
+
+// Every rank packs the box by itself. Velocities made of the positions let accelerations tell places apart.
+TEST(SameBits, PackedChains) {
+    Scene scene =
+        parse_scene("box: {periodic: [6, 6, 6]}\nchains: [{count: 40, sequence: GGGGGGGGGGGGGGGGGGGG, model: calvados2}]", "test");
+    for (ChainSpec& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.beads.size(); ++k) {
+            Vec3 const& at = chain.beads.position[k];
+            chain.beads.velocity[k] = {{at[1], at[2], at[0]}};
+        }
+    EXPECT_GT(std::abs(solve(scene, Backend::segments, Handles::projected, 1, *serial_communicator()).acceleration[0]), 0);
+    expect_same_bits(scene, "packed chains", threads_fit());
 }
 
 // The comparison itself: another state has other bits.

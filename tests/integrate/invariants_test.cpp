@@ -12,10 +12,16 @@ std::string const beads = "chains: [{name: a, generator: {freely_jointed: {beads
 std::string const hanging =
     "chains: [{name: a, base: fixed, generator: {random: {bodies: 8, joint: spherical, seed: 4}}}]\nforces: {gravity: [0, 0, -5]}\n";
 
+std::string const linked = "chains: [{name: a, base: free, generator: {random: {bodies: 14, joint: link, seed: 2}}}]\n";
+std::string const held =
+    "chains: [{name: a, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 8, joint: spherical, seed: 4}}},"
+    " {name: b, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 9, joint: link, seed: 4}}}]\n"
+    "forces: {gravity: [0, 0, -5]}\n";
+
 // Impulses act equal and opposite at one point, up to the joints' closing: eps a step from rounding and the constraint error from
 // the point's two places.
 TEST(Rattle, FreeChainsKeepTheirMomenta) {
-    for (std::string const& text : {bodies, beads}) {
+    for (std::string const& text : {bodies, beads, linked}) {
         Constrained run(text, 0.004);
         Momenta const before = momenta(run.scene(), run.snapshot());
         run.run(2000);
@@ -28,7 +34,7 @@ TEST(Rattle, FreeChainsKeepTheirMomenta) {
 }
 
 TEST(Rattle, EnergyErrorFallsByFourWhenTheStepIsHalved) {
-    for (std::string const& text : {bodies, beads, hanging}) {
+    for (std::string const& text : {bodies, beads, hanging, linked, held}) {
         double rms[2];
         for (int half = 0; half < 2; ++half) {
             double const step = half ? 0.002 : 0.004;
@@ -48,7 +54,7 @@ TEST(Rattle, EnergyErrorFallsByFourWhenTheStepIsHalved) {
 }
 
 TEST(Langevin, HeatsAColdChainToItsTemperature) {
-    for (std::string const& text : {bodies, beads}) {
+    for (std::string const& text : {bodies, beads, linked}) {
         Constrained run(text, 0.004, Integrator::g_baoab, 5.0, 0.00831446261815324 * 150);
         run.run(500);
         double mean = 0;
@@ -58,7 +64,7 @@ TEST(Langevin, HeatsAColdChainToItsTemperature) {
             mean += 2 * kinetic_energy(run.scene(), run.snapshot()) /
                     (run.scene().boltzmann() * static_cast<double>(degrees_of_freedom(run.scene()))) / samples;
         }
-        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 and 61 squares.
+        // 400 samples every 0.04 ps at friction 5/ps (energy forgets at twice that): about 100 independent ones of 39 squares and more.
         double const error = 150 * std::sqrt(2.0 / static_cast<double>(degrees_of_freedom(run.scene())) / 100);
         EXPECT_NEAR(mean, 150, 4 * error) << text;
         EXPECT_LE(run.constraint_error(), 1e-10);
@@ -72,13 +78,13 @@ double order_of(Scene const& scene, bool fourth) {
     auto const end_of = [&](int steps, bool reference) {
         ChainSystem system(scene, Axes::joint, *communicator);
         JointDynamics& dynamics = *system.joint().front();
-        auto const integrator = reference || fourth ? make_runge_kutta4(dynamics) : make_velocity_verlet(dynamics);
-        dynamics.close_tips(system.joint_state(0));
+        auto const integrator = reference || fourth ? make_runge_kutta4(system) : make_velocity_verlet(system);
+        dynamics.close_tips(system.joint_states()[0]);
         for (int i = 0; i < steps; ++i) {
-            system.joint_state(0).time = i * time / steps;
-            integrator->step(system.joint_state(0), time / steps);
+            system.joint_states()[0].time = i * time / steps;
+            integrator->step(system.joint_states(), time / steps);
         }
-        EXPECT_LE(dynamics.closure_error(system.joint_state(0)), 1e-12);
+        EXPECT_LE(dynamics.closure_error(system.joint_states()[0]), 1e-12);
         return system.snapshot().position;
     };
     auto const exact = end_of(1280, true);

@@ -45,6 +45,29 @@ inline RunScene const run_scenes[] = {
     {"rk4_spherical",
      "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: spherical, seed: 1}}}]\n"
      "dynamics: {integrator: rk4, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"rattle_tips",
+     "chains: [{name: a, base: fixed, velocities: thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, generator: {freely_jointed: "
+     "{beads: 70, length: 0.38}}}, {name: b, base: free, velocities: thermal, tip: {joint: {type: spherical}}, generator: {random: "
+     "{bodies: 40, joint: spherical, seed: 3}}}]\n"
+     "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10, "
+     "joint_forces: true}\n"},
+    {"langevin_linked",
+     "chains: [{name: a, velocities: thermal, generator: {random: {bodies: 60, joint: link, seed: 8}}}, {name: b, base: fixed, velocities: "
+     "thermal, generator: {random: {bodies: 25, joint: link, seed: 9}}}]\n"
+     "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"rk4_every_joint",
+     "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: mixed, seed: 1}}}, {name: b, base: fixed, tip: {joint: {type: "
+     "universal, axes: [[1, 0, 0], [0, 1, 0]]}}, generator: {random: {bodies: 40, joint: universal, seed: 2}}}, {name: c, base: fixed, "
+     "generator: {random: {bodies: 33, joint: planar, seed: 2}}}]\n"
+     "forces: {gravity: [0, 0, -1], drag: {linear: 0.1, angular: 0.1}}\n"
+     "dynamics: {integrator: rk4, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10, joint_forces: true}\n"},
+    {"verlet_every_joint",
+     "chains: [{name: a, base: fixed, generator: {random: {bodies: 50, joint: helical, seed: 1}}}, {name: b, base: free, generator: "
+     "{random: {bodies: 40, joint: mixed, seed: 2}}}, {name: c, base: fixed, bodies: ["
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], motion: {amplitude: 0.5, frequency: 2}}},"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, 0, 0]}}]}]\n"
+     "forces: {gravity: [0, 0, -1]}\n"
+     "dynamics: {integrator: velocity-verlet, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
 };
 
 }  // namespace catena::test

@@ -15,6 +15,7 @@ inline Topology sample_topology() {
     topology.chains = {{"beads", 0, 5, true, false}, {"bodies", 5, 3, false, false}};
     topology.residue = {"MET", "ASP", "VAL", "PHE", "MET", "BDY", "BDY", "BDY"};
     topology.mass = {131.2, 115.09, 99.13, 147.18, 131.2, 1, 2, 3};
+    topology.bodies = {5, 6, 7};
     topology.box = Vec3{{10, 11, 12}};
     return topology;
 }
@@ -32,8 +33,7 @@ inline Frame sample_frame(std::int64_t step, Topology const& topology) {
         frame.joint_forces.push_back({{next(), next(), next(), next(), next(), next()}});
     }
     frame.velocities[0][1] = std::numeric_limits<double>::denorm_min();
-    for (Topology::Chain const& chain : topology.chains)
-        for (std::int64_t k = 0; !chain.beads && k < chain.count; ++k) frame.orientations.push_back({next(), next(), next(), next()});
+    for (std::size_t k = 0; k < topology.bodies.size(); ++k) frame.orientations.push_back({next(), next(), next(), next()});
     return frame;
 }
 

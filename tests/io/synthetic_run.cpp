@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
 #include <random>
 
 #include "io/output.hpp"
@@ -78,6 +79,8 @@ Topology bodies_topology() {
     topology.residue.assign(20, "BDY");
     topology.residue.resize(30, "UNK");
     topology.mass.assign(30, 50);
+    topology.bodies.resize(20);
+    std::iota(topology.bodies.begin(), topology.bodies.end(), 0);
     topology.box = Vec3{{6, 7, 8}};
     return topology;
 }
@@ -88,6 +91,8 @@ Topology si_topology() {
     topology.chains = {{"pendulum", 0, 12, false, false}};
     topology.residue.assign(12, "BDY");
     topology.mass.assign(12, 12);
+    topology.bodies.resize(12);
+    std::iota(topology.bodies.begin(), topology.bodies.end(), 0);
     topology.si = true;
     return topology;
 }
@@ -114,9 +119,7 @@ void add_optional_parts(Frame& frame, Topology const& topology, Wanderer& wander
         Vec3 const torque = wanderer.gaussian(), force = wanderer.gaussian();
         frame.joint_forces.push_back({{torque[0], torque[1], torque[2], force[0], force[1], force[2]}});
     }
-    for (Topology::Chain const& chain : topology.chains)
-        for (std::int64_t k = 0; !chain.beads && k < chain.count; ++k)
-            frame.orientations.push_back(from_rotation_vector(wanderer.gaussian()));
+    for (std::size_t k = 0; k < topology.bodies.size(); ++k) frame.orientations.push_back(from_rotation_vector(wanderer.gaussian()));
 }
 
 std::string timeline() {

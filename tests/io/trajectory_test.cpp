@@ -105,6 +105,7 @@ TEST(Trajectory, WithoutBoxVelocitiesAndForcesTheseAreAbsent) {
     topology.chains.pop_back();
     topology.mass.resize(5);
     topology.residue.resize(5);
+    topology.bodies.clear();
     topology.box.reset();
     auto const trajectory = make_trajectory(file, topology, false, false, {});
     trajectory->write(sample_frame(1, topology));

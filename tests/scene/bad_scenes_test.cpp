@@ -76,13 +76,29 @@ chains: [{sequence: GGG, model: calvados2}])y",
     {"unknown_base", "chains: [{sequence: GGG, model: calvados2, base: floating}]",
      "`floating` is not a value of `base` (s.yaml: chains[0].base, line 1): use one of `free`, `fixed`"},
     {"copies_too_many_for_box", R"y(box: {periodic: [10, 10, 10]}
-chains: [{sequence: GGG, model: calvados2, count: 1000}])y",
+chains: [{sequence: GGG, model: calvados2, count: 1000, conformation: extended}])y",
      "the box 10 x 10 x 10 has room for 216 chains side by side, each within a sphere 1.445 wide, not for 1000 (s.yaml: chains[0], line "
-     "2): enlarge the box, lower `count` or start from compacter `positions`; denser packings are not in this version"},
+     "2): enlarge the box, lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"},
     {"extended_in_small_box", R"y(box: {periodic: [2, 2, 2]}
 chains: [{sequence: GGGGGGGGGG, model: calvados2}])y",
      "the box 2 x 2 x 2 has room for 0 chains side by side, each within a sphere 3.728 wide, not for 1 (s.yaml: chains[0], line 2): "
-     "enlarge the box, lower `count` or start from compacter `positions`; denser packings are not in this version"},
+     "enlarge the box, lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"},
+    {"rods_too_many_for_box", R"y(box: {periodic: [10, 10, 10]}
+chains: [{generator: {pendulum: {links: 3}}, count: 1000}])y",
+     "the box 10 x 10 x 10 has room for 8 chains side by side, each within a sphere 4.5 wide, not for 1000 (s.yaml: chains[0], line 2): "
+     "enlarge the box or lower `count`; only free chains of residues without `positions` are packed more densely"},
+    {"tethers_too_many_for_box", R"y(box: {periodic: [10, 10, 10]}
+chains: [{sequence: GGG, model: calvados2, base: fixed, count: 1000, conformation: self_avoiding}])y",
+     "the box 10 x 10 x 10 has room for 216 chains side by side, each within a sphere 1.52 wide, not for 1000 (s.yaml: chains[0], line 2): "
+     "enlarge the box or lower `count`; only free chains of residues without `positions` are packed more densely"},
+    {"packing_beyond_any", R"y(box: {periodic: [10, 10, 10]}
+chains: [{sequence: GGGGGGGGGG, model: calvados2, count: 1000}])y",
+     "10000 beads that keep 0.56 nm apart would fill 0.805 of the box 10 x 10 x 10, random packings of spheres fill 0.64 (s.yaml: "
+     "chains[0], line 2): make each edge 1.08 times as long or longer, or lower `count`"},
+    {"packing_too_narrow", R"y(box: {periodic: [1.3, 20, 20]}
+chains: [{sequence: GGGGGGGGGG, model: calvados2, count: 10}])y",
+     "the box 1.3 x 20 x 20 is too narrow to pack chains whose beads keep 0.56 nm apart (s.yaml: chains[0], line 2): give edges of 1.4 nm "
+     "or more"},
 };
 INSTANTIATE_TEST_SUITE_P(Beads, Refused, testing::ValuesIn(beads_cases), name_of_case);
 

@@ -21,7 +21,7 @@ TEST(Inputs, every_scene_loads) {
             EXPECT_GT(scene.bodies(), 0);
         }) << entry.path();
     }
-    EXPECT_GE(scenes, 16);
+    EXPECT_GE(scenes, 17);
 }
 
 TEST(Inputs, alpha_synuclein) {
