@@ -27,7 +27,7 @@ forces: {gravity: [0, 0, -9.81]}
 /// Steps of Runge-Kutta; the work is that of all driven joints, summed by Simpson's rule over pairs of steps.
 class Driven {
   public:
-    explicit Driven(int steps) : step_(1.0 / steps), steps_(steps), integrator_(make_runge_kutta4(*system_.joint().front())) {}
+    explicit Driven(int steps) : step_(1.0 / steps), steps_(steps), integrator_(make_runge_kutta4(system_)) {}
     struct Result {
         double work, gain;
     };
@@ -35,9 +35,9 @@ class Driven {
         double const before = energy();
         double work = power();
         for (int i = 1; i <= steps_; ++i) {
-            system_.joint_state(0).time = (i - 1) * step_;
-            integrator_->step(system_.joint_state(0), step_);
-            system_.joint_state(0).time = i * step_;
+            system_.joint_states()[0].time = (i - 1) * step_;
+            integrator_->step(system_.joint_states(), step_);
+            system_.joint_states()[0].time = i * step_;
             work += (i == steps_ ? 1 : i % 2 == 1 ? 4 : 2) * power();
         }
         return {work * step_ / 3, energy() - before};
