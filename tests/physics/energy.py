@@ -32,8 +32,8 @@ def check(runs, name, starts, steps):
         rms[factor] = np.sqrt(np.mean([np.var(energies(runs, name, h, time, seed)[1]) for seed in range(1, starts + 1)]))
         print(f"        {name}: step {1e3 * h:g} fs, {starts} starts: rms within {time:g} ps {rms[factor]:.5f} kJ/mol", flush=True)
     if steps > 0:
-        t, energy, kinetic = energies(runs, name, step, steps * step, 1)
-        print(f"        {name}: step {1e3 * step:g} fs, {steps} steps: drift {1e3 * np.polyfit(t, energy, 1)[0]:+.4f} kJ/mol/ns of {kinetic.mean():.0f} kJ/mol kinetic energy", flush=True)
+        t, energy, kinetic = energies(runs, name, step / 2, steps * step / 2, 1)
+        print(f"        {name}: step {500 * step:g} fs, {steps} steps: drift {1e3 * np.polyfit(t, energy, 1)[0]:+.4f} kJ/mol/ns of {kinetic.mean():.0f} kJ/mol kinetic energy", flush=True)
     ratio = rms[1] / rms[2]
     return verdict(name, 3.5 <= ratio <= 4.5, f"rms falls by {ratio:.2f} when the step is halved (4 +- 0.5)")
 
