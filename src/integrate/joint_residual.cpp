@@ -14,10 +14,11 @@ struct BodyTerms {
     std::vector<Vec3> forces, moments;
 };
 
-/// |inertial - sum of terms| over the sum of their sizes.
-double balance(Vec3 const& inertial, std::vector<Vec3> const& terms) {
+/// |inertial - sum of terms| over the sum of their sizes and that of the weight, which the accelerated ground has taken out of them: where
+/// bodies fall freely nothing but its rounding is left.
+double balance(Vec3 const& inertial, std::vector<Vec3> const& terms, double weight) {
     Vec3 difference = inertial;
-    double size = norm(inertial);
+    double size = norm(inertial) + weight;
     for (Vec3 const& t : terms) {
         difference = difference - t;
         size += norm(t);
@@ -68,7 +69,7 @@ double JointDynamics::residual() {
     auto const at_handle = [&](std::int64_t k, Vec3 const& r, Mat3 const& axes) {
         BodyTerms const terms = loads_on(k);
         Vec3 const w = motion_.omega[k], centripetal = cross(w, cross(w, r));
-        double linear = norm(centripetal), angular = 0;
+        double linear = norm(centripetal) + norm(given_.gravity), angular = 0;
         for (Vec3 const& f : terms.forces) linear += group_.inverse_mass.view().at(k, 0) * norm(f);
         for (Vec3 const& m : terms.moments) {
             Vec3 const part = as_symmetric(group_.inverse_inertia[k]) * m;
@@ -111,14 +112,15 @@ double JointDynamics::residual() {
     double worst = 0;
     for (std::int64_t k = 0; k < group_.size; ++k) {
         BodyTerms terms = loads_on(k);
-        worst = larger(worst, balance(group_.mass.view().at(k, 0) * acceleration_[k], terms.forces));
+        double const mass = group_.mass.view().at(k, 0), weight = mass * norm(given_.gravity);
+        worst = larger(worst, balance(mass * acceleration_[k], terms.forces, weight));
         Vec3 inertial = as_symmetric(group_.inertia[k]) * alpha_[k];
         if (group_.planar) {  // the other moments are not solved for
             Vec3 const axis = inboard_axes(k).column(2);
             inertial = dot(axis, inertial) * axis;
             for (Vec3& moment : terms.moments) moment = dot(axis, moment) * axis;
         }
-        worst = larger(worst, balance(inertial, terms.moments));
+        worst = larger(worst, balance(inertial, terms.moments, weight * norm(group_.r1[k])));
         HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
         Vector<double, 8> const here{{mine.linear[0], mine.linear[1], mine.linear[2], mine.angular[0], mine.angular[1], mine.angular[2],
                                       mine.linear_terms, mine.angular_terms}};

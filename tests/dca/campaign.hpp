@@ -26,13 +26,12 @@ CampaignCase campaign_case(std::uint64_t seed);
 /// Errors are relative to the largest component of each quantity: accelerations (joints, centres of mass, angular, base) and
 /// constraint forces (torques, forces) by the articulated-body algorithm in long double and, up to 12 bodies, by one dense system.
 /// Bounds: of errors 1e-11, and where that is not kept the solver's residual bound times the growth of such residuals (rounding.hpp); of
-/// the residual the solver's own, where forces die away along the chain and one eps times how far. Of a chain that its tip holds twice
-/// (planar, on joints that keep its plane) accelerations alone: forces are not unique there.
+/// the residual the solver's own. Of a chain that its tip holds twice (planar, on joints that keep its plane) accelerations alone: forces
+/// are not unique there.
 struct CampaignErrors {
     double acceleration = 0, acceleration_bound = 0;
     double force = 0, force_bound = 0;
     double residual = 0, residual_bound = 0;
-    bool dying = false;    // the residual is above the solver's bound and within that and the span of the forces: see span_of_forces
     double in_double = 0;  // of the articulated-body algorithm in double
     double oracles = 0;    // dense against articulated bodies, both in long double; 0 above 12 bodies
     bool good() const { return acceleration <= acceleration_bound && force <= force_bound && residual <= residual_bound; }

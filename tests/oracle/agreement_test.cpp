@@ -81,6 +81,15 @@ INSTANTIATE_TEST_SUITE_P(Kinds, EveryJoint,
                                            RandomJoints::planar, RandomJoints::any));
 TEST_P(EveryJoint, SolversAgree) { compare<double>(240, 12); }
 TEST_P(EveryJoint, SolversAgreeIn113Bits) { compare<Quad>(8, 4); }
+TEST_P(EveryJoint, SolversAgreeOnJointsThatDoNotClose) {
+    Agreement<double> agreement;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+        Case c = random_case(seed, 8);
+        Random random(seed);
+        for (std::size_t k = 0; k < c.chain.size(); ++k) c.loads.gaps.emplace_back(random.vector(5), random.vector(5));
+        ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
+    }
+}
 
 TEST(RandomChains, EmptyChain) {
     ChainSpec const chain;

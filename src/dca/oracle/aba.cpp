@@ -238,6 +238,7 @@ OracleResult<S> aba(ChainSpec const& chain, Loads const& loads) {
     return aba_links(read_links<S>(chain, loads), lift<S>(loads.gravity));
 }
 
+// NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                              \
     template OracleResult<S> aba_links<S>(std::vector<Link<S>> const&, V3<S> const&); \
     template OracleResult<S> aba<S>(ChainSpec const&, Loads const&);
@@ -245,5 +246,6 @@ CATENA_ORACLE(double)
 CATENA_ORACLE(long double)
 CATENA_ORACLE(Quad)
 #undef CATENA_ORACLE
+// NOLINTEND(bugprone-macro-parentheses)
 
 }  // namespace catena::oracle
