@@ -292,7 +292,8 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
-    if (std::find(tips.begin(), tips.end(), 1) != tips.end()) group.jointed_tip.assign(static_cast<std::size_t>(group.size), 0);
+    group.tips_in_scene = std::find(tips.begin(), tips.end(), 1) != tips.end();
+    if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), 0);
     allocate(group);
     fill(group, scene);
     if (!group.beads) fill_carried(group, scene);

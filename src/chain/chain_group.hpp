@@ -56,7 +56,8 @@ struct ChainGroup {
     // Local arrays.
     std::int64_t size = 0;
     std::vector<std::uint8_t> is_first, is_last;  // of its chain
-    std::vector<std::uint8_t> jointed_tip;        // empty where no chain of the group has one
+    bool tips_in_scene = false;                   // some chain of the group has a jointed tip, on whatever rank
+    std::vector<std::uint8_t> jointed_tip;        // empty where none has
     std::vector<JointType> joint;
     Field<1> mass, inverse_mass;
     // links
@@ -85,7 +86,7 @@ struct ChainGroup {
     std::vector<std::uint8_t> restricted_of_joint;
     bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] != 0; }
     std::int64_t carried_beads() const { return bead_offset.empty() ? 0 : bead_offset.back(); }
-    bool has_tips() const { return !jointed_tip.empty(); }
+    bool has_tips() const { return tips_in_scene; }
     /// Whether handle 2 of a body depends on the joint there.
     bool moving_meeting() const { return has_universal || has_screws; }
     bool is_driven(std::int64_t k) const;

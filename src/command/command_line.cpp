@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "error", "off"};
 constexpr std::string_view handle_names[] = {"projected", "full"};
-constexpr std::string_view joint_names[] = {"link", "spherical", "revolute"};
+constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
+                                            "prismatic", "helical", "weld",      "mixed"};
 constexpr std::string_view bench_names[] = {"list", "solve"};
 
 /// What the contract promises for later versions, by command.
@@ -101,8 +102,11 @@ void add_commands(CLI::App& app, Words& words) {
 
     command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
     command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
-    command->add_option("--sizes", words.sizes, "bodies (default 1e3,1e4,1e5)")->type_name("N,...");
-    command->add_option("--joints", words.joints, "link, spherical, revolute (default: all)")->type_name("J,...");
+    command->add_option("--sizes", words.sizes, "bodies (default 1e3,1e4,1e5); the oracle is left out above 1e6")->type_name("N,...");
+    command
+        ->add_option("--joints", words.joints,
+                     "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute)")
+        ->type_name("J,...");
     add_repeat(*command, words, "21");
     command->add_option("--backend", words.backends, "serial, segments, openmp (default: all in this build)")->type_name("B,...");
     command->footer(

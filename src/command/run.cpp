@@ -77,6 +77,10 @@ Outcome run_scene(Scene const& scene, Communicator const& communicator, RunReque
     if (communicator.rank() != 0) return outcome;
     outcome.text = text_of(scene, summary);
     outcome.json = summary;
+    if (!outcome.valid)
+        outcome.complaint =
+            fmt::format("constraint error {:.2e} above dynamics.constraint_tolerance {:.0e}: choose a smaller dynamics.step",
+                        number(summary.at("constraints"), "largest_error"), number(summary.at("constraints"), "tolerance"));
     return outcome;
 }
 

@@ -86,6 +86,7 @@ int Session::conclude(Outcome const& outcome) const {
             std::fputs(json_text(outcome.json).c_str(), stdout);
         else if (!options_.quiet)
             std::fputs(outcome.text.c_str(), stdout);
+        if (!outcome.valid && (options_.quiet || options_.json == "-")) spdlog::error("INVALID: {}", outcome.complaint);
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw ComputationError("cannot write to standard output");
         if (options_.json.empty() || options_.json == "-" || outcome.json.is_null()) return;
         write_text_file(options_.json, json_text(outcome.json));

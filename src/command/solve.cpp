@@ -185,6 +185,8 @@ Outcome solve_scene(Scene const& given, Communicator const& communicator, SolveR
         json["velocities"] = starts_thermal(given) ? "thermal" : "given";
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
+        if (!outcome.valid)
+            outcome.complaint = fmt::format("residual {:.2e}, bound {:.2e}: compare with --set solver.handles=full", residual, bound);
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);

@@ -20,6 +20,8 @@ constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
 /// The constraint error is looked at with every output and checkpoint, at the last step, and this often.
 constexpr std::int64_t check_every = 100;
+/// A sweep is added when the error comes this near to the tolerance: it grows and falls with the chain's shape between the looks.
+constexpr double early = 0.1, rounding_of_joints = 1e-13;
 
 json timeline_json(std::vector<StepTimeline> const& steps) {
     json list = json::array();
@@ -140,7 +142,8 @@ class Run {
         worst_error_ = std::max(worst_error_, error);
         bool const counted = n == checked_ || (n == first_ && !options_.restart.empty());  // seen before, or by the run before
         checked_ = n;
-        if (error > scene_.dynamics.constraint_tolerance && !counted && stepper_->add_sweep())
+        double const tolerance = scene_.dynamics.constraint_tolerance;
+        if (error > std::max(early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted && stepper_->add_sweep())
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
         return error;
     }
