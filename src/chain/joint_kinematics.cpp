@@ -146,10 +146,20 @@ Motion JointKinematics::joint_motion(JointState const& state, std::size_t piece,
     return m;
 }
 
+/// In a plane bodies turn about its normal alone: composing rounds a part across it, which grows with the chain.
+void JointKinematics::keep_in_plane(std::int64_t k, Motion& m) const {
+    if (!group_.planar) return;
+    Vec3 const axis = axis_of(group_, k);  // the same in M and B
+    m.omega = dot(axis, m.omega) * axis;
+}
+
 template <bool positions>
 Motion JointKinematics::unit_motion(JointState const& state, LocalUnit const& unit) const {
     Motion m = still;
-    for (std::int64_t k = unit.begin; k < unit.begin + unit.count; ++k) m = compose<positions>(m, joint_motion(state, unit.piece, k));
+    for (std::int64_t k = unit.begin; k < unit.begin + unit.count; ++k) {
+        m = compose<positions>(m, joint_motion(state, unit.piece, k));
+        keep_in_plane(k, m);
+    }
     m.rotation = normalized(m.rotation);
     return m;
 }
@@ -225,6 +235,7 @@ void JointKinematics::evaluate(JointState const& state, BodyMotion& out) const {
             turn.store(k, as_vector(turn_of(group_, state, k)));
             m = compose<positions>(m, joint_motion(state, unit.piece, k));
             m.rotation = normalized(m.rotation);
+            keep_in_plane(k, m);
             orientation.store(k, as_vector(m.rotation));
             omega.store(k, m.omega);
             if constexpr (positions) {

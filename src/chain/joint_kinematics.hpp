@@ -58,6 +58,7 @@ class JointKinematics {
 
   private:
     Motion joint_motion(JointState const&, std::size_t piece, std::int64_t k) const;
+    void keep_in_plane(std::int64_t k, Motion&) const;
     template <bool positions>
     void evaluate(JointState const&, BodyMotion& out) const;
     template <bool positions>

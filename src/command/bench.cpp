@@ -45,7 +45,7 @@ struct Measured {
     double a_body(Spread const& s) const { return 1e9 * s.median / static_cast<double>(bodies); }
 };
 
-Measured measure(Scene scene, std::string const& joint, Backend backend, Communicator const& communicator, int repeat) {
+Measured measure(Scene& scene, std::string const& joint, Backend backend, Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
     ChainSystem system(scene, Axes::joint, communicator);
     Measured m{joint, scene.bodies(), name_of(backend), system.executor().threads(), time_evaluations(system, repeat), 0, 0};
@@ -90,7 +90,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
-            Scene const scene = random_scene(joint, bodies, overrides_of(request));
+            Scene scene = random_scene(joint, bodies, overrides_of(request));
             bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
             Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
             for (Backend const backend : backends) {

@@ -205,7 +205,8 @@ void JointDynamics::loads(JointState const& state) {
         Vec3 const w = motion_.omega.view().load(k);
         Mat3 const turn = to_matrix(as_quaternion(motion_.joint_turn.view().load(k)));
         Mat3 const axes1 = as_matrix(group_.axes1.view().load(k));
-        Vec3 torque = -cross(w, as_symmetric(group_.inertia.view().load(k)) * w), force = Vec3::zero();
+        // In a plane the gyroscopic torque is across it, and large: only its rounding would count.
+        Vec3 torque = group_.planar ? Vec3::zero() : -gyroscopic_torque(k), force = Vec3::zero();
         if (given_.joint_loads) add_joint_loads(k, turn, torque, force);
         if (has_wrenches_) {
             Wrench const w_out = wrench(k);
@@ -340,7 +341,7 @@ void JointDynamics::add_across_plane(BodyResults& r) const {
         if (given_.dragged) drag = (-given_.drag[k][0]) * (motion_.velocity[k] - cross(motion_.omega[k], group_.r1[k]));
         Vec3 const force =
             group_.mass.view().at(k, 0) * (r.acceleration[static_cast<std::size_t>(k)] - given_.gravity) - wrench_force - to_ground * drag;
-        Vec3 const torque = to_ground * (as_symmetric(group_.inertia[k]) * alpha_[k] - torque_[k]);
+        Vec3 const torque = to_ground * (as_symmetric(group_.inertia[k]) * alpha_[k] + gyroscopic_torque(k) - torque_[k]);
         Vec3 const to_next = group_.is_last[k] ? Vec3::zero() : to_ground * (group_.r2[k] - group_.r1[k]);
         needed.push_back({force, torque + cross(to_ground * -group_.r1[k], force), to_next});
     }

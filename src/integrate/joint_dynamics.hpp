@@ -62,6 +62,8 @@ class JointDynamics final : public BeadHost {
     Vec3 r2(std::int64_t k) const { return group_.moving_meeting() ? motion_.r2[k] : group_.r2[k]; }
     Screw<double> screw(std::int64_t k) const;
     Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(motion_.orientation[k])); }
+    /// omega x J omega.
+    Vec3 gyroscopic_torque(std::int64_t k) const { return cross(motion_.omega[k], as_symmetric(group_.inertia[k]) * motion_.omega[k]); }
     /// From outside the chain and from carried beads.
     Wrench wrench(std::int64_t k) const;
 

@@ -12,6 +12,7 @@ double relative(double difference, double terms) { return terms == 0 ? 0.0 : dif
 
 struct BodyTerms {
     std::vector<Vec3> forces, moments;
+    double moment_sizes = 0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
 };
 
 /// |inertial - sum of terms| over the sum of their sizes and that of the weight, which the accelerated ground has taken out of them: where
@@ -64,7 +65,8 @@ double JointDynamics::residual() {
         auto const [f2, t2] = outboard_wrench(k);
         Vec3 const force1 = e1 * f1, force2 = -(e2 * f2);
         return BodyTerms{{has_forces_ ? force_[k] : Vec3::zero(), force1, force2},
-                         {torque_[k], cross(group_.r1[k], force1), e1 * t1, cross(r2(k), force2), -(e2 * t2)}};
+                         {torque_[k], cross(group_.r1[k], force1), e1 * t1, cross(r2(k), force2), -(e2 * t2)},
+                         norm(group_.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
     };
     auto const at_handle = [&](std::int64_t k, Vec3 const& r, Mat3 const& axes) {
         BodyTerms const terms = loads_on(k);
@@ -120,7 +122,7 @@ double JointDynamics::residual() {
             inertial = dot(axis, inertial) * axis;
             for (Vec3& moment : terms.moments) moment = dot(axis, moment) * axis;
         }
-        worst = larger(worst, balance(inertial, terms.moments, weight * norm(group_.r1[k])));
+        worst = larger(worst, balance(inertial, terms.moments, terms.moment_sizes + weight * norm(group_.r1[k])));
         HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
         Vector<double, 8> const here{{mine.linear[0], mine.linear[1], mine.linear[2], mine.angular[0], mine.angular[1], mine.angular[2],
                                       mine.linear_terms, mine.angular_terms}};

@@ -86,7 +86,7 @@ TEST(CommandLine, WhatCannotBeIsRefused) {
                                                                        {{"run", "a", "--steps", "nan"}, "(--steps)"},
                                                                        {{"run", "a", "--overwrite", "--restart", "c"}, "--overwrite"},
                                                                        {{"bench", "solve", "--sizes", "10,,20"}, "(--sizes)"},
-                                                                       {{"bench", "solve", "--joints", "weld"}, "--joints"},
+                                                                       {{"bench", "solve", "--joints", "hinge"}, "--joints"},
                                                                        {{"--frob"}, "not an option"}}) {
         EXPECT_NE(refusal(words).find(part), std::string::npos) << refusal(words);
         EXPECT_EQ(refusal(words).find('\n'), std::string::npos) << refusal(words);
