@@ -198,24 +198,27 @@ void JointKinematics::gather_shared(std::vector<Motion> const& own, std::vector<
     }
 }
 
-/// The inboard sides of universal and sliding joints, seen from the bodies they are in.
+/// The inboard sides of universal and sliding joints, seen from the bodies they are in: joint k's from body k - 1.
 void JointKinematics::set_meetings(JointState const& state, BodyMotion& out) const {
-    Field<12> meeting(group_.size);  // of joint k in the inboard body: point from its origin, axes
-    View<12> const at = meeting.view();
-    executor_.for_each(group_.size, [&](std::int64_t k) {
-        if (group_.joint[k] == JointType::free) return;
+    auto const meeting = [&](std::int64_t k) {  // point from the inboard body's origin, axes
         Vec3 const point = meeting_point(group_, state, k);
         Mat3 const axes = to_matrix(meeting_rotation(group_, state, k)) * as_matrix(group_.axes1.view().load(k));
-        for (int i = 0; i < 3; ++i) at.at(k, i) = point[i];
-        for (int i = 0; i < 9; ++i) at.at(k, 3 + i) = axes.data[i];
-    });
-    exchange_from_outboard(communicator_, group_, at);
+        Vector<double, 12> m;
+        for (int i = 0; i < 3; ++i) m[i] = point[i];
+        for (int i = 0; i < 9; ++i) m[3 + i] = axes.data[i];
+        return m;
+    };
+    auto const set = [&](std::int64_t body, Vector<double, 12> const& m) {
+        out.r2.set(body, Vec3{{m[0], m[1], m[2]}} + group_.r1.view().load(body));
+        out.axes2.set(body, {{m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}});
+    };
     executor_.for_each(group_.size, [&](std::int64_t k) {
-        if (group_.is_last[k]) return;
-        Vector<double, 12> const m = at.load(k + 1);
-        out.r2.set(k, Vec3{{m[0], m[1], m[2]}} + group_.r1.view().load(k));
-        out.axes2.set(k, {{m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11]}});
+        if (k > 0 && !group_.is_first[k]) set(k - 1, meeting(k));
     });
+    Vector<double, 12> send = group_.neighbour_inboard >= 0 ? meeting(0) : Vector<double, 12>::zero(), receive = send;
+    communicator_.exchange(std::as_bytes(std::span(send.data)), group_.neighbour_inboard, std::as_writable_bytes(std::span(receive.data)),
+                           group_.neighbour_outboard);
+    if (group_.neighbour_outboard >= 0) set(group_.size - 1, receive);
 }
 
 void JointKinematics::evaluate(JointState const& state, bool with_positions, BodyMotion& out) const {

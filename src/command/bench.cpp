@@ -105,7 +105,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
         }
     outcome.json["valid"] = outcome.valid;
     outcome.text = fmt::format(
-        "ns a body, median of {}; a whole evaluation holds kinematics and loads too (links: two bias sweeps). {}, {} threads on {}; {}, "
+        "ns a body, median of {}; a whole evaluation holds kinematics and loads too. {}, {} threads on {}; {}, "
         "{}\n",
         request.repeat, counted(communicator.size(), "rank", "ranks"), processor_threads(), processor_name(), compiler_name(),
         instruction_set());

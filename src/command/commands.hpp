@@ -15,7 +15,7 @@ Outcome check_scene(Scene const&, Communicator const&);
 Outcome plan_scene(Scene const&, Communicator const&);
 
 /// One evaluation, timed, with its residual.
-Outcome solve_scene(Scene const&, Communicator const&, SolveRequest const&);
+Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
 
 /// A simulation with its folder.
 Outcome run_scene(Scene const&, Communicator const&, RunRequest const&);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
@@ -163,16 +164,19 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
 
 }  // namespace
 
-Outcome solve_scene(Scene const& given, Communicator const& communicator, SolveRequest const& request) {
+Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest const& request) {
     prepare_file(communicator, request.accelerations);
-    Scene const scene = with_start_velocities(given, communicator);
+    bool const thermal = starts_thermal(given);
+    Scene const scene = with_start_velocities(std::move(given), communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     Timing const timing = time_evaluations(system, request.repeat);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);
     double const residual = system.residual(), bound = system.residual_bound();
     std::vector<EnergyTerm> const energies = system.potential_energy();
-    Solution const solution = solution_of(system);
+    // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.
+    bool const wanted = scene.bodies() <= most_bodies_in_json || communicator.max(request.accelerations.empty() ? 0 : 1) > 0;
+    Solution const solution = wanted ? solution_of(system) : Solution{};
     outcome.valid = communicator.max(residual <= bound && finite(solution.acceleration) && finite(solution.joint_force) ? 0 : 1) == 0;
     on_first_rank(communicator, [&] {
         json["residual"] = residual;
@@ -182,7 +186,7 @@ Outcome solve_scene(Scene const& given, Communicator const& communicator, SolveR
         json["valid"] = outcome.valid;
         json["potential_energy"] = Json::object();
         for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
-        json["velocities"] = starts_thermal(given) ? "thermal" : "given";
+        json["velocities"] = thermal ? "thermal" : "given";
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
         if (!outcome.valid)

@@ -191,12 +191,12 @@ void ChainSystem::finish_openmm() {
     }
 }
 
-void ChainSystem::evaluate() {
+void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
     for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->update_configuration(joint_states_[i]);
     forces_and_matrices(nullptr);
     for (auto const& group : absolute_) {
-        group->observe(0.0);
+        if (project) group->observe(0.0);
         group->evaluate();
     }
     for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->solve(joint_states_[i], joint_rates_[i]);

@@ -26,7 +26,8 @@ class ChainSystem {
 
     /// Kinematics, forces, matrices and biases at the present state: accelerations of every body. With OpenMM the matrix sweep runs
     /// while it computes. Collective.
-    void evaluate();
+    /// With `project`, velocities in absolute coordinates are first made to fit the joints; without, those of the last projection count.
+    void evaluate(bool project = true);
     /// Forces and matrices at the present configuration, for the constrained integrators: `update_configuration` must have run. Collective.
     void forces_and_matrices(StepTimeline* timeline);
 

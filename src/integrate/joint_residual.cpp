@@ -15,11 +15,10 @@ struct BodyTerms {
     double moment_sizes = 0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
 };
 
-/// |inertial - sum of terms| over the sum of their sizes and that of the weight, which the accelerated ground has taken out of them: where
-/// bodies fall freely nothing but its rounding is left.
-double balance(Vec3 const& inertial, std::vector<Vec3> const& terms, double weight) {
+/// |inertial - sum of terms| over the sum of their sizes and `more`, what cancelled within them or was taken out of them.
+double balance(Vec3 const& inertial, std::vector<Vec3> const& terms, double more) {
     Vec3 difference = inertial;
-    double size = norm(inertial) + weight;
+    double size = norm(inertial) + more;
     for (Vec3 const& t : terms) {
         difference = difference - t;
         size += norm(t);
@@ -108,12 +107,14 @@ double JointDynamics::residual() {
         return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b));
     };
 
-    Field<8> outboard(group_.size);
-    for (std::int64_t k = 0; k < group_.size; ++k) outboard.set(k, outboard_handle(k));
-    exchange_from_inboard(communicator_, group_, outboard.view());
+    Vector<double, 8> before = Vector<double, 8>::zero();  // handle 2 of body k - 1
+    Vector<double, 8> const last = group_.neighbour_outboard >= 0 ? outboard_handle(group_.size - 1) : before;
+    communicator_.exchange(std::as_bytes(std::span(last.data)), group_.neighbour_outboard, std::as_writable_bytes(std::span(before.data)),
+                           group_.neighbour_inboard);
     double worst = 0;
     for (std::int64_t k = 0; k < group_.size; ++k) {
         BodyTerms terms = loads_on(k);
+        // The accelerated ground has taken the weight out of the forces: where bodies fall freely, only its rounding is left.
         double const mass = group_.mass.view().at(k, 0), weight = mass * norm(given_.gravity);
         worst = larger(worst, balance(mass * acceleration_[k], terms.forces, weight));
         Vec3 inertial = as_symmetric(group_.inertia[k]) * alpha_[k];
@@ -126,15 +127,16 @@ double JointDynamics::residual() {
         HandleAcceleration const mine = at_handle(k, group_.r1[k], inboard_axes(k));
         Vector<double, 8> const here{{mine.linear[0], mine.linear[1], mine.linear[2], mine.angular[0], mine.angular[1], mine.angular[2],
                                       mine.linear_terms, mine.angular_terms}};
-        Vector<double, 8> const before = group_.is_first[k] ? Vector<double, 8>::zero() : outboard.view().load(k - 1);
+        if (group_.is_first[k]) before = Vector<double, 8>::zero();
         double const size = norm(group_.r1[k]) + radius_of_gyration(k);
         worst = larger(worst, closing(here, before, std::as_const(bias_).view(), k, screw(k), group_.restricted(k), size));
+        before = outboard_handle(k);
         if (!is_tip(k)) continue;
         int restricted = 0;
         for (LocalTip const& tip : group_.tips)
             if (tip.body == k) restricted = tip.restricted;
-        worst = larger(worst, closing(Vector<double, 8>::zero(), outboard[k], std::as_const(tip_bias_).view(), k, outboard_screw(k),
-                                      restricted, norm(r2(k)) + radius_of_gyration(k)));
+        worst = larger(worst, closing(Vector<double, 8>::zero(), before, std::as_const(tip_bias_).view(), k, outboard_screw(k), restricted,
+                                      norm(r2(k)) + radius_of_gyration(k)));
     }
     return communicator_.max(worst);
 }

@@ -16,7 +16,7 @@ Spread spread_of(std::vector<double> values);
 
 /// Seconds. A rank's time counts where it is the largest.
 struct Timing {
-    Spread evaluation;                       // ChainSystem::evaluate()
+    Spread evaluation;                       // ChainSystem::evaluate(), velocities projected before
     Spread matrix_sweep, bias_sweep;         // one sweep
     int matrix_sweeps = 0, bias_sweeps = 0;  // in one evaluation
     /// Of one evaluation, medians: "matrix sweep", "bias sweep", "exchange of units" (a part of the sweeps), "other" (kinematics, loads,
