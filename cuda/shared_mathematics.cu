@@ -41,9 +41,14 @@ __global__ void bodies(Work<K> w) {
     Vector<double, 4> const q = w.orientation.load(i);
     Mat3 const axes = to_matrix(Quat{q[0], q[1], q[2], q[3]});
     Vec3 const r = w.vector.load(i);
-    dca::Handle<double, K> const inboard = dca::make_handle<K>(r, Mat3::identity(), axes);
+    dca::Handle<double, K> inboard = dca::make_handle<K>(r, Mat3::identity(), axes);
     dca::Handle<double, K> const outboard = dca::make_handle<K>(-r, dca::triple(axes.column(0)), axes);
-    w.matrix[i] = dca::leaf_matrix(1.0, w.inverse_inertia[i], inboard, outboard);
+    if constexpr (K == 5) {  // sliding joints
+        dca::turn_to_screw(dca::Screw<double>{0.6, 0.8}, r, Mat3::identity(), axes, inboard);
+        w.matrix[i] = dca::leaf_matrix<true>(1.0, w.inverse_inertia[i], inboard, outboard);
+    } else {
+        w.matrix[i] = dca::leaf_matrix(1.0, w.inverse_inertia[i], inboard, outboard);
+    }
     w.force[i] = dca::along(inboard, r, w.inverse_inertia[i] * r);
 }
 
@@ -73,7 +78,10 @@ template __global__ void join(Work<3>);
 template __global__ void join(Work<4>);
 template __global__ void join(Work<5>);
 template __global__ void join(Work<6>);
+template __global__ void bodies(Work<1>);
+template __global__ void bodies(Work<2>);
 template __global__ void bodies(Work<3>);
+template __global__ void bodies(Work<4>);
 template __global__ void bodies(Work<5>);
 template __global__ void bodies(Work<6>);
 template __global__ void beads(Work<1>);

@@ -171,7 +171,7 @@ void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     LocalTip local{k, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
                    std::min(group.directions, restricted_directions(tip.type))};
     if (group.planar) local.axes = joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()), Vec3::zero());
-    group.jointed_tip[k] = 1;
+    group.jointed_tip[k] = static_cast<std::int32_t>(group.tips.size());
     if (!group.beads && !group.linked) {
         group.r2.set(k, tip.translation - spec.bodies.com.back());
         group.axes2.set(k, flat(tip.rotation * local.axes));
@@ -293,7 +293,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
     group.tips_in_scene = std::find(tips.begin(), tips.end(), 1) != tips.end();
-    if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), 0);
+    if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
     fill(group, scene);
     if (!group.beads) fill_carried(group, scene);
@@ -325,11 +325,20 @@ int ChainGroup::restricted(std::int64_t k) const {
     return std::min(directions, !drives.empty() && is_driven(k) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
 }
 
-std::int64_t ChainGroup::scene_index(std::int64_t k) const {
-    auto const piece =
-        std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1;
-    return first_in_scene[piece->chain] + piece->body + (k - piece->local);
+namespace {
+
+dca::Piece const& piece_of(std::vector<dca::Piece> const& pieces, std::int64_t k) {
+    return *(std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1);
 }
+
+}  // namespace
+
+std::int64_t ChainGroup::scene_index(std::int64_t k) const {
+    dca::Piece const& piece = piece_of(pieces, k);
+    return first_in_scene[piece.chain] + piece.body + (k - piece.local);
+}
+
+int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }
 
 std::vector<LocalUnit> local_units(ChainGroup const& group) {
     std::vector<LocalUnit> units;

@@ -57,7 +57,7 @@ struct ChainGroup {
     std::int64_t size = 0;
     std::vector<std::uint8_t> is_first, is_last;  // of its chain
     bool tips_in_scene = false;                   // some chain of the group has a jointed tip, on whatever rank
-    std::vector<std::uint8_t> jointed_tip;        // empty where none has
+    std::vector<std::int32_t> jointed_tip;        // of its last body: index in `tips`, else -1; empty where none has
     std::vector<JointType> joint;
     Field<1> mass, inverse_mass;
     // links
@@ -84,7 +84,9 @@ struct ChainGroup {
     /// Restricted directions of joint k of local numbering, tips and those of shared chains' tops included (schedule.joints entries;
     /// `none`: 0).
     std::vector<std::uint8_t> restricted_of_joint;
-    bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] != 0; }
+    bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] >= 0; }
+    /// Precondition: has_jointed_tip(k).
+    LocalTip const& tip_of(std::int64_t k) const { return tips[static_cast<std::size_t>(jointed_tip[static_cast<std::size_t>(k)])]; }
     std::int64_t carried_beads() const { return bead_offset.empty() ? 0 : bead_offset.back(); }
     bool has_tips() const { return tips_in_scene; }
     /// Whether handle 2 of a body depends on the joint there.
@@ -94,6 +96,8 @@ struct ChainGroup {
     int restricted(std::int64_t k) const;
     /// Global body index over the scene of local body k.
     std::int64_t scene_index(std::int64_t k) const;
+    /// Index in the scene of the chain that local body k belongs to.
+    int scene_chain(std::int64_t k) const;
     std::vector<std::int64_t> const& first_of_rank() const { return partition.first_of_rank; }
 };
 

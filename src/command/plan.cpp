@@ -95,8 +95,10 @@ std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system)
             continue;
         }
         if (group->axes == Axes::joint) {
-            lines.emplace_back(
-                "positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
+            bool const needed = group->has_tips() || group->carried_in_scene || found.drag > 0;
+            if (!needed)
+                lines.emplace_back(
+                    "positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
             lines.emplace_back("rotations at merges: both sides of a joint share its axes");
         } else {
             lines.emplace_back("kinematics along the chain: orientations and positions are the coordinates");
@@ -120,14 +122,22 @@ struct StepPlan {
     int matrix_sweeps = 0, bias_sweeps = 0, bias_sweeps_a_drift_sweep = 0;
     std::string text;
 };
-StepPlan step_of(DynamicsSpec const& d) {
+StepPlan step_of(Scene const& scene) {
+    DynamicsSpec const& d = scene.dynamics;
     std::string const chosen =
         fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
     switch (d.integrator) {
         case Integrator::rk4:
-            return {4, 4, 0, "4 evaluations: 4 matrix sweeps, 4 bias sweeps; joint coordinates need no projection"};
-        case Integrator::velocity_verlet:
-            return {1, 1, 0, "1 evaluation: 1 matrix sweep, 1 bias sweep; joint coordinates need no projection"};
+        case Integrator::velocity_verlet: {
+            bool const tips =
+                std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+            int const evaluations = d.integrator == Integrator::rk4 ? 4 : 1, corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
+            return {evaluations + corrections, evaluations + corrections, 0,
+                    fmt::format("{}: a matrix sweep and a bias sweep each; {}", counted(evaluations, "evaluation", "evaluations"),
+                                tips ? fmt::format("{} corrections that close jointed tips, again a matrix sweep and a bias sweep each",
+                                                   corrections)
+                                     : "joint coordinates need no projection")};
+        }
         case Integrator::rattle:
             return {
                 1, 1, 1,
@@ -145,7 +155,7 @@ void add_dynamics(Text& text, Json& json, Scene const& scene) {
     text.entry("integrator", dynamics_text(scene));
     json["dynamics"] = nullptr;
     if (!scene.dynamics.given) return;
-    StepPlan const step = step_of(scene.dynamics);
+    StepPlan const step = step_of(scene);
     text.entry("a step", step.text);
     json["dynamics"] = {{"integrator", name_of(scene.dynamics.integrator)},
                         {"matrix_sweeps_a_step", step.matrix_sweeps},

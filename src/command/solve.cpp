@@ -87,6 +87,13 @@ void add_arrays(Json& json, Scene const& scene, Solution const& s) {
     json["bead_accelerations"] = vectors_json(s.bead_acceleration);
     json["bead_forces"] = vectors_json(s.bead_force);
     json["joint_forces"] = std::move(forces);
+    json["tip_forces"] = Json::array();
+    for (TipForce const& tip : s.tip_force) {
+        Vector<double, 6> const& w = tip.wrench;
+        json["tip_forces"].push_back({{"chain", scene.chains[static_cast<std::size_t>(tip.chain)].name},
+                                      {"torque", {w[0], w[1], w[2]}},
+                                      {"force", {w[3], w[4], w[5]}}});
+    }
 }
 
 bool finite(std::vector<double> const& values) {
@@ -169,6 +176,7 @@ Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest 
     bool const thermal = starts_thermal(given);
     Scene const scene = with_start_velocities(std::move(given), communicator);
     ChainSystem system(scene, Axes::joint, communicator);
+    system.close_tips();  // as a run does: velocities then fit them
     Timing const timing = time_evaluations(system, request.repeat);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);

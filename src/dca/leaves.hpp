@@ -101,12 +101,7 @@ class MeetingFrames {
     }
 
   private:
-    Vec3 outboard_screw(std::int64_t k) const {
-        if (!group_->has_jointed_tip(k)) return screw_.load(k + 1);
-        for (LocalTip const& tip : group_->tips)
-            if (tip.body == k) return tip.screw;
-        return Vec3::zero();
-    }
+    Vec3 outboard_screw(std::int64_t k) const { return group_->has_jointed_tip(k) ? group_->tip_of(k).screw : screw_.load(k + 1); }
     ChainGroup const* group_;
     ConstView<9> axes1_, axes2_;
     ConstView<3> r1_, r2_, screw_;

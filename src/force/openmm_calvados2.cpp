@@ -80,6 +80,7 @@ std::unique_ptr<OpenMM::CustomNonbondedForce> yukawa_force(calvados2::Yukawa con
 
 void finish(OpenMM::CustomNonbondedForce& force, OpenMmSpec const& spec, BeadSystem const& beads, int group) {
     for (auto const& link : beads.links) force.addExclusion(static_cast<int>(link.inboard), static_cast<int>(link.outboard));
+    for (auto const& [inboard, outboard] : beads.neighbours) force.addExclusion(static_cast<int>(inboard), static_cast<int>(outboard));
     for (auto const& [first, last] : beads.rigid)
         for (std::int64_t a = first; a < last; ++a)
             for (std::int64_t b = a + 1; b < last; ++b) force.addExclusion(static_cast<int>(a), static_cast<int>(b));

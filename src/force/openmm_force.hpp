@@ -24,10 +24,11 @@ struct BeadSystem {
     };
     std::vector<double> mass;
     std::vector<std::string> residue;
-    std::vector<std::string> chain_name;                       // one a chain
-    std::vector<std::int64_t> chain_offset;                    // first bead of each chain, then the number of beads
-    std::vector<Link> links;                                   // between beads (a link to ground is not among them)
-    std::vector<std::pair<std::int64_t, std::int64_t>> rigid;  // beads [first, last) of one rigid body, where there are several
+    std::vector<std::string> chain_name;                            // one a chain
+    std::vector<std::int64_t> chain_offset;                         // first bead of each chain, then the number of beads
+    std::vector<Link> links;                                        // between beads (a link to ground is not among them)
+    std::vector<std::pair<std::int64_t, std::int64_t>> neighbours;  // last bead of a body and first of the next, on joints but links
+    std::vector<std::pair<std::int64_t, std::int64_t>> rigid;       // beads [first, last) of one rigid body, where there are several
     std::vector<std::int64_t>
         first_of_rank;                  // size ranks + 1: rank r owns beads by_rank[first_of_rank[r]] .. by_rank[first_of_rank[r + 1] - 1]
     std::vector<std::int64_t> by_rank;  // beads in the order in which ranks own them; empty: as they are

@@ -14,11 +14,18 @@
 
 namespace catena {
 
+/// What a tip's joint does to the last body, W; torque about the origin of its joint frame.
+struct TipForce {
+    std::int64_t chain = 0;      // of the scene
+    Vector<double, 6> wrench{};  // constraint [torque, force]; in a plane: what the chain's own directions know
+};
+
 /// Accelerations and forces body by body, ground axes, for output and checks.
 struct BodyResults {
     std::vector<Vec3> alpha;                     // angular; empty for beads
     std::vector<Vec3> acceleration;              // of the centre of mass
     std::vector<Vector<double, 6>> joint_force;  // constraint [torque, force] on body k at its inboard joint
+    std::vector<TipForce> tip_force;
 };
 
 /// Body by body, this rank's.

@@ -143,6 +143,10 @@ class BeadDynamics final : public AbsoluteDynamics {
             Vec3 const f = joint_force_.view().load<1>(k)[0] * direction_[k];
             r.joint_force.push_back({{0, 0, 0, f[0], f[1], f[2]}});
         }
+        for (LocalTip const& tip : group_.tips) {
+            Vec3 const f = outboard_force(tip.body);
+            r.tip_force.push_back({group_.scene_chain(tip.body), {{0, 0, 0, -f[0], -f[1], -f[2]}}});
+        }
         return r;
     }
     double residual() override {

@@ -1,6 +1,8 @@
 // What acts on bodies besides the joints' constraints, as the scene gives it.
 #pragma once
 
+#include <cmath>
+
 #include "chain/joint_kinematics.hpp"
 
 namespace catena {
@@ -15,6 +17,11 @@ struct BodyLoads {
     bool joint_loads = false, springs = false, dampers = false, wrenches = false, dragged = false;
 };
 BodyLoads make_body_loads(ChainGroup const&, Scene const&);
+
+/// Of a body: sqrt(tr J / (2 m)).
+inline double radius_of_gyration(Sym3 const& inertia, double mass) {
+    return std::sqrt(0.5 * (inertia.data[0] + inertia.data[2] + inertia.data[5]) / mass);
+}
 
 /// Torque of the spring (and damper) of a spherical joint on the outboard body, B. The energy is 1/2 sum k_i theta_i^2, theta the
 /// rotation vector of B from `rest`; its gradient turns with the inverse right Jacobian of SO(3) (Sola et al., "A micro Lie theory", 2018,

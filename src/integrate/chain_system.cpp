@@ -46,6 +46,20 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     if (scene.forces.openmm) make_openmm();
 }
 
+namespace {
+
+/// The carried bead that stands at a point of body k (from its centre of mass, B); -1: none does.
+std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& point) {
+    double constexpr rounding = 1e-9;  // of positions that a file holds in decimals, turned into the body's axes
+    for (std::int64_t i = linked.carried.offset[k]; i < linked.carried.offset[k + 1]; ++i) {
+        Vec3 const at = linked.carried.position[static_cast<std::size_t>(i)];
+        if (norm(at - point) <= rounding * (norm(at) + norm(point))) return i;
+    }
+    return -1;
+}
+
+}  // namespace
+
 /// Every bead of the scene in the order of its chains.
 void ChainSystem::describe_beads() {
     BeadSystem& system = bead_system_;
@@ -53,12 +67,11 @@ void ChainSystem::describe_beads() {
     for (ChainSpec const& chain : scene_.chains) {
         if (chain.bead_count() == 0) continue;
         std::int64_t const first = system.size();
-        auto const link = [&](std::int64_t bead, double length) { system.links.push_back({first + bead - 1, first + bead, length}); };
         if (chain.is_beads()) {
             system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
             system.residue.insert(system.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
             for (std::int64_t k = 1; k < static_cast<std::int64_t>(chain.size()); ++k)
-                link(k, chain.beads.length[static_cast<std::size_t>(k)]);
+                system.links.push_back({first + k - 1, first + k, chain.beads.length[static_cast<std::size_t>(k)]});
         } else {
             CarriedBeads const& carried = chain.carried();
             system.mass.insert(system.mass.end(), carried.mass.begin(), carried.mass.end());
@@ -66,8 +79,14 @@ void ChainSystem::describe_beads() {
             for (std::size_t k = 0; k < chain.size(); ++k) {
                 std::int64_t const begin = carried.offset[k], end = carried.offset[k + 1];
                 if (end - begin > 1) system.rigid.emplace_back(first + begin, first + end);
-                // Rigid domains of one sequence: the link joins the residues at their ends.
-                if (chain.is_linked() && k > 0 && begin > 0 && end > begin) link(begin, chain.linked.length[k]);
+                if (k == 0) continue;
+                if (chain.is_linked()) {
+                    std::int64_t const from = bead_at(chain.linked, k - 1, chain.linked.outboard[k - 1]);
+                    std::int64_t const to = bead_at(chain.linked, k, chain.linked.inboard[k]);
+                    if (from >= 0 && to >= 0) system.links.push_back({first + from, first + to, chain.linked.length[k]});
+                } else if (end > begin && begin > carried.offset[k - 1]) {
+                    system.neighbours.emplace_back(first + begin - 1, first + begin);
+                }
             }
         }
         system.chain_name.push_back(chain.name);
@@ -168,6 +187,10 @@ void ChainSystem::evaluate(std::vector<JointState> const& states, std::vector<Jo
     seconds_["kinematics and loads"] += moved - start;
     seconds_["bias sweep"] += seconds_now() - finished;
     note_overlap(moved, begun, assembled, assembled, finished);
+}
+
+void ChainSystem::close_tips(int corrections) {
+    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->close_tips(joint_states_[i], corrections);
 }
 
 /// Positions are handed over from `start` to `begun`, matrices assembled until `assembled`, forces waited for from `waits` to `finished`.

@@ -52,6 +52,7 @@ class ChainSystem {
         std::vector<Vec3> alpha;              // angular, W; zero for beads
         std::vector<Vec3> base_acceleration;  // one a body; counts for the first body of a free base
         std::vector<Vector<double, 6>> joint_force;
+        std::vector<TipForce> tip_force;  // in scene order
     };
     Accelerations accelerations();
     /// OpenMM's forces of the last evaluation alone. Collective.
@@ -65,6 +66,8 @@ class ChainSystem {
     std::vector<JointState>& joint_states() { return joint_states_; }
     /// Rates of the groups in joint coordinates at these states, one a group; OpenMM computes while matrices are assembled. Collective.
     void evaluate(std::vector<JointState> const& states, std::vector<JointRates>& rates);
+    /// JointDynamics::close_tips of every group. Collective.
+    void close_tips(int corrections = JointDynamics::usual_corrections);
     OpenMmForce* openmm() const { return openmm_.get(); }
     Executor const& executor() const { return *executor_; }
     Scene const& scene() const { return scene_; }
@@ -88,6 +91,9 @@ class ChainSystem {
     void make_openmm();
     void describe_beads();
     void order_beads_by_rank();
+    std::vector<BodyResults> results() const;
+    std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
+    std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;
     ConstView<3> own_bead_positions();
     void finish_openmm();
     void note_overlap(double start, double begun, double assembled, double waits, double finished);

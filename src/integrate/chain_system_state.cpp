@@ -1,5 +1,6 @@
 #include "integrate/chain_system.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "chain/gather.hpp"
@@ -81,15 +82,24 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
     return terms;
 }
 
-std::vector<Vector<double, 6>> ChainSystem::joint_forces() {
+std::vector<BodyResults> ChainSystem::results() const {
+    std::vector<BodyResults> all;
+    for (auto const& group : absolute_) all.push_back(group->results());
+    for (auto const& group : joint_) all.push_back(group->results());
+    return all;
+}
+
+std::vector<Vector<double, 6>> ChainSystem::joint_forces() { return joint_forces(results()); }
+
+std::vector<Vector<double, 6>> ChainSystem::joint_forces(std::vector<BodyResults> const& results) const {
     std::vector<double> all(communicator_.rank() == 0 ? static_cast<std::size_t>(6 * scene_.bodies()) : 0);
     auto const add = [&](ChainGroup const& group, BodyResults const& r) {
         std::vector<double> own;
         for (Vector<double, 6> const& w : r.joint_force) own.insert(own.end(), w.data, w.data + 6);
         gather_to_scene(communicator_, group, 6, own, all);
     };
-    for (auto const& group : absolute_) add(group->group(), group->results());
-    for (auto const& group : joint_) add(group->group(), group->results());
+    for (std::size_t i = 0; i < absolute_.size(); ++i) add(absolute_[i]->group(), results[i]);
+    for (std::size_t i = 0; i < joint_.size(); ++i) add(joint_[i]->group(), results[absolute_.size() + i]);
     std::vector<Vector<double, 6>> forces(all.size() / 6);
     for (std::size_t i = 0; i < all.size(); ++i) forces[i / 6][static_cast<int>(i % 6)] = all[i];
     return forces;
@@ -110,6 +120,22 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     return ordered;
 }
 
+std::vector<TipForce> ChainSystem::tip_forces(std::vector<BodyResults> const& results) const {
+    std::vector<TipForce> own;
+    for (BodyResults const& r : results) own.insert(own.end(), r.tip_force.begin(), r.tip_force.end());
+    auto const ranks = static_cast<std::size_t>(communicator_.size());
+    auto const bytes = static_cast<std::int64_t>(own.size() * sizeof(TipForce));
+    std::vector<std::int64_t> of_rank(ranks);
+    communicator_.all_gather(std::as_bytes(std::span(&bytes, 1)), std::as_writable_bytes(std::span(of_rank)),
+                             std::vector<std::int64_t>(ranks, sizeof(bytes)));
+    std::int64_t total = 0;
+    for (std::int64_t const b : of_rank) total += b;
+    std::vector<TipForce> all(communicator_.rank() == 0 ? static_cast<std::size_t>(total) / sizeof(TipForce) : 0);
+    communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), of_rank);
+    std::sort(all.begin(), all.end(), [](TipForce const& a, TipForce const& b) { return a.chain < b.chain; });
+    return all;
+}
+
 ChainSystem::Accelerations ChainSystem::accelerations() {
     std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
     std::vector<double> joint(3 * n), body(3 * n), base(3 * n), alpha(3 * n);
@@ -117,17 +143,18 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
         gather_to_scene(communicator_, group, 3, flat(r.acceleration), body);
         if (!group.beads) gather_to_scene(communicator_, group, 3, flat(r.alpha), alpha);
     };
-    for (auto const& group : absolute_) {
-        add(group->group(), group->results());
-        gather_to_scene(communicator_, group->group(), 3, flat(group->results().acceleration), joint);
+    std::vector<BodyResults> const found = results();
+    for (std::size_t i = 0; i < absolute_.size(); ++i) {
+        add(absolute_[i]->group(), found[i]);
+        gather_to_scene(communicator_, absolute_[i]->group(), 3, flat(found[i].acceleration), joint);
     }
     for (std::size_t i = 0; i < joint_.size(); ++i) {
         ChainGroup const& group = joint_[i]->group();
-        add(group, joint_[i]->results());
+        add(group, found[absolute_.size() + i]);
         gather_to_scene(communicator_, group, 3, to_array<3>("", std::as_const(joint_rates_[i]).qdd.view()).values, joint);
         gather_to_scene(communicator_, group, 3, flat(at_starts(group, joint_rates_[i].base_acceleration)), base);
     }
-    return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces()};
+    return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces(found), tip_forces(found)};
 }
 
 std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays,

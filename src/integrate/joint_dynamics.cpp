@@ -9,11 +9,20 @@
 namespace catena {
 namespace {
 
-/// The farthest that a joint of the group can be from its body's centre, summed along the longest chain: a length to compare with.
-double reach_of(ChainGroup const& group, Communicator const& communicator) {
+/// The longest chain's length from joint to joint and a body's size: a length to compare with. The same on every rank.
+double reach_of(ChainGroup const& group, Scene const& scene) {
     double longest = 0;
-    for (std::int64_t k = 0; k < group.size; ++k) longest = std::max({longest, norm(group.r1[k]), norm(group.r2[k])});
-    return communicator.max(longest);
+    for (int const chain : group.chain) {
+        ChainSpec const& spec = scene.chains[chain];
+        BodyArrays const& b = spec.bodies;
+        double length = spec.tip == Tip::jointed ? norm(spec.tip_joint.translation) : 0.0, size = 0;
+        for (std::size_t k = 0; k < b.size(); ++k) {
+            if (k > 0) length += norm(b.translation[k]);
+            size = std::max(size, norm(b.com[k]) + radius_of_gyration(b.inertia[k], b.mass[k]));
+        }
+        longest = std::max(longest, length + size);
+    }
+    return longest;
 }
 
 BodyMotion motion_at_start(ChainGroup const& group, Scene const& scene, JointKinematics const& kinematics) {
@@ -57,7 +66,7 @@ JointDynamics::JointDynamics(ChainGroup const& group, Scene const& scene, Execut
       kinematics_(group, executor, communicator),
       given_(make_body_loads(group, scene)),
       motion_(motion_at_start(group, scene, kinematics_)),
-      tips_(group, scene, motion_, reach_of(group, communicator)),
+      tips_(group, motion_, group.has_tips() ? reach_of(group, scene) : 1.0),
       carried_(group),
       has_wrenches_(given_.wrenches || carried_.any()),
       has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
@@ -328,6 +337,18 @@ BodyResults JointDynamics::results() const {
         r.joint_force.push_back({{t[0], t[1], t[2], v[0], v[1], v[2]}});
     }
     if (group_.planar && !group_.has_tips()) add_across_plane(r);
+    for (LocalTip const& tip : group_.tips) {
+        auto const [force_origin, force_pitch] = tip_force_.view();
+        double f[6] = {0, 0, 0, 0, 0, 0};
+        for (int i = 0; i < group_.directions; ++i) f[i] = force_origin[i * force_pitch + tip.body];
+        Screw<double> const s{tip.screw[0], tip.screw[1]};
+        Mat3 const to_ground = orientation(tip.body) * axes2(tip.body);
+        Vec3 const force = -(to_ground * Vec3{{f[0], f[1], s.c * f[2] + s.s * f[5]}});
+        // Handles meet on G's origin, which slides.
+        Vec3 const arm = orientation(tip.body) * (r2(tip.body) - group_.r1[tip.body] - tip.joint.translation);
+        Vec3 const torque = cross(arm, force) - to_ground * Vec3{{f[3], f[4], s.c * f[5] - s.s * f[2]}};
+        r.tip_force.push_back({group_.scene_chain(tip.body), {{torque[0], torque[1], torque[2], force[0], force[1], force[2]}}});
+    }
     return r;
 }
 
@@ -413,10 +434,9 @@ void JointDynamics::correct(JointState& state, bool velocities) {
     for (std::size_t p = 0; p < base.size(); ++p) base[p] = base[p] + change.base_acceleration[p];
 }
 
-void JointDynamics::close_tips(JointState& state) {
+void JointDynamics::close_tips(JointState& state, int corrections) {
     if (!group_.has_tips()) return;
-    int constexpr newton_steps = 2;  // from an error of one step to rounding
-    for (int i = 0; i < newton_steps; ++i) correct(state, false);
+    for (int i = 0; i < corrections; ++i) correct(state, false);
     correct(state, true);
 }
 

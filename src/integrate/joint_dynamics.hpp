@@ -41,9 +41,10 @@ class JointDynamics final : public BeadHost {
     /// each relative to the sizes of its own terms (formulas, "Residuals"). Over all ranks; collective.
     double residual();
     PotentialEnergy potential(JointState const&, BodyMotion const&) const;
-    /// Corrects positions and velocities, each by the least in the metric of the masses, until jointed tips close again; nothing
-    /// happens where there are none. Collective.
-    void close_tips(JointState&);
+    /// Corrects positions by so many Newton steps and velocities by one, each by the least in the metric of the masses, so that jointed
+    /// tips close again; nothing happens where there are none. Collective.
+    static constexpr int usual_corrections = 2;
+    void close_tips(JointState&, int corrections = usual_corrections);
     /// Largest opening of a jointed tip over the chains' reach, over all ranks. Collective.
     double closure_error(JointState const&);
     ChainSolver const& solver() const { return *solver_; }

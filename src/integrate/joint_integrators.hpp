@@ -1,4 +1,4 @@
-// Steps in joint coordinates: nothing drifts apart but jointed tips, which are closed after every step.
+// Steps in joint coordinates: nothing drifts apart but jointed tips, which are to be closed after every step (ChainSystem::close_tips).
 #pragma once
 
 #include <memory>
@@ -13,8 +13,10 @@ class JointIntegrator {
     virtual ~JointIntegrator() = default;
     /// One step of length h of all groups' states, whose time is their own. Collective.
     virtual void step(std::vector<JointState>& states, double h) = 0;
+    /// What the next step needs beside the states is made where it is not there yet. Collective.
+    virtual void prepare(std::vector<JointState> const&) {}
     virtual int evaluations_a_step() const = 0;
-    /// What the next step needs beside the states, one a group, for checkpoints; null: nothing.
+    /// That, one a group, for checkpoints; null: nothing.
     virtual std::vector<JointRates>* carried() { return nullptr; }
     /// `carried` was set from outside.
     virtual void restored() {}

@@ -42,9 +42,8 @@ double JointDynamics::residual() {
     auto const is_tip = [&](std::int64_t k) { return group_.has_jointed_tip(k); };
     auto const outboard_screw = [&](std::int64_t k) {
         if (!is_tip(k)) return k + 1 < group_.size || group_.neighbour_outboard >= 0 ? screw(k + 1) : Screw<double>{1, 0};
-        for (LocalTip const& tip : group_.tips)
-            if (tip.body == k) return Screw<double>{tip.screw[0], tip.screw[1]};
-        return Screw<double>{1, 0};
+        Vec3 const tip = group_.tip_of(k).screw;
+        return Screw<double>{tip[0], tip[1]};
     };
     /// Force and torque along a joint's axes.
     auto const wrench = [&](ConstDirectionsView forces, std::int64_t at, Screw<double> const& s) {
@@ -85,10 +84,7 @@ double JointDynamics::residual() {
         return Vector<double, 8>{
             {h.linear[0], h.linear[1], h.linear[2], h.angular[0], h.angular[1], h.angular[2], h.linear_terms, h.angular_terms}};
     };
-    auto const radius_of_gyration = [&](std::int64_t k) {
-        Vector<double, 6> const j = group_.inertia[k];
-        return std::sqrt(0.5 * (j[0] + j[2] + j[5]) * group_.inverse_mass.view().at(k, 0));
-    };
+    auto const gyration = [&](std::int64_t k) { return radius_of_gyration(as_symmetric(group_.inertia[k]), group_.mass.view().at(k, 0)); };
     /// |D^T (outboard - inboard) + bias| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
     /// does not depend on the unit of length.
     auto const closing = [&](Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView bias, std::int64_t at,
@@ -128,15 +124,13 @@ double JointDynamics::residual() {
         Vector<double, 8> const here{{mine.linear[0], mine.linear[1], mine.linear[2], mine.angular[0], mine.angular[1], mine.angular[2],
                                       mine.linear_terms, mine.angular_terms}};
         if (group_.is_first[k]) before = Vector<double, 8>::zero();
-        double const size = norm(group_.r1[k]) + radius_of_gyration(k);
+        double const size = norm(group_.r1[k]) + gyration(k);
         worst = larger(worst, closing(here, before, std::as_const(bias_).view(), k, screw(k), group_.restricted(k), size));
         before = outboard_handle(k);
         if (!is_tip(k)) continue;
-        int restricted = 0;
-        for (LocalTip const& tip : group_.tips)
-            if (tip.body == k) restricted = tip.restricted;
+        int const restricted = group_.tip_of(k).restricted;
         worst = larger(worst, closing(Vector<double, 8>::zero(), before, std::as_const(tip_bias_).view(), k, outboard_screw(k), restricted,
-                                      norm(r2(k)) + radius_of_gyration(k)));
+                                      norm(r2(k)) + gyration(k)));
     }
     return communicator_.max(worst);
 }

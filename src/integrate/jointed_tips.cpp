@@ -2,21 +2,12 @@
 
 #include <cmath>
 #include <numbers>
-#include <sstream>
-
-#include "error.hpp"
 
 namespace catena {
 namespace {
 
 bool slides(JointType type) { return type == JointType::prismatic || type == JointType::helical; }
 bool turns_about_axis(JointType type) { return type == JointType::revolute || slides(type); }
-
-int chain_of(ChainGroup const& group, std::int64_t body) {
-    for (dca::Piece const& piece : group.pieces)
-        if (body >= piece.local && body < piece.local + piece.count) return piece.chain;
-    return 0;
-}
 
 /// X(q): of G in J.
 Quat turn_at(TipJoint const& tip, Vec3 const& screw) {
@@ -34,8 +25,7 @@ Quat turn_at(TipJoint const& tip, Vec3 const& screw) {
 
 }  // namespace
 
-JointedTips::JointedTips(ChainGroup const& group, Scene const& scene, BodyMotion const& start, double reach)
-    : group_(group), reach_(reach) {
+JointedTips::JointedTips(ChainGroup const& group, BodyMotion const& start, double reach) : group_(group), reach_(reach) {
     for (LocalTip const& local : group.tips) {
         TipJoint const& joint = local.joint;
         Quat const orientation = as_quaternion(start.orientation[local.body]);
@@ -44,23 +34,8 @@ JointedTips::JointedTips(ChainGroup const& group, Scene const& scene, BodyMotion
         Tip tip{&local, orientation * to_quaternion(joint.rotation) * turn_at(joint, local.screw),
                 start.origin[local.body] + body * (joint.translation + joint.rotation * slide), -group.r1[local.body],
                 dot(joint.first_axis, joint.axis)};
-        if (joint.anchor) {
-            double const error = norm(tip.ground_origin - *joint.anchor) / reach;
-            if (!(error <= 1e-9)) {
-                std::ostringstream text;
-                text << "the tip misses its anchor by " << error << " of the chain's reach";
-                throw InputError(text.str(), scene.file + ": chain " + group.name[chain_of(group, local.body)],
-                                 "move the anchor or the chain's joints");
-            }
-        }
         tips_.push_back(tip);
     }
-}
-
-bool JointedTips::slide() const {
-    for (Tip const& tip : tips_)
-        if (slides(tip.local->joint.type)) return true;
-    return false;
 }
 
 JointedTips::Meeting JointedTips::meeting(Tip const& tip, BodyMotion const& motion) const {
@@ -124,7 +99,7 @@ JointedTips::Pair JointedTips::opening(Tip const& tip, Meeting const& m, BodyMot
     if (joint.type == JointType::weld) open.angular = rotation_vector(relative);
     if (joint.type == JointType::universal) {
         Vec3 const second = to_matrix(relative) * joint.axis;
-        open.angular[0] = -(dot(joint.first_axis, second) - tip.angle) / norm(cross(joint.first_axis, second));
+        open.angular[0] = -(dot(joint.first_axis, second) - tip.cosine) / norm(cross(joint.first_axis, second));
     }
     if (turns_about_axis(joint.type)) {
         open.angular = transposed_times(tip.local->axes, cross(joint.axis, to_matrix(relative) * joint.axis));

@@ -14,13 +14,10 @@ using dca::Screw;
 
 class JointedTips {
   public:
-    /// `start`: motion at the scene's start, positions included, which decides where the ground's frames are. Throws InputError
-    /// when a tip that names its ground point is not there.
-    JointedTips(ChainGroup const&, Scene const&, BodyMotion const& start, double reach);
+    /// `start`: motion at the scene's start, positions included, which decides where the ground's frames are. `reach`: a length that
+    /// openings are measured by.
+    JointedTips(ChainGroup const&, BodyMotion const& start, double reach);
 
-    bool empty() const { return tips_.empty(); }
-    /// Whether positions are needed to know where the joints are.
-    bool slide() const;
     /// Handles 2 of last bodies, where meetings move (BodyMotion::r2, axes2).
     void set_meetings(BodyMotion&) const;
     /// LoadsView::tip_bias for the accelerations: velocity terms, and gravity as the ground's acceleration.
@@ -36,7 +33,7 @@ class JointedTips {
         Quat ground_rotation;  // of G in W
         Vec3 ground_origin;    // W
         Vec3 com;              // of the last body from its origin, B
-        double angle = 0;      // universal: between its axes, as their cosine
+        double cosine = 0;     // universal: of the angle between its axes
     };
     struct Meeting {
         Vec3 point;  // from the centre of mass, B

@@ -43,6 +43,8 @@ double radius_of_gyration(std::vector<double> const& mass, std::vector<Vec3> con
 
 Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
     : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)) {
+    for (ChainSpec const& chain : scene.chains) has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
+    has_temperature_ = has_temperature_ && dof_ > 0;
     std::string const energy = scene.si ? " [J]" : " [kJ/mol]", length = scene.si ? " [m]" : " [nm]";
     if (wants("energy")) {
         for (EnergyTerm const& term : terms) columns_.push_back(term.name + "_energy" + energy);
@@ -62,6 +64,7 @@ Observables::Observables(Scene const& scene, Topology const& topology, std::vect
 }
 
 bool Observables::wants(std::string const& name) const {
+    if (name == "temperature" && !has_temperature_) return false;
     auto const& asked = scene_.output.observables;
     return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
 }

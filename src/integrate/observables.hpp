@@ -30,6 +30,7 @@ class Observables {
 
   private:
     bool wants(std::string const& name) const;
+    bool has_temperature_ = true;  // not where nothing moves freely, or motions are prescribed
     Scene const& scene_;
     Topology const& topology_;
     std::int64_t dof_;

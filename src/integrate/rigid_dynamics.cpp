@@ -168,6 +168,10 @@ BodyResults RigidDynamics::results() const {
         Vec3 const f = joint_force(k);
         r.joint_force.push_back({{0, 0, 0, f[0], f[1], f[2]}});
     }
+    for (LocalTip const& tip : group_.tips) {
+        Vec3 const f = tip_force(tip.body);
+        r.tip_force.push_back({group_.scene_chain(tip.body), {{0, 0, 0, -f[0], -f[1], -f[2]}}});
+    }
     return r;
 }
 

@@ -38,7 +38,6 @@ class RungeKutta4 final : public JointIntegrator {
             std::swap(states[g], sum);
             states[g].time = start_[g].time + h;
             follow_courses(group, states[g]);
-            groups_[g]->close_tips(states[g]);
         }
     }
 

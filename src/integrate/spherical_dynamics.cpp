@@ -1,8 +1,6 @@
 #include <algorithm>
-#include <sstream>
 
 #include "chain/joint_kinematics.hpp"
-#include "error.hpp"
 #include "integrate/rigid_dynamics.hpp"
 
 namespace catena {
@@ -15,17 +13,11 @@ class SphericalDynamics final : public RigidDynamics {
                       std::unique_ptr<ChainSolver> solver)
         : RigidDynamics(group, scene, executor, communicator, std::move(solver)), joint_torque_(group.size) {
         start_from_joint_coordinates(scene);
-        for (std::int64_t k = 0; k < group.size; ++k) reach_ = std::max({reach_, norm(group.r1[k]), norm(group.r2[k])});
+        for (std::int64_t k = 0; k < group.size; ++k)
+            reach_ = std::max({reach_, norm(group.r1[k]), norm(group.r2[k]),
+                               radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0))});
         reach_ = communicator.max(reach_);
-        for (LocalTip const& tip : group.tips) {
-            pin_.push_back(position_[tip.body] + turn(orientation_, tip.body) * group.r2[tip.body]);
-            if (!tip.joint.anchor) continue;
-            double const error = norm(pin_.back() - *tip.joint.anchor) / reach_;
-            if (error <= 1e-9) continue;
-            std::ostringstream text;
-            text << "a tip misses its anchor by " << error << " of the chain's reach";
-            throw InputError(text.str(), scene.file, "move the anchor or the chain's joints");
-        }
+        for (LocalTip const& tip : group.tips) pin_.push_back(position_[tip.body] + turn(orientation_, tip.body) * group.r2[tip.body]);
     }
 
     void update_configuration() override {
@@ -111,7 +103,7 @@ class SphericalDynamics final : public RigidDynamics {
         return inboard_point(k, position, orientation) - inboard;
     }
 
-    double reach_ = 0;       // longest distance of a joint from its bodies' centres
+    double reach_ = 0;       // longest distance of a joint from its bodies' centres, or a body's radius of gyration
     std::vector<Vec3> pin_;  // where the local tips are held, W
     Field<3> joint_torque_;  // of joint k on body k, W; halo from outboard
 };

@@ -17,9 +17,9 @@ class JointStepper final : public Stepper {
         : system_(system),
           h_(d.step),
           integrator_(d.integrator == Integrator::rk4 ? make_runge_kutta4(system) : make_velocity_verlet(system)) {
-        for (std::size_t i = 0; i < system.joint().size(); ++i) system.joint()[i]->close_tips(system.joint_states()[i]);
+        system.close_tips();
     }
-    void prepare(StepTimeline*) override {}
+    void prepare(StepTimeline*) override { integrator_->prepare(system_.joint_states()); }
     /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at the step's end.
     void observe(bool joint_forces) override {
         if (joint_forces || system_.openmm()) system_.evaluate();
@@ -28,6 +28,7 @@ class JointStepper final : public Stepper {
         double const start = seconds_now();
         for (JointState& state : system_.joint_states()) state.time = static_cast<double>(n) * h_;
         integrator_->step(system_.joint_states(), h_);
+        system_.close_tips(corrections_);
         if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
     /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is finite.
@@ -41,25 +42,39 @@ class JointStepper final : public Stepper {
         }
         return system_.communicator().max(worst);
     }
-    bool add_sweep() override { return false; }
+    /// One more correction of jointed tips.
+    bool add_sweep() override {
+        if (!has_tips() || corrections_ >= most_corrections) return false;
+        ++corrections_;
+        return true;
+    }
     void save(Checkpoint& c) const override {
+        c.integers["corrections_of_tips"] = corrections_;
         std::vector<JointRates>* const carried = integrator_->carried();
         for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.collect_rates(i, (*carried)[i], c.arrays);
     }
     void restore(Checkpoint const& c) override {
         for (JointState& state : system_.joint_states()) state.time = static_cast<double>(c.step) * h_;
+        corrections_ = static_cast<int>(c.integers.at("corrections_of_tips"));
         std::vector<JointRates>* const carried = integrator_->carried();
         for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.distribute_rates(i, c.arrays, (*carried)[i]);
         integrator_->restored();
     }
     json describe() const override {
-        int const evaluations = integrator_->evaluations_a_step();
-        return {{"matrix_sweeps_a_step", evaluations}, {"bias_sweeps_a_step", evaluations}};
+        int const sweeps = integrator_->evaluations_a_step() + (has_tips() ? corrections_ + 1 : 0);
+        return {{"matrix_sweeps_a_step", sweeps}, {"bias_sweeps_a_step", sweeps}};
     }
 
   private:
+    bool has_tips() const {
+        auto const groups = system_.joint();
+        return std::any_of(groups.begin(), groups.end(), [](JointDynamics const* g) { return g->group().has_tips(); });
+    }
+
+    static constexpr int most_corrections = 10;
     ChainSystem& system_;
     double h_;
+    int corrections_ = JointDynamics::usual_corrections;  // of tips' positions after a step
     std::unique_ptr<JointIntegrator> integrator_;
 };
 

@@ -16,10 +16,13 @@ class VelocityVerlet final : public JointIntegrator {
     int evaluations_a_step() const override { return 1; }
     std::vector<JointRates>* carried() override { return &rates_; }
     void restored() override { ready_ = true; }
-
-    void step(std::vector<JointState>& states, double h) override {
+    void prepare(std::vector<JointState> const& states) override {
         if (!ready_) system_.evaluate(states, rates_);
         ready_ = true;
+    }
+
+    void step(std::vector<JointState>& states, double h) override {
+        prepare(states);
         start_ = states;
         for (std::size_t g = 0; g < groups_.size(); ++g) {
             move(g, states[g], h);
@@ -33,7 +36,6 @@ class VelocityVerlet final : public JointIntegrator {
             add_to_velocities(states[g], 0.5 * h, next_[g], states[g]);
             follow_courses(groups_[g]->group(), states[g]);
             std::swap(rates_[g], next_[g]);
-            groups_[g]->close_tips(states[g]);
         }
     }
 

@@ -42,6 +42,7 @@ Solution solution_of(ChainSystem& system) {
     ChainSystem::Snapshot const at = system.snapshot();
     Solution s;
     s.bead_force = a.bead_force;
+    s.tip_force = a.tip_force;
     if (system.communicator().rank() != 0) return s;
     std::size_t body = 0;
     for (ChainSpec const& chain : system.scene().chains)

@@ -20,6 +20,7 @@ struct Solution {
     /// where bead 1 of a free chain has none).
     std::vector<double> joint_force;
     std::vector<std::int64_t> force_offset;
+    std::vector<TipForce> tip_force;      // one a chain whose tip is jointed, in scene order
     std::vector<Vec3> bead_acceleration;  // of the beads alone, W
     std::vector<Vec3> bead_force;         // OpenMM's on the beads, W; empty without OpenMM
 };

@@ -1,5 +1,6 @@
 #include "scene/carried_beads.hpp"
 
+#include "force/calvados2.hpp"
 #include "scene/fields.hpp"
 
 namespace catena::scene {
@@ -21,8 +22,9 @@ void CarriedList::add(Node const* beads, Vec3 const& origin) {
             Fields const bead(item, {"residue", "position", "mass"});
             Node const* const mass = bead.find("mass");
             Node const* const residue = bead.find("residue");
-            append(vector3(bead.need("position", "position: [0, 0, 0]")) - origin, mass ? positive(*mass) : 1,
-                   residue ? text(*residue) : "UNK");
+            std::string const name = residue ? text(*residue) : "UNK";
+            Calvados2Residue const* const known = find_calvados2(name);
+            append(vector3(bead.need("position", "position: [0, 0, 0]")) - origin, mass ? positive(*mass) : known ? known->mass : 1, name);
         }
     }
     close();

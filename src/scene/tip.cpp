@@ -106,6 +106,17 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
          "start from a bent chain of at least two bodies");
 }
 
+/// Ground at both ends holds a planar chain across its plane twice. Planar handles leave those directions out; what needs full handles does
+/// not (formulas, singular closures).
+void refuse_flat_loop(ChainSpec const& chain, Node const& node) {
+    std::size_t odd = 0;
+    if (chain.base != Base::fixed || !axes_are_parallel(chain, odd) || handle_kind(chain) == HandleKind::planar) return;
+    fail(node,
+         "the chain turns in one plane and is held at both ends, with a weld, a driven joint or a fixed tip in it: its forces across the "
+         "plane are not determined",
+         "use revolute joints alone and a revolute or spherical joint at the tip, all axes parallel, or turn an axis out of the plane");
+}
+
 char const* kind_of(ChainSpec const& chain) { return chain.is_beads() ? "a chain of beads" : "a chain of links"; }
 
 /// A tip that restricts more than the chain has leaves its forces undetermined.
@@ -161,6 +172,7 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, Node const& chain_node) {
         close_link(chain, node);
     } else {
         refuse_too_many(chain, node);
+        refuse_flat_loop(chain, node);
         close_joint(chain, node);
     }
     refuse_straight_bridge(chain, node);

@@ -73,6 +73,15 @@ void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
          "leave it out: g-baoab has `friction`");
 }
 
+/// As scene/tip.cpp's refuse_flat_loop: full handles carry what a planar loop does not determine.
+void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
+    if (scene.solver.handles != Handles::full || draft.chain.tip != Tip::jointed) return;
+    if (draft.chain.is_beads() || draft.chain.is_linked() || handle_kind(draft.chain) != HandleKind::planar) return;
+    fail(*root.find("solver")->find("handles"),
+         fmt::format("full handles for chain `{}`, which turns in one plane and is held at both ends", shown(draft.chain.name)),
+         "use `handles: projected`");
+}
+
 void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
     if (draft.chain.velocities != StartVelocities::thermal) return;
     Node const* const asked = draft.node->find("velocities");
@@ -130,6 +139,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         previous = &draft;
         check_drag(root, scene, draft);
         if (scene.dynamics.given) check_integrator(root, scene, draft);
+        check_handles(root, scene, draft);
         check_thermal(root, scene.dynamics, draft);
     }
     if (scene.forces.openmm) check_openmm(root, *scene.forces.openmm, drafts);

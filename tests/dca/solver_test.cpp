@@ -76,6 +76,17 @@ RandomChainOptions options_of(std::uint64_t seed) {
     return options;
 }
 
+/// Of a jointed tip, torque and force relative to the larger of the joint forces; 0 where the tip is free.
+double tip_error(ChainSpec const& chain, ChainSystem::Accelerations const& a, oracle::OracleResult<long double> const& exact) {
+    if (chain.tip != Tip::jointed) return a.tip_force.empty() ? 0 : 1;
+    Vector<double, 6> const& w = a.tip_force.at(0).wrench;
+    Vector<long double, 3> const torque{{w[0], w[1], w[2]}}, force{{w[3], w[4], w[5]}};
+    long double largest = norm(exact.tip_force.force) + norm(exact.tip_force.torque);
+    for (auto const& f : exact.constraint_force) largest = std::max({largest, norm(f.force), norm(f.torque)});
+    for (long double const t : exact.tension) largest = std::max(largest, std::abs(t));
+    return static_cast<double>(std::max(norm(torque - exact.tip_force.torque), norm(force - exact.tip_force.force)) / largest);
+}
+
 struct Compared {
     double error = 0, force_error = 0, bound = 0, residual = 0, residual_bound = 0;
     bool good() const { return error <= bound && force_error <= 8 * bound && residual <= residual_bound; }
@@ -101,6 +112,7 @@ Compared compare(Scene const& scene, ChainSpec const& chain, oracle::Loads const
     c.error = static_cast<double>(relative_difference(converted<long double>(a.joint_acceleration), expected.qdd));
     c.error = std::max(c.error, static_cast<double>(norm(base_error)) / base_size / 4);
     c.force_error = static_cast<double>(relative_difference(converted<long double>(wrench), wrench_expected));
+    c.force_error = std::max(c.force_error, tip_error(chain, a, expected));
     c.bound = 32 * (static_cast<double>(chain.size()) + 8) * growth(chain, loads) * eps;
     c.residual = system.residual();
     c.residual_bound = system.residual_bound();
@@ -157,6 +169,7 @@ void compare_on_links(ChainSpec const& chain, Scene const& scene, Communicator c
         largest = std::max(largest, std::abs(oracle.tension[k]));
     }
     EXPECT_LE(static_cast<double>(worst), 8 * bound * static_cast<double>(1 + largest));
+    EXPECT_LE(tip_error(chain, a, oracle), 8 * bound);
     EXPECT_LE(system.residual(), system.residual_bound());
 }
 

@@ -80,10 +80,11 @@ double order_of(Scene const& scene, bool fourth) {
         ChainSystem system(scene, Axes::joint, *communicator);
         JointDynamics& dynamics = *system.joint().front();
         auto const integrator = reference || fourth ? make_runge_kutta4(system) : make_velocity_verlet(system);
-        dynamics.close_tips(system.joint_states()[0]);
+        system.close_tips();
         for (int i = 0; i < steps; ++i) {
             system.joint_states()[0].time = i * time / steps;
             integrator->step(system.joint_states(), time / steps);
+            system.close_tips();
         }
         EXPECT_LE(dynamics.closure_error(system.joint_states()[0]), 1e-12);
         return system.snapshot().position;

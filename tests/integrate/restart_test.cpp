@@ -57,6 +57,14 @@ TEST_P(Restart, FromTheCheckpointBefore) {
     EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
 }
 
+TEST_P(Restart, FromTheStart) {
+    run("whole", 10);
+    run("parts", 0);
+    run("parts", 10, folder_ / "parts/checkpoint.h5");
+    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+}
+
 TEST_P(Restart, RefusesAnotherScene) {
     run("parts", 5);
     RunOptions options;

@@ -56,6 +56,14 @@ inline RunScene const run_scenes[] = {
      "velocities: "
      "thermal, generator: {random: {bodies: 25, joint: link, rigid: 0.3, seed: 9}}}]\n"
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"langevin_held",
+     "chains: [{name: a, base: fixed, velocities: thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, generator: {random: {bodies: 30, "
+     "joint: link, rigid: 0.5, seed: 8}}}, {name: b, base: fixed, velocities: thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, "
+     "generator: {freely_jointed: {beads: 1, length: 2}}}]\n"
+     "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"rattle_on_its_centre",
+     "chains: [{name: a, base: fixed, bodies: [{mass: 2, inertia: [1, 2, 2.5], joint: {type: spherical, qd: [1, 2, 3]}}]}]\n"
+     "dynamics: {integrator: rattle, step: 0.002, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"rk4_every_joint",
      "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: mixed, seed: 1}}}, {name: b, base: fixed, tip: {joint: {type: "
      "universal, axes: [[1, 0, 0], [0, 1, 0]]}}, generator: {random: {bodies: 40, joint: universal, seed: 2}}}, {name: c, base: fixed, "
@@ -66,7 +74,8 @@ inline RunScene const run_scenes[] = {
      "chains: [{name: a, base: fixed, generator: {random: {bodies: 50, joint: helical, seed: 1}}}, {name: b, base: free, generator: "
      "{random: {bodies: 40, joint: mixed, seed: 2}}}, {name: c, base: fixed, bodies: ["
      "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], motion: {amplitude: 0.5, frequency: 2}}},"
-     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, 0, 0]}}]}]\n"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, 0, 0]}}]},"
+     "{name: d, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 20, joint: revolute, seed: 4}}}]\n"
      "forces: {gravity: [0, 0, -1]}\n"
      "dynamics: {integrator: velocity-verlet, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
 };

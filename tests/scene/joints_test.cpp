@@ -120,7 +120,7 @@ TEST(Joints, handle_kinds_and_degrees_of_freedom) {
         {{x, z}, "", revolute, 2},
         {{z, z, z, z}, "", planar, 4},
         {{z, z, z, z}, "tip: {joint: {type: planar, axis: [0, 0, 1]}}", planar, 2},
-        {{z, z, z}, "tip: fixed", full, 0},
+        {{x, z, x, z, x, z, z}, "tip: fixed", full, 1},
         {{ball, ball}, "", spherical, 6},
         {{ball, cross}, "", universal, 5},
         {{ball, cross, "{type: prismatic, axis: [1, 0, 0]}"}, "", revolute, 6},
@@ -136,6 +136,20 @@ TEST(Joints, handle_kinds_and_degrees_of_freedom) {
         EXPECT_EQ(scene::handle_kind(chain), c.kind) << list_of(c.joints, c.chain);
         EXPECT_EQ(scene::degrees_of_freedom(chain), c.dof) << list_of(c.joints, c.chain);
     }
+}
+
+TEST(Tips, planar_loops_that_need_full_handles_are_refused) {
+    auto const loop = [](std::string const& last, std::string const& tip) {
+        return list_of({"{type: revolute, axis: [0, 0, 1]}", "{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0], q: 1}",
+                        "{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0], q: 1}", last},
+                       tip);
+    };
+    std::string const free = "{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0], q: 1", pin = "tip: {joint: {type: spherical}}";
+    EXPECT_NO_THROW(parse_scene(loop(free + "}", pin), "s.yaml"));
+    for (std::string const& refused : {loop("{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0], motion: {rate: 1}}", pin),
+                                       loop("{type: weld, translation: [1, 0, 0]}", pin), loop(free + "}", "tip: fixed"),
+                                       loop(free + "}", pin) + "\nsolver: {handles: full}"})
+        EXPECT_NE(refusal_of(refused).find("turns in one plane and is held at both ends"), std::string::npos) << refused;
 }
 
 TEST(Tips, anchors_are_checked_by_forward_kinematics) {
