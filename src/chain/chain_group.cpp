@@ -177,6 +177,7 @@ void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
         group.axes2.set(k, flat(tip.rotation * local.axes));
     }
     group.tips.push_back(local);
+    group.tip_screw.push_back(local.screw);
 }
 
 int directions_of(ChainGroup const& group) {
@@ -336,6 +337,20 @@ dca::Piece const& piece_of(std::vector<dca::Piece> const& pieces, std::int64_t k
 std::int64_t ChainGroup::scene_index(std::int64_t k) const {
     dca::Piece const& piece = piece_of(pieces, k);
     return first_in_scene[piece.chain] + piece.body + (k - piece.local);
+}
+
+GroupView ChainGroup::view() const {
+    return {size,
+            is_last.data(),
+            jointed_tip.empty() ? nullptr : jointed_tip.data(),
+            tip_screw.data(),
+            inverse_mass.view(),
+            inverse_inertia.view(),
+            r1.view(),
+            r2.view(),
+            axes1.view(),
+            axes2.view(),
+            screw.view()};
 }
 
 int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chain/field.hpp"
+#include "chain/group_view.hpp"
 #include "dca/tree.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
@@ -78,9 +78,11 @@ struct ChainGroup {
     std::vector<Vec3> bead_place;           // of carried beads from the centre of mass, B
     std::vector<LocalDrive> drives;
     std::vector<LocalTip> tips;
+    std::vector<Vec3> tip_screw;  // of `tips`
 
     int neighbour_inboard = -1, neighbour_outboard = -1;  // ranks that hold the bodies before and after, where a chain goes on there
-    char const* kind() const;                             // smallest handle kind: link | planar | spherical | universal | revolute | full
+    GroupView view() const;
+    char const* kind() const;  // smallest handle kind: link | planar | spherical | universal | revolute | full
     /// Restricted directions of joint k of local numbering, tips and those of shared chains' tops included (schedule.joints entries;
     /// `none`: 0).
     std::vector<std::uint8_t> restricted_of_joint;

@@ -131,7 +131,7 @@ catena_settle(TESTS IN "GoogleTest ${GTest_VERSION}" DEBIAN libgtest-dev LEFT_OU
 # Architectures are named, never `native`: that needs a GPU where the build runs.
 set(CATENA_CUDA_ARCHITECTURES 90 CACHE STRING "GPU architectures to compile for, as for CMAKE_CUDA_ARCHITECTURES")
 set(CMAKE_CUDA_ARCHITECTURES ${CATENA_CUDA_ARCHITECTURES})
-catena_switch(CUDA "The shared mathematics compiled for GPUs")
+catena_switch(CUDA "Backends on GPUs")
 set(because "")
 if(catena_wanted)
     find_program(CATENA_NVCC nvcc HINTS ENV CUDACXX ENV CUDA_HOME /usr/local/cuda PATH_SUFFIXES bin)
@@ -153,8 +153,8 @@ if(catena_wanted)
         endif()
     endif()
 endif()
-catena_settle(CUDA IN "${CMAKE_CUDA_COMPILER_VERSION}, sm_${CATENA_CUDA_ARCHITECTURES}: the shared mathematics is compiled for GPUs, this version runs on the CPU"
-              DEBIAN "NVIDIA's CUDA Toolkit, 12 or 13" LEFT_OUT "no compile check of the shared mathematics for GPUs" BECAUSE "${because}")
+catena_settle(CUDA IN "${CMAKE_CUDA_COMPILER_VERSION}, sm_${CATENA_CUDA_ARCHITECTURES}"
+              DEBIAN "NVIDIA's CUDA Toolkit, 12 or 13" LEFT_OUT "backend cuda" BECAUSE "${because}")
 
 function(catena_print_summary)
     set(arch "${CATENA_ARCH}")

@@ -51,8 +51,7 @@ Backend backend_named(std::string const& option, std::string const& text) {
     std::vector<std::string_view> names;
     for (Backend const backend : all) names.emplace_back(name_of(backend));
     known_value(option, text, names);
-    for (Backend const backend : {Backend::cuda, Backend::cuda_levels})
-        if (text == name_of(backend)) throw not_in_this_version(fmt::format("{} {} (use serial, segments or openmp)", option, text));
+    if (text == name_of(Backend::cuda_levels)) throw not_in_this_version(fmt::format("{} {} (use cuda)", option, text));
     return all[std::find(names.begin(), names.end(), text) - names.begin()];
 }
 

@@ -12,14 +12,14 @@ CATENA_HD Vector<double, D> load_or_zero(ConstView<D> const& view, std::int64_t 
 }
 
 /// Direction of the link on the outboard side of body k; 0 where there is none.
-inline Vec3 outboard_direction(ChainGroup const& group, ConstView<3> direction, ConstView<3> tip_direction, std::int64_t k) {
-    if (!group.is_last[static_cast<std::size_t>(k)]) return direction.load(k + 1);
+CATENA_HD Vec3 outboard_direction(GroupView const& group, ConstView<3> direction, ConstView<3> tip_direction, std::int64_t k) {
+    if (!group.is_last[k]) return direction.load(k + 1);
     return group.has_jointed_tip(k) ? tip_direction.load(k) : Vec3::zero();
 }
 
 /// The velocity terms of the inboard joint, and of a jointed tip: the ground's handle 1 there is as good as the body's handle 2.
 template <int K>
-void add_joint_biases(ChainGroup const& group, LoadsView const& loads, std::int64_t k, SegmentBias<double, K>& b) {
+CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, std::int64_t k, SegmentBias<double, K>& b) {
     if (loads.bias) b.b1 = b.b1 + loads.bias.load<K>(k);
     if (loads.tip_bias && group.has_jointed_tip(k)) b.b2 = b.b2 - loads.tip_bias.load<K>(k);
 }
@@ -29,35 +29,36 @@ template <int K_>
 class BeadLeaf {
   public:
     static constexpr int K = K_;
-    explicit BeadLeaf(ChainGroup const& group) : group_(&group) {}
+    explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         direction_ = c.direction;
         tip_direction_ = c.tip_direction;
     }
+    CATENA_HD GroupView const& group() const { return group_; }
 
-    SegmentMatrix<double, K> matrix(std::int64_t k) const {
-        return bead_matrix(group_->inverse_mass.view().at(k, 0), direction_.load(k), outboard(k), Vector<double, K>{});
+    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
+        return bead_matrix(group_.inverse_mass.at(k, 0), direction_.load(k), outboard(k), Vector<double, K>{});
     }
-    SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
+    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
         SegmentBias<double, K> b{Vector<double, K>::zero(), Vector<double, K>::zero()};
         if (loads.force.origin) {
-            Vec3 const a = group_->inverse_mass.view().at(k, 0) * loads.force.load(k);
+            Vec3 const a = group_.inverse_mass.at(k, 0) * loads.force.load(k);
             b = {along_link(direction_.load(k), a, Vector<double, K>{}), along_link(outboard(k), a, Vector<double, K>{})};
         }
-        add_joint_biases(*group_, loads, k, b);
+        add_joint_biases(group_, loads, k, b);
         return b;
     }
-    void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force, Vector<double, K> const& outboard_force,
-                    AccelerationsView const& out) const {
+    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force,
+                              Vector<double, K> const& outboard_force, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         Vec3 const f =
             plus_scaled(plus_scaled(load_or_zero(loads.force, k), inboard_force[0], direction_.load(k)), -outboard_force[0], outboard(k));
-        out.acceleration.store(k, group_->inverse_mass.view().at(k, 0) * f);
+        out.acceleration.store(k, group_.inverse_mass.at(k, 0) * f);
     }
 
   private:
-    Vec3 outboard(std::int64_t k) const { return outboard_direction(*group_, direction_, tip_direction_, k); }
-    ChainGroup const* group_;
+    CATENA_HD Vec3 outboard(std::int64_t k) const { return outboard_direction(group_, direction_, tip_direction_, k); }
+    GroupView group_;
     ConstView<3> direction_, tip_direction_;
 };
 
@@ -73,27 +74,24 @@ template <int K, bool sliding>
 class MeetingFrames {
   public:
     static constexpr bool any_forces = sliding;
-    explicit MeetingFrames(ChainGroup const& group)
-        : group_(&group), axes1_(group.axes1.view()), axes2_(group.axes2.view()), r1_(group.r1.view()), r2_(group.r2.view()) {
-        if constexpr (sliding) screw_ = group.screw.view();
-    }
+    explicit MeetingFrames(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
         if (c.axes2.origin) axes2_ = c.axes2;
         if (c.r2.origin) r2_ = c.r2;
     }
-    Vec3 r1(std::int64_t k) const { return r1_.load(k); }
-    Vec3 r2(std::int64_t k) const { return r2_.load(k); }
-    HandlePair<K> handles(std::int64_t k) const {
+    CATENA_HD Vec3 r1(std::int64_t k) const { return group_.r1.load(k); }
+    CATENA_HD Vec3 r2(std::int64_t k) const { return r2_.load(k); }
+    CATENA_HD HandlePair<K> handles(std::int64_t k) const {
         Vector<double, 4> const q = rotation_.load(k);
-        Mat3 const e1 = transposed_times(to_matrix(as_quaternion(q)), as_matrix(axes1_.load(k)));
+        Mat3 const e1 = transposed_times(to_matrix(as_quaternion(q)), as_matrix(group_.axes1.load(k)));
         Mat3 const e2 = as_matrix(axes2_.load(k));
         HandlePair<K> pair{make_handle<K>(r1(k), e1, e1), make_handle<K>(r2(k), e2, e2), Mat3::identity()};
         if constexpr (sliding) {
-            Vec3 const s1 = screw_.load(k);
+            Vec3 const s1 = group_.screw.load(k);
             turn_to_screw(Screw<double>{s1[0], s1[1]}, r1(k), e1, e1, pair.h1);
-            if (!group_->is_last[static_cast<std::size_t>(k)] || group_->has_jointed_tip(k)) {
-                Vec3 const s2 = outboard_screw(k);
+            if (!group_.is_last[k] || group_.has_jointed_tip(k)) {
+                Vec3 const s2 = group_.outboard_screw(k);
                 turn_to_screw(Screw<double>{s2[0], s2[1]}, r2(k), e2, e2, pair.h2);
             }
         }
@@ -101,10 +99,9 @@ class MeetingFrames {
     }
 
   private:
-    Vec3 outboard_screw(std::int64_t k) const { return group_->has_jointed_tip(k) ? group_->tip_of(k).screw : screw_.load(k + 1); }
-    ChainGroup const* group_;
-    ConstView<9> axes1_, axes2_;
-    ConstView<3> r1_, r2_, screw_;
+    GroupView group_;
+    ConstView<9> axes2_;
+    ConstView<3> r2_;
     ConstView<4> rotation_;
 };
 
@@ -113,11 +110,11 @@ template <int K>
 class GroundFrames {
   public:
     static constexpr bool any_forces = false;
-    explicit GroundFrames(ChainGroup const& group) : r1_(group.r1.view()), r2_(group.r2.view()) {}
+    explicit GroundFrames(GroupView const& group) : r1_(group.r1), r2_(group.r2) {}
     void set(ConfigurationView const& c) { rotation_ = c.rotation; }
-    Vec3 r1(std::int64_t k) const { return r1_.load(k); }
-    Vec3 r2(std::int64_t k) const { return r2_.load(k); }
-    HandlePair<K> handles(std::int64_t k) const {
+    CATENA_HD Vec3 r1(std::int64_t k) const { return r1_.load(k); }
+    CATENA_HD Vec3 r2(std::int64_t k) const { return r2_.load(k); }
+    CATENA_HD HandlePair<K> handles(std::int64_t k) const {
         Vector<double, 4> const q = rotation_.load(k);
         Mat3 const turn = to_matrix(as_quaternion(q)), to_body = transpose(turn), unit = Mat3::identity();
         return {make_handle<K>(r1(k), to_body, unit), make_handle<K>(r2(k), to_body, unit), turn};
@@ -133,23 +130,23 @@ template <int K>
 class LinkFrames {
   public:
     static constexpr bool any_forces = false;
-    explicit LinkFrames(ChainGroup const& group) : group_(&group), r1_(group.r1.view()), r2_(group.r2.view()) {}
+    explicit LinkFrames(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
         direction_ = c.direction;
         tip_direction_ = c.tip_direction;
     }
-    Vec3 r1(std::int64_t k) const { return r1_.load(k); }
-    Vec3 r2(std::int64_t k) const { return r2_.load(k); }
-    HandlePair<K> handles(std::int64_t k) const {
+    CATENA_HD Vec3 r1(std::int64_t k) const { return group_.r1.load(k); }
+    CATENA_HD Vec3 r2(std::int64_t k) const { return group_.r2.load(k); }
+    CATENA_HD HandlePair<K> handles(std::int64_t k) const {
         Vector<double, 4> const q = rotation_.load(k);
         Mat3 const turn = to_matrix(as_quaternion(q));
-        Mat3 const e1 = axes(direction_.load(k)), e2 = axes(outboard_direction(*group_, direction_, tip_direction_, k));
+        Mat3 const e1 = axes(direction_.load(k)), e2 = axes(outboard_direction(group_, direction_, tip_direction_, k));
         return {make_handle<K>(r1(k), transposed_times(turn, e1), e1), make_handle<K>(r2(k), transposed_times(turn, e2), e2), turn};
     }
 
   private:
-    static Mat3 axes(Vec3 const& direction) {
+    CATENA_HD static Mat3 axes(Vec3 const& direction) {
         if constexpr (K == 1) {
             Mat3 m = Mat3::zero();
             m.set_column(0, direction);
@@ -158,8 +155,8 @@ class LinkFrames {
             return triple(direction);
         }
     }
-    ChainGroup const* group_;
-    ConstView<3> r1_, r2_, direction_, tip_direction_;
+    GroupView group_;
+    ConstView<3> direction_, tip_direction_;
     ConstView<4> rotation_;
 };
 
@@ -168,17 +165,17 @@ template <int K_, class Frames>
 class BodyLeaf {
   public:
     static constexpr int K = K_;
-    explicit BodyLeaf(ChainGroup const& group)
-        : group_(&group), frames_(group), inverse_mass_(group.inverse_mass.view()), inverse_inertia_(group.inverse_inertia.view()) {}
+    explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
+    CATENA_HD GroupView const& group() const { return group_; }
 
-    SegmentMatrix<double, K> matrix(std::int64_t k) const {
+    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
         HandlePair<K> const h = frames_.handles(k);
-        return leaf_matrix<Frames::any_forces>(inverse_mass_.at(k, 0), inverse_inertia(k), h.h1, h.h2);
+        return leaf_matrix<Frames::any_forces>(group_.inverse_mass.at(k, 0), inverse_inertia(k), h.h1, h.h2);
     }
-    SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
+    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
         HandlePair<K> const h = frames_.handles(k);
-        Vec3 a1 = inverse_mass_.at(k, 0) * load_or_zero(loads.force, k), a2 = a1;
+        Vec3 a1 = group_.inverse_mass.at(k, 0) * load_or_zero(loads.force, k), a2 = a1;
         Vec3 const alpha = loads.torque.origin ? inverse_inertia(k) * loads.torque.load(k) : Vec3::zero();
         if (loads.omega.origin) {
             Vec3 const w = loads.omega.load(k);
@@ -186,26 +183,24 @@ class BodyLeaf {
             a2 = a2 + h.to_force_axes * cross(w, cross(w, frames_.r2(k)));
         }
         SegmentBias<double, K> b{along(h.h1, alpha, a1), along(h.h2, alpha, a2)};
-        add_joint_biases(*group_, loads, k, b);
+        add_joint_biases(group_, loads, k, b);
         return b;
     }
-    void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force, Vector<double, K> const& outboard_force,
-                    AccelerationsView const& out) const {
+    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force,
+                              Vector<double, K> const& outboard_force, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         HandlePair<K> const h = frames_.handles(k);
         Vec3 const torque = load_or_zero(loads.torque, k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
         Vec3 const force = load_or_zero(loads.force, k) + (h.h1.force * inboard_force - h.h2.force * outboard_force);
         out.alpha.store(k, inverse_inertia(k) * torque);
-        out.acceleration.store(k, inverse_mass_.at(k, 0) * force);
+        out.acceleration.store(k, group_.inverse_mass.at(k, 0) * force);
     }
 
   private:
-    Sym3 inverse_inertia(std::int64_t k) const { return as_symmetric(inverse_inertia_.load(k)); }
+    CATENA_HD Sym3 inverse_inertia(std::int64_t k) const { return as_symmetric(group_.inverse_inertia.load(k)); }
 
-    ChainGroup const* group_;
+    GroupView group_;
     Frames frames_;
-    ConstView<1> inverse_mass_;
-    ConstView<6> inverse_inertia_;
 };
 
 }  // namespace catena::dca

@@ -68,6 +68,8 @@ struct Symmetric {
 };
 
 using Vec3 = Vector<double, 3>;
+CATENA_HD double not_a_number() { return __builtin_nan(""); }
+
 using Mat3 = Matrix<double, 3, 3>;
 using Sym3 = Symmetric<double, 3>;
 CATENA_HD Mat3 as_matrix(Vector<double, 9> const& v) { return {{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}}; }

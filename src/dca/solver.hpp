@@ -17,17 +17,19 @@ struct BasicDirectionsView {
     Real* origin = nullptr;
     std::int64_t pitch = 0;
     template <int K>
-    Vector<double, K> load(std::int64_t k) const {
+    CATENA_HD Vector<double, K> load(std::int64_t k) const {
         Vector<double, K> v;
+        CATENA_UNROLL
         for (int i = 0; i < K; ++i) v[i] = origin[i * pitch + k];
         return v;
     }
     template <int K>
-    void store(std::int64_t k, Vector<double, K> const& v) const {
+    CATENA_HD void store(std::int64_t k, Vector<double, K> const& v) const {
+        CATENA_UNROLL
         for (int i = 0; i < K; ++i) origin[i * pitch + k] = v[i];
     }
-    explicit operator bool() const { return origin != nullptr; }
-    operator BasicDirectionsView<Real const>() const { return {origin, pitch}; }
+    CATENA_HD explicit operator bool() const { return origin != nullptr; }
+    CATENA_HD operator BasicDirectionsView<Real const>() const { return {origin, pitch}; }
 };
 using DirectionsView = BasicDirectionsView<double>;
 using ConstDirectionsView = BasicDirectionsView<double const>;
@@ -94,6 +96,9 @@ class ChainSolver {
     }
     virtual SolverReport report() const = 0;
 };
+
+/// Throws what is wrong with a joint of the group's schedule on this rank: its matrix is not positive definite.
+[[noreturn]] void refuse_indefinite(ChainGroup const&, int rank, std::int64_t joint);
 
 /// The divide-and-conquer solver over a group's canonical tree. The group, executor and communicator must outlive it.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Executor const&, Communicator const&);

@@ -3,10 +3,9 @@
 
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <vector>
 
-#include "dca/leaves.hpp"
+#include "dca/tree_sweeps.hpp"
 #include "error.hpp"
 
 namespace catena::dca {
@@ -14,32 +13,33 @@ namespace catena::dca {
 template <class Leaf>
 class TreeSolver final : public ChainSolver {
     static constexpr int K = Leaf::K;
-    using Matrices = SegmentMatrix<double, K>;
-    using Biases = SegmentBias<double, K>;
+    using Sweeps = TreeSweeps<Leaf>;
+    using Matrices = typename Sweeps::Matrices;
+    using Biases = typename Sweeps::Biases;
 
   public:
     TreeSolver(ChainGroup const& group, Executor const& executor, Communicator const& communicator)
-        : group_(group), schedule_(group.schedule), executor_(executor), communicator_(communicator), leaf_(group) {
-        matrices_.resize(static_cast<std::size_t>(schedule_.slots));
-        biases_.resize(matrices_.size());
-        joints_.resize(static_cast<std::size_t>(schedule_.joints));
-        offsets_.resize(joints_.size());
-        forces_.resize(joints_.size(), Vector<double, K>::zero());
-    }
+        : group_(group),
+          schedule_(group.schedule),
+          executor_(executor),
+          communicator_(communicator),
+          matrices_(static_cast<std::size_t>(schedule_.slots)),
+          biases_(matrices_.size()),
+          joints_(static_cast<std::size_t>(schedule_.joints)),
+          offsets_(joints_.size()),
+          forces_(joints_.size(), Vector<double, K>::zero()),
+          sweeps_{Leaf(group.view()), group.restricted_of_joint.data(), matrices_.data(), biases_.data(), joints_.data(), offsets_.data(),
+                  forces_.data()} {}
 
     void assemble_matrices(ConfigurationView const& configuration) override {
         auto const start = now();
-        leaf_.set(configuration);
-        executor_.for_each(count(schedule_.runs), [this](std::int64_t i) { assemble_run(schedule_.runs[i]); });
-        for (auto const& level : schedule_.levels) assemble_level(level);
+        sweeps_.leaf.set(configuration);
+        auto const each = [this](auto const& item) { sweeps_.assemble_matrices(item); };
+        over(schedule_.runs, each);
+        for (auto const& level : schedule_.levels) over(level, each);
         if (!schedule_.shared.empty()) gather_shared(matrices_);
-        for (auto const& level : schedule_.top_levels) assemble_level(level);
-        for_roots([this](Root const& root) {
-            Matrices segment = matrices_[root.slot];
-            if (root.jointed_tip) segment = assemble(segment, Matrices::zero(), restricted(root.next), joints_[root.next]);
-            joints_[root.first].factor = factorize(segment.z11, restricted(root.first));
-            if (root.jointed_tip) refuse_redundant(root);
-        });
+        for (auto const& level : schedule_.top_levels) over(level, each);
+        for_roots([this](Root const& root) { sweeps_.close_matrices(root); });
         ++report_.matrix_sweeps;
         report_.matrix_seconds += now() - start;
         check_definite();
@@ -47,22 +47,17 @@ class TreeSolver final : public ChainSolver {
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         auto const start = now();
-        executor_.for_each(count(schedule_.runs), [&](std::int64_t i) { assemble_run_bias(schedule_.runs[i], loads); });
-        for (auto const& level : schedule_.levels) assemble_level_bias(level);
+        auto const each = [&](auto const& item) { sweeps_.assemble_biases(loads, item); };
+        over(schedule_.runs, each);
+        for (auto const& level : schedule_.levels) over(level, each);
         if (!schedule_.shared.empty()) gather_shared(biases_);
-        for (auto const& level : schedule_.top_levels) assemble_level_bias(level);
-        for_roots([this](Root const& root) {
-            // Ground is a segment with zeta = 0: its acceleration stands in the biases of the joints to it.
-            Biases segment = biases_[root.slot];
-            if (root.jointed_tip) segment = assemble(segment, Biases::zero(), joints_[root.next], offsets_[root.next]);
-            forces_[root.first] = solve_upper(joints_[root.first].factor, solve_lower(joints_[root.first].factor, -segment.b1));
-            if (root.jointed_tip)
-                forces_[root.next] = disassemble(joints_[root.next], offsets_[root.next], forces_[root.first], Vector<double, K>::zero());
-        });
-        for (std::size_t l = schedule_.top_levels.size(); l-- > 0;) disassemble_level(schedule_.top_levels[l]);
+        for (auto const& level : schedule_.top_levels) over(level, each);
+        for_roots([this](Root const& root) { sweeps_.close_biases(root); });
+        auto const down = [this](Merge const& merge) { sweeps_.disassemble_forces(merge); };
+        for (std::size_t l = schedule_.top_levels.size(); l-- > 0;) over(schedule_.top_levels[l], down);
         for (TopCopy const& copy : schedule_.top_copies) forces_[copy.to] = forces_[copy.from];
-        for (std::size_t l = schedule_.levels.size(); l-- > 0;) disassemble_level(schedule_.levels[l]);
-        executor_.for_each(count(schedule_.runs), [&](std::int64_t i) { disassemble_run(schedule_.runs[i], loads, out); });
+        for (std::size_t l = schedule_.levels.size(); l-- > 0;) over(schedule_.levels[l], down);
+        over(schedule_.runs, [&](Run const& run) { sweeps_.disassemble_forces(loads, out, run); });
         if (out.joint_force) out.joint_force.store(schedule_.bodies, forces_[schedule_.halo]);
         ++report_.bias_sweeps;
         report_.bias_seconds += now() - start;
@@ -83,71 +78,17 @@ class TreeSolver final : public ChainSolver {
     }
 
   private:
-    template <class T>
-    static std::int64_t count(std::vector<T> const& items) {
-        return static_cast<std::int64_t>(items.size());
-    }
     static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
     int restricted(std::int64_t joint) const { return group_.restricted_of_joint[joint]; }
 
-    void assemble_run(Run const& run) {
-        Matrices segment = leaf_.matrix(run.body);
-        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)
-            segment = assemble(segment, leaf_.matrix(k), restricted(k), joints_[k]);
-        matrices_[run.slot] = segment;
-    }
-    void assemble_run_bias(Run const& run, LoadsView const& loads) {
-        Biases segment = leaf_.bias(loads, run.body);
-        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)
-            segment = assemble(segment, leaf_.bias(loads, k), joints_[k], offsets_[k]);
-        biases_[run.slot] = segment;
-    }
-    void disassemble_run(Run const& run, LoadsView const& loads, AccelerationsView const& out) {
-        Vector<double, K> const first = forces_[run.body];
-        Vector<double, K> next = forces_[run.next];
-        for (std::int64_t k = run.body + run.count - 1; k >= run.body; --k) {
-            Vector<double, K> const force = k == run.body ? first : disassemble(joints_[k], offsets_[k], first, next);
-            leaf_.accelerate(loads, k, force, next, out);
-            if (out.joint_force) out.joint_force.store(k, force);
-            if (out.tip_force && group_.has_jointed_tip(k)) out.tip_force.store(k, next);
-            next = force;
-        }
-    }
-
-    void assemble_level(std::vector<Merge> const& level) {
-        executor_.for_each(count(level), [&](std::int64_t i) {
-            Merge const& m = level[i];
-            matrices_[m.slot] = assemble(matrices_[m.inboard], matrices_[m.outboard], restricted(m.joint), joints_[m.joint]);
-        });
-    }
-    void assemble_level_bias(std::vector<Merge> const& level) {
-        executor_.for_each(count(level), [&](std::int64_t i) {
-            Merge const& m = level[i];
-            biases_[m.slot] = assemble(biases_[m.inboard], biases_[m.outboard], joints_[m.joint], offsets_[m.joint]);
-        });
-    }
-    void disassemble_level(std::vector<Merge> const& level) {
-        executor_.for_each(count(level), [&](std::int64_t i) {
-            Merge const& m = level[i];
-            forces_[m.joint] = disassemble(joints_[m.joint], offsets_[m.joint], forces_[m.first], forces_[m.next]);
-        });
+    template <class Item, class Action>
+    void over(std::vector<Item> const& items, Action const& action) {
+        executor_.for_each(static_cast<std::int64_t>(items.size()), [&](std::int64_t i) { action(items[static_cast<std::size_t>(i)]); });
     }
     template <class Action>
     void for_roots(Action const& action) {
-        executor_.for_each(count(schedule_.roots), [&](std::int64_t i) { action(schedule_.roots[i]); });
+        over(schedule_.roots, action);
         for (Root const& root : schedule_.top_roots) action(root);
-    }
-
-    /// Where base and tip hold a chain more than once nothing but rounding is left of a pivot: it is made to fail. What was there before:
-    /// the chain as it floats.
-    void refuse_redundant(Root const& root) {
-        double constexpr lost = 0x1p-33;  // fewer than six digits would be left
-        auto const check = [&](Symmetric<double, K>& factor, Symmetric<double, K> const& floating, int restricted) {
-            for (int i = 0; i < restricted; ++i)
-                if (1 / factor(i, i) < lost * floating(i, i)) factor(i, i) = std::numeric_limits<double>::quiet_NaN();
-        };
-        check(joints_[root.next].factor, matrices_[root.slot].z22, restricted(root.next));
-        check(joints_[root.first].factor, matrices_[root.slot].z11, restricted(root.first));
     }
 
     /// One collective: the units of chains that several ranks share, to all ranks.
@@ -171,39 +112,20 @@ class TreeSolver final : public ChainSolver {
         for (std::int64_t k = 0; k < static_cast<std::int64_t>(joints_.size()); ++k) {
             if (k == schedule_.halo || k == schedule_.none) continue;
             for (int i = 0; i < restricted(k); ++i)
-                if (double const p = joints_[k].factor(i, i); !(p > 0) || !std::isfinite(p)) fail(k);
+                if (double const p = joints_[k].factor(i, i); !(p > 0) || !std::isfinite(p))
+                    refuse_indefinite(group_, communicator_.rank(), k);
         }
-    }
-    [[noreturn]] void fail(std::int64_t joint) const {
-        std::int64_t chain, body;
-        if (joint < schedule_.bodies) {
-            std::int64_t const global = group_.partition.first_of_rank[communicator_.rank()] + joint;
-            chain = group_.partition.chain_of(global);
-            body = global - group_.partition.first_of_chain[chain];
-        } else if (joint < schedule_.first_top_joint()) {
-            chain = schedule_.tip_chain[joint - schedule_.first_tip()];
-            body = group_.partition.trees[chain].bodies;
-        } else {
-            chain = schedule_.top_chain_of_joint[joint - schedule_.first_top_joint()];
-            body = schedule_.top_body_of_joint[joint - schedule_.first_top_joint()];
-        }
-        bool const tip = body == group_.partition.trees[chain].bodies;
-        throw ComputationError(
-            "the matrix of a joint is not positive definite (chain " + group_.name[chain] +
-            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
-            "): masses, inertias or positions there are extreme or not finite" +
-            (group_.partition.jointed_tip[chain] ? ", or base and tip hold the chain more than once (stretched straight?)" : ""));
     }
 
     ChainGroup const& group_;
     Schedule const& schedule_;
     Executor const& executor_;
     Communicator const& communicator_;
-    Leaf leaf_;
     std::vector<Matrices> matrices_;
     std::vector<Biases> biases_;
     std::vector<JointMatrix<double, K>> joints_;
     std::vector<Vector<double, K>> offsets_, forces_;
+    Sweeps sweeps_;
     SolverReport report_;
 };
 

@@ -4,13 +4,16 @@
 #include <limits>
 
 #include "chain/gather.hpp"
+#include "cuda/solver.hpp"
 #include "error.hpp"
 
 namespace catena {
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (asked == Backend::cuda || asked == Backend::cuda_levels)
-        throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments or openmp)");
+    if (asked == Backend::cuda_levels)
+        throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments, openmp or cuda)");
+    if (asked == Backend::cuda && !cuda::why_not().empty())
+        throw InputError(cuda::why_not(), "solver.backend: cuda", "use auto, or another backend");
     if (scene.solver.gpu_levels != "auto") throw not_in_this_version("solver.gpu_levels: " + scene.solver.gpu_levels);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
@@ -30,7 +33,8 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     executor_ = backend_ == Backend::openmp ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
     groups_ = make_groups(scene, axes, scene.solver.handles, backend_ == Backend::serial, communicator);
     for (auto const& group : groups_) {
-        auto solver = make_tree_solver(*group, *executor_, communicator);
+        auto solver =
+            backend_ == Backend::cuda ? cuda::make_tree_solver(*group, communicator) : make_tree_solver(*group, *executor_, communicator);
         if (group->beads) {
             absolute_.push_back(make_bead_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         } else if (group->linked) {

@@ -60,7 +60,7 @@ TEST(CommandLine, LaterCommandsAndOptionsSaySo) {
                                                                                        {"report", "--suite", "stability"},
                                                                                        {"bench", "figures"},
                                                                                        {"solve", "s.yaml", "--backend", "cuda-levels"},
-                                                                                       {"bench", "solve", "--backend", "cuda"},
+                                                                                       {"bench", "solve", "--backend", "cuda-levels"},
                                                                                        {"run", "s.yaml", "--gpu-levels", "all"}})
         EXPECT_TRUE(refusal(words).starts_with("not in this version: ")) << refusal(words);
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cuda/solver.hpp"
 #include "dca/oracle/oracle.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
@@ -25,6 +26,7 @@ std::string name_of_variant(testing::TestParamInfo<Variant> const& info) {
 class Solver : public testing::TestWithParam<Variant> {
   protected:
     void SetUp() override {
+        if (GetParam().backend == Backend::cuda && !cuda::why_not().empty()) GTEST_SKIP() << "NOT RUN: " << cuda::why_not();
         if (GetParam().backend != Backend::openmp) return;
         try {
             openmp_executor(2);
@@ -205,7 +207,8 @@ TEST_P(Solver, ThirdPartyChains) {
 INSTANTIATE_TEST_SUITE_P(Backends, Solver,
                          testing::Values(Variant{Backend::serial, Handles::projected}, Variant{Backend::serial, Handles::full},
                                          Variant{Backend::segments, Handles::projected}, Variant{Backend::segments, Handles::full},
-                                         Variant{Backend::openmp, Handles::projected}, Variant{Backend::openmp, Handles::full}),
+                                         Variant{Backend::openmp, Handles::projected}, Variant{Backend::openmp, Handles::full},
+                                         Variant{Backend::cuda, Handles::projected}, Variant{Backend::cuda, Handles::full}),
                          name_of_variant);
 
 }  // namespace

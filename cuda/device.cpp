@@ -1,0 +1,28 @@
+#include <cuda_runtime_api.h>
+
+#include "cuda/owners.hpp"
+#include "cuda/solver.hpp"
+#include "error.hpp"
+
+namespace catena::cuda {
+
+std::string const& why_not() {
+    static std::string const reason = [] {
+        int devices = 0;
+        cudaError_t const status = cudaGetDeviceCount(&devices);
+        if (status != cudaSuccess) return std::string("no GPU can be used: ") + cudaGetErrorString(status);
+        return std::string(devices == 0 ? "there is no GPU" : "");
+    }();
+    return reason;
+}
+
+std::string device_name() {
+    int device = 0, driver = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    cudaDeviceProp properties;
+    check(cudaGetDeviceProperties(&properties, device), "say what it is");
+    check(cudaDriverGetVersion(&driver), "say its driver");
+    return std::string(properties.name) + ", CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 1000 / 10);
+}
+
+}  // namespace catena::cuda

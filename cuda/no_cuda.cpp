@@ -1,0 +1,16 @@
+#include "cuda/solver.hpp"
+#include "error.hpp"
+
+namespace catena::cuda {
+
+std::string const& why_not() {
+    static std::string const reason = "built without CUDA";
+    return reason;
+}
+std::string device_name() { throw ComputationError(why_not()); }
+
+std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&) {
+    throw InputError("built without CUDA", "solver.backend: cuda", "configure with the CUDA Toolkit, or use another backend");
+}
+
+}  // namespace catena::cuda

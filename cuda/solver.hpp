@@ -1,0 +1,19 @@
+// The tree solver on a GPU, behind the host's interface: configuration and loads go up, accelerations and forces come back.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "dca/solver.hpp"
+
+namespace catena::cuda {
+
+/// Empty where a GPU can be used, else why not ("built without CUDA", CUDA's own words). Asks once.
+std::string const& why_not();
+/// "NVIDIA H200, driver 13.0". Precondition: a GPU can be used.
+std::string device_name();
+
+/// The same tree and the same operations as make_tree_solver's. Throws InputError where no GPU can be used.
+std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&);
+
+}  // namespace catena::cuda

@@ -1,0 +1,28 @@
+#include "dca/solver.hpp"
+#include "error.hpp"
+
+namespace catena {
+
+void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
+    dca::Schedule const& schedule = group.schedule;
+    std::int64_t chain, body;
+    if (joint < schedule.bodies) {
+        std::int64_t const global = group.partition.first_of_rank[rank] + joint;
+        chain = group.partition.chain_of(global);
+        body = global - group.partition.first_of_chain[chain];
+    } else if (joint < schedule.first_top_joint()) {
+        chain = schedule.tip_chain[joint - schedule.first_tip()];
+        body = group.partition.trees[chain].bodies;
+    } else {
+        chain = schedule.top_chain_of_joint[joint - schedule.first_top_joint()];
+        body = schedule.top_body_of_joint[joint - schedule.first_top_joint()];
+    }
+    bool const tip = body == group.partition.trees[chain].bodies;
+    throw ComputationError(
+        "the matrix of a joint is not positive definite (chain " + group.name[chain] +
+        (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
+        "): masses, inertias or positions there are extreme or not finite" +
+        (group.partition.jointed_tip[chain] ? ", or base and tip hold the chain more than once (stretched straight?)" : ""));
+}
+
+}  // namespace catena
