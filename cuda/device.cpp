@@ -16,13 +16,17 @@ std::string const& why_not() {
     return reason;
 }
 
+std::string version() {
+    return std::to_string(CUDART_VERSION / 1000) + "." + std::to_string(CUDART_VERSION % 1000 / 10) + ", " +
+           (why_not().empty() ? device_name() : why_not());
+}
+
 std::string device_name() {
-    int device = 0, driver = 0;
+    int device = 0;
     check(cudaGetDevice(&device), "say which it is");
     cudaDeviceProp properties;
     check(cudaGetDeviceProperties(&properties, device), "say what it is");
-    check(cudaDriverGetVersion(&driver), "say its driver");
-    return std::string(properties.name) + ", CUDA " + std::to_string(driver / 1000) + "." + std::to_string(driver % 1000 / 10);
+    return properties.name;
 }
 
 }  // namespace catena::cuda

@@ -7,6 +7,7 @@ std::string const& why_not() {
     static std::string const reason = "built without CUDA";
     return reason;
 }
+std::string version() { return "none"; }
 std::string device_name() { throw ComputationError(why_not()); }
 
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&) {

@@ -10,7 +10,9 @@ namespace catena::cuda {
 
 /// Empty where a GPU can be used, else why not ("built without CUDA", CUDA's own words). Asks once.
 std::string const& why_not();
-/// "NVIDIA H200, driver 13.0". Precondition: a GPU can be used.
+/// "13.0, NVIDIA H200", "13.0, no GPU can be used: ..." or "none".
+std::string version();
+/// "NVIDIA H200". Precondition: a GPU can be used.
 std::string device_name();
 
 /// The same tree and the same operations as make_tree_solver's. Throws InputError where no GPU can be used.

@@ -9,7 +9,7 @@ usage: tests/run.sh [--quick] [--long] [--help]
 Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
-  cuda        the mathematics shared with GPUs compiles with nvcc, where there is one
+  cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests
   no-mpi      build without MPI, all tests
   minimal     build without any optional package, all tests
@@ -70,7 +70,7 @@ build() {
 }
 
 format() {
-    find src mpi cuda tests \( -name '*.hpp' -o -name '*.cpp' -o -name '*.cu' \) -print0 | xargs -0 "$VIRTUAL_ENV/bin/clang-format" --dry-run --Werror
+    find src mpi cuda tests \( -name '*.hpp' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh' \) -print0 | xargs -0 "$VIRTUAL_ENV/bin/clang-format" --dry-run --Werror
 }
 
 tidy() {
@@ -110,7 +110,7 @@ if [ $quick = yes ]; then finish; exit; fi
 if grep -q '^CATENA_NVCC:FILEPATH=/' build/release/CMakeCache.txt; then
     check cuda cmake --build --preset release --target catena_cuda || true
 else
-    printf '\n   LEFT OUT: no nvcc here, so nothing shows that the shared mathematics still compiles for GPUs\n'
+    printf '\n   LEFT OUT: no nvcc here, so nothing shows that the GPU's backend still compiles\n'
     summary+=("cuda                   left out, no nvcc")
 fi
 if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast; fi

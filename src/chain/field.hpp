@@ -41,8 +41,11 @@ class BasicField {
     explicit BasicField(std::int64_t size) : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_), Real(0)) {}
 
     std::int64_t size() const { return size_; }
-    FieldView<Real, D> view() { return {data_.data() + halo, pitch_, size_}; }
-    FieldView<Real const, D> view() const { return {data_.data() + halo, pitch_, size_}; }
+    /// Without origin where there is nothing.
+    FieldView<Real, D> view() { return data_.empty() ? FieldView<Real, D>{} : FieldView<Real, D>{data_.data() + halo, pitch_, size_}; }
+    FieldView<Real const, D> view() const {
+        return data_.empty() ? FieldView<Real const, D>{} : FieldView<Real const, D>{data_.data() + halo, pitch_, size_};
+    }
     Vector<Real, D> operator[](std::int64_t k) const { return view().load(k); }
     void set(std::int64_t k, Vector<Real, D> const& v) { view().store(k, v); }
 

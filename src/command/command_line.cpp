@@ -54,7 +54,7 @@ void add_common(CLI::App& command, Words& words) {
 void add_backend(CLI::App& command, Words& words) {
     command
         .add_option("--backend", words.common.backend,
-                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (the last two: not in this version)")
+                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (the last one: not in this version)")
         ->type_name("NAME");
 }
 void add_scene(CLI::App& command, Words& words) { command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name(""); }

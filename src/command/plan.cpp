@@ -4,6 +4,7 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "cuda/solver.hpp"
 #include "dca/segment.hpp"
 #include "integrate/chain_system.hpp"
 
@@ -114,7 +115,9 @@ std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system)
     if (!scene.forces.openmm) lines.emplace_back("OpenMM: forces.openmm is not in the scene");
     if (system.backend() != Backend::openmp) lines.emplace_back("threads: this backend has one a rank");
     if (system.communicator().size() == 1) lines.emplace_back("messages: there is one rank");
-    lines.emplace_back("GPU: not in this version");
+    if (system.backend() != Backend::cuda)
+        lines.emplace_back(
+            "GPU: " + (cuda::why_not().empty() ? "there is " + cuda::device_name() + "; ask for it by --backend cuda" : cuda::why_not()));
     return lines;
 }
 

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cuda/solver.hpp"
 #include "force/openmm_force.hpp"
 #include "io/output.hpp"
 #include "mpi/communicator.hpp"
@@ -21,7 +22,7 @@ nlohmann::ordered_json version_json() {
             {"openmp", CATENA_OPENMP},
             {"openmm", openmm_version()},
             {"hdf5", hdf5_version()},
-            {"cuda", "none"}};
+            {"cuda", cuda::version()}};
 }
 
 std::string version_text() {
