@@ -10,7 +10,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
-  asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests
+  asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests (1 to 3 ranks)
   no-mpi      build without MPI, all tests
   minimal     build without any optional package, all tests
   tidy        clang-tidy on the library's own sources, for 4 minutes at most (what was left out is named)
@@ -113,7 +113,7 @@ else
     printf '\n   LEFT OUT: no nvcc here, so nothing shows that the GPU's backend still compiles\n'
     summary+=("cuda                   left out, no nvcc")
 fi
-if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast; fi
+if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast -E 'ranks_[56]$'; fi  # these are slow under it
 if build no-mpi; then ctests no-mpi-tests --preset no-mpi; fi
 if build minimal; then ctests minimal-tests --preset minimal; fi
 
