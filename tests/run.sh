@@ -110,7 +110,7 @@ if [ $quick = yes ]; then finish; exit; fi
 if grep -q '^CATENA_NVCC:FILEPATH=/' build/release/CMakeCache.txt; then
     check cuda cmake --build --preset release --target catena_cuda || true
 else
-    printf '\n   LEFT OUT: no nvcc here, so nothing shows that the GPU's backend still compiles\n'
+    printf '\n   LEFT OUT: no nvcc here, so nothing shows that the backend for GPUs still compiles\n'
     summary+=("cuda                   left out, no nvcc")
 fi
 if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast -E 'ranks_[56]$'; fi  # these are slow under it
