@@ -154,15 +154,8 @@ class TreeSolver final : public ChainSolver {
 
     SolverReport report() const override {
         SolverReport r = report_;
-        r.directions = K;
-        r.ranks = communicator_.size();
-        for (dca::ChainTree const& tree : host_.partition.trees) {
-            r.run_length = std::max(r.run_length, tree.run_length);
-            r.depth = std::max(r.depth, tree.depth());
-        }
-        r.memory_bytes =
-            static_cast<std::int64_t>(matrices_.size() * (sizeof(typename Sweeps::Matrices) + sizeof(typename Sweeps::Biases)) +
-                                      joints_.size() * (sizeof(typename Sweeps::Joint) + 2 * sizeof(Vector<double, K>)));
+        add_tree(host_, communicator_, r);
+        r.memory_bytes = Sweeps::bytes(host_.schedule);
         return r;
     }
 

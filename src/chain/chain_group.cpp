@@ -36,7 +36,6 @@ Vec3 screw_of(JointType type, double pitch) {
     double const rate = type == JointType::helical ? std::hypot(1.0, pitch) : 1.0;
     return {{1 / rate, type == JointType::helical ? pitch / rate : 0.0, rate}};
 }
-bool slides(JointType type) { return type == JointType::prismatic || type == JointType::helical; }
 
 int restricted_directions(JointType type) {
     switch (type) {

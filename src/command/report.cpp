@@ -6,10 +6,10 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
-#include "command/first_rank.hpp"
 #include "command/picture.hpp"
 #include "command/version.hpp"
 #include "io/output.hpp"
+#include "mpi/first_rank.hpp"
 #include "report/hardware.hpp"
 #include "report/solver_errors.hpp"
 

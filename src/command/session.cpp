@@ -11,8 +11,8 @@
 #include <thread>
 
 #include "command/command_line.hpp"
-#include "command/first_rank.hpp"
 #include "io/output.hpp"
+#include "mpi/first_rank.hpp"
 #include "mpi/launcher.hpp"
 
 namespace catena::command {

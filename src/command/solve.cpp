@@ -8,11 +8,11 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
-#include "command/first_rank.hpp"
 #include "dca/oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
 #include "integrate/start_velocities.hpp"
+#include "mpi/first_rank.hpp"
 #include "report/solution.hpp"
 #include "report/timing.hpp"
 

@@ -97,6 +97,9 @@ class ChainSolver {
     virtual SolverReport report() const = 0;
 };
 
+/// Run length and depth of the group's largest tree, directions and ranks, into a report.
+void add_tree(ChainGroup const&, Communicator const&, SolverReport&);
+
 /// Throws what is wrong with a joint of the group's schedule on this rank: its matrix is not positive definite.
 [[noreturn]] void refuse_indefinite(ChainGroup const&, int rank, std::int64_t joint);
 

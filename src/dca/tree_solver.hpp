@@ -65,15 +65,9 @@ class TreeSolver final : public ChainSolver {
 
     SolverReport report() const override {
         SolverReport r = report_;
-        r.directions = K;
+        add_tree(group_, communicator_, r);
         r.threads = executor_.threads();
-        r.ranks = communicator_.size();
-        for (ChainTree const& tree : group_.partition.trees) {
-            r.run_length = std::max(r.run_length, tree.run_length);
-            r.depth = std::max(r.depth, tree.depth());
-        }
-        r.memory_bytes = static_cast<std::int64_t>(matrices_.size() * (sizeof(Matrices) + sizeof(Biases)) +
-                                                   joints_.size() * (sizeof(JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)));
+        r.memory_bytes = Sweeps::bytes(schedule_);
         return r;
     }
 

@@ -24,6 +24,11 @@ struct TreeSweeps {
     Directions* offsets = nullptr;
     Directions* forces = nullptr;
 
+    static std::int64_t bytes(Schedule const& schedule) {
+        return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
+               schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + 2 * sizeof(Directions));
+    }
+
     CATENA_HD void assemble_matrices(Run const& run) const {
         Matrices segment = leaf.matrix(run.body);
         for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)

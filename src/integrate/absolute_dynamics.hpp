@@ -2,6 +2,7 @@
 // them: every projection is a bias sweep of the divide-and-conquer solver, with impulses in the place of forces.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -35,6 +36,14 @@ struct PotentialEnergy {
 
 /// The larger of two; a NaN counts as the largest.
 inline double larger(double a, double b) { return b > a || b != b ? b : a; }
+
+/// A residual over the size of its terms.
+inline double relative(double difference, double terms) { return terms == 0 ? 0.0 : std::abs(difference) / terms; }
+
+/// A field over last bodies; absent where the group has no jointed tips.
+inline DirectionsView of_tips(ChainGroup const& group, DirectionsField& field) {
+    return group.has_tips() ? field.view() : DirectionsView{};
+}
 
 /// A named array of the state, `width` numbers a body.
 struct StateArray {

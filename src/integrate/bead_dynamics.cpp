@@ -3,6 +3,7 @@
 
 #include "error.hpp"
 #include "integrate/absolute_dynamics.hpp"
+#include "integrate/link_geometry.hpp"
 
 namespace catena {
 
@@ -83,7 +84,7 @@ class BeadDynamics final : public AbsoluteDynamics {
                                [&](std::int64_t k) { set_bias(k, has_link(k) ? excess(link(k), direction_[k], length(k)) : 0.0); });
             for (std::size_t i = 0; i < tip_length_.size(); ++i)
                 tip_bias_.view().origin[group_.tips[i].body] = excess(tip_link(i), tip_direction_[group_.tips[i].body], tip_length_[i]);
-            solver_->solve({{}, {}, {}, bias_.view(), tips(tip_bias_)}, {{}, change_.view(), {}, {}});
+            solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {{}, change_.view(), {}, {}});
             executor_.for_each(group_.size, [&](std::int64_t k) {
                 Vec3 const change = change_[k];
                 position_.set(k, position_[k] + change);
@@ -132,9 +133,10 @@ class BeadDynamics final : public AbsoluteDynamics {
 
     void evaluate() override {
         exchange_from_inboard(communicator_, group_, observed_.view());
-        executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, has_link(k) ? swing(k) : 0.0); });
+        executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, has_link(k) ? swing_of(k) : 0.0); });
         for (std::size_t i = 0; i < tip_length_.size(); ++i) tip_bias_.view().origin[group_.tips[i].body] = tip_swing(i);
-        solver_->solve({{}, force_.view(), {}, bias_.view(), tips(tip_bias_)}, {{}, change_.view(), joint_force_.view(), tips(tip_force_)});
+        solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
+                       {{}, change_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
     }
     BodyResults results() const override {
         BodyResults r;
@@ -169,7 +171,7 @@ class BeadDynamics final : public AbsoluteDynamics {
             if (!has_link(k)) continue;
             Vector<double, 4> const mine = terms[k], before = to_ground(k) ? Vector<double, 4>::zero() : terms.view().load(k - 1);
             Vec3 const across{{mine[0] - before[0], mine[1] - before[1], mine[2] - before[2]}};
-            worst = larger(worst, relative(dot(direction_[k], across) + swing(k), mine[3] + before[3] + swing(k)));
+            worst = larger(worst, relative(dot(direction_[k], across) + swing_of(k), mine[3] + before[3] + swing_of(k)));
         }
         return communicator_.max(worst);
     }
@@ -183,7 +185,6 @@ class BeadDynamics final : public AbsoluteDynamics {
     ChainSolver const& solver() const override { return *solver_; }
 
   private:
-    static double relative(double difference, double terms) { return terms == 0 ? 0.0 : std::abs(difference) / terms; }
     bool has_link(std::int64_t k) const { return k >= group_.size || group_.joint[k] == JointType::link; }
     bool to_ground(std::int64_t k) const { return k < group_.size && group_.is_first[k]; }
     Vec3 link(std::int64_t k) const {
@@ -194,17 +195,7 @@ class BeadDynamics final : public AbsoluteDynamics {
         bias_.view().origin[k] = value;  // the link's direction comes first; full handles' other directions stay 0
     }
     double length(std::int64_t k) const { return group_.length.view().at(k, 0); }
-    /// How far a link d is too long along its direction u at the step's start: the s with |d - s u| = length.
-    static double excess(Vec3 const& d, Vec3 const& u, double length) {
-        double const along = dot(d, u), e = dot(d, d) - length * length;
-        return e / (along + std::sqrt(std::max(along * along - e, 0.0)));
-    }
-    /// |v_rel, perpendicular|^2 / length (formulas: -c).
-    static double swing(Vec3 const& v, Vec3 const& u, double length) {
-        Vec3 const across = plus_scaled(v, -dot(v, u), u);
-        return dot(across, across) / length;
-    }
-    double swing(std::int64_t k) const {
+    double swing_of(std::int64_t k) const {
         Vec3 const v = observed_.view().load(k) - (to_ground(k) ? Vec3::zero() : observed_.view().load(k - 1));
         return swing(v, direction_[k], length(k));
     }
@@ -214,7 +205,6 @@ class BeadDynamics final : public AbsoluteDynamics {
         std::int64_t const k = group_.tips[i].body;
         return swing(observed_[k], tip_direction_[k], tip_length_[i]);
     }
-    DirectionsView tips(DirectionsField& field) { return group_.has_tips() ? field.view() : DirectionsView{}; }
     Vec3 outboard_force(std::int64_t k) const {
         if (group_.has_jointed_tip(k)) return tip_force_.view().load<1>(k)[0] * tip_direction_[k];
         return group_.is_last[k] ? Vec3::zero() : joint_force_.view().load<1>(k + 1)[0] * direction_.view().load(k + 1);

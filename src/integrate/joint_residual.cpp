@@ -8,8 +8,6 @@
 namespace catena {
 namespace {
 
-double relative(double difference, double terms) { return terms == 0 ? 0.0 : difference / terms; }
-
 struct BodyTerms {
     std::vector<Vec3> forces, moments;
     double moment_sizes = 0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment

@@ -3,25 +3,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/pose.hpp"
+
 namespace catena {
 namespace {
 
-bool slides(JointType type) { return type == JointType::prismatic || type == JointType::helical; }
 bool turns_about_axis(JointType type) { return type == JointType::revolute || slides(type); }
-
-/// X(q): of G in J.
-Quat turn_at(TipJoint const& tip, Vec3 const& screw) {
-    switch (tip.type) {
-        case JointType::spherical:
-            return normalized(Quat{tip.q[0], tip.q[1], tip.q[2], tip.q[3]});
-        case JointType::universal:
-            return from_axis_angle(tip.first_axis, tip.q[0]) * from_axis_angle(tip.axis, tip.q[1]);
-        case JointType::weld:
-            return Quat::identity();
-        default:
-            return from_axis_angle(tip.axis, screw[0] * screw[2] * tip.q[0]);
-    }
-}
 
 }  // namespace
 
@@ -30,9 +17,9 @@ JointedTips::JointedTips(ChainGroup const& group, BodyMotion const& start, doubl
         TipJoint const& joint = local.joint;
         Quat const orientation = as_quaternion(start.orientation[local.body]);
         Mat3 const body = to_matrix(orientation);
-        Vec3 const slide = (local.screw[1] * local.screw[2] * (slides(joint.type) ? joint.q[0] : 0.0)) * joint.axis;
-        Tip tip{&local, orientation * to_quaternion(joint.rotation) * turn_at(joint, local.screw),
-                start.origin[local.body] + body * (joint.translation + joint.rotation * slide), -group.r1[local.body],
+        scene::Pose const motion = scene::joint_motion(joint.type, joint.axis, joint.first_axis, joint.pitch, joint.q);  // of G in J
+        Tip tip{&local, orientation * to_quaternion(joint.rotation) * normalized(motion.orientation),
+                start.origin[local.body] + body * (joint.translation + joint.rotation * motion.origin), -group.r1[local.body],
                 dot(joint.first_axis, joint.axis)};
         tips_.push_back(tip);
     }

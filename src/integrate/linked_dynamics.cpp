@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrate/link_geometry.hpp"
 #include "integrate/rigid_dynamics.hpp"
 
 namespace catena {
@@ -89,7 +90,7 @@ class LinkedDynamics final : public RigidDynamics {
     void set_velocity_biases() override {
         executor_.for_each(group_.size, [&](std::int64_t k) { observed_end_.set(k, handle_velocity(k, group_.r2[k])); });
         exchange_from_inboard(communicator_, group_, observed_end_.view());
-        executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, {{has_link(k) ? swing(k) : 0.0, 0, 0}}); });
+        executor_.for_each(group_.size, [&](std::int64_t k) { set_bias(k, {{has_link(k) ? swing_of(k) : 0.0, 0, 0}}); });
         for (std::size_t i = 0; i < tip_length_.size(); ++i) {
             std::int64_t const k = group_.tips[i].body;
             set_tip_bias(k, {{swing(-observed_end_[k], tip_direction_[k], tip_length_[i]), 0, 0}});
@@ -98,7 +99,7 @@ class LinkedDynamics final : public RigidDynamics {
     Vec3 joint_force(std::int64_t k) const override { return joint_force_.view().load<1>(k)[0] * direction_.view().load(k); }
     Vec3 tip_force(std::int64_t k) const override { return tip_force_.view().load<1>(k)[0] * tip_direction_[k]; }
     double closing(std::int64_t k, Vec3 const& difference, double terms) const override {
-        return relative(dot(direction_[k], difference) + swing(k), terms + swing(k));
+        return relative(dot(direction_[k], difference) + swing_of(k), terms + swing_of(k));
     }
     double tip_closing(std::int64_t k, Vec3 const& difference, double terms) const override {
         double const s = std::as_const(tip_bias_).view().load<1>(k)[0];
@@ -114,17 +115,7 @@ class LinkedDynamics final : public RigidDynamics {
         if (!group_.is_first[k]) return end - outboard_point_.view().load(k - 1);
         return end - anchor_[group_.partition.chain_of(group_.first_of_rank()[communicator_.rank()] + k)];
     }
-    /// How far a link d is too long along its direction u at the step's start: the s with |d - s u| = length.
-    static double excess(Vec3 const& d, Vec3 const& u, double length) {
-        double const along = dot(d, u), e = dot(d, d) - length * length;
-        return e / (along + std::sqrt(std::max(along * along - e, 0.0)));
-    }
-    /// |v_rel, perpendicular|^2 / length (formulas: -c).
-    static double swing(Vec3 const& v, Vec3 const& u, double length) {
-        Vec3 const across = plus_scaled(v, -dot(v, u), u);
-        return dot(across, across) / length;
-    }
-    double swing(std::int64_t k) const {
+    double swing_of(std::int64_t k) const {
         Vec3 const before = group_.is_first[k] ? Vec3::zero() : observed_end_.view().load(k - 1);
         return swing(handle_velocity(k, group_.r1[k]) - before, direction_[k], length(k));
     }

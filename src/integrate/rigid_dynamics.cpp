@@ -95,7 +95,7 @@ void RigidDynamics::drift(double h, int sweeps) {
         if (sweep == sweeps) break;
         set_outboard_points(trial_position_, trial_orientation_);
         set_openings(1.0 / h, trial_position_, trial_orientation_);
-        solver_->solve({{}, {}, {}, bias_.view(), tips(tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
+        solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
         executor_.for_each(group_.size, [&](std::int64_t k) {
             velocity_.set(k, velocity_[k] + acceleration_[k]);
             omega_.set(k, omega_[k] + alpha_[k]);
@@ -156,8 +156,8 @@ void RigidDynamics::evaluate() {
         momentum_.set(k, torque_[k] - cross(w, as_symmetric(group_.inertia[k]) * w));
     });
     set_velocity_biases();
-    solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view(), tips(tip_bias_)},
-                   {alpha_.view(), acceleration_.view(), joint_force_.view(), tips(tip_force_)});
+    solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)},
+                   {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
 }
 
 BodyResults RigidDynamics::results() const {

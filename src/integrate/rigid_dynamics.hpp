@@ -56,7 +56,6 @@ class RigidDynamics : public AbsoluteDynamics {
     virtual double closing(std::int64_t k, Vec3 const& difference, double terms) const = 0;
     virtual double tip_closing(std::int64_t k, Vec3 const& difference, double terms) const = 0;
 
-    static double relative(double difference, double terms) { return terms == 0 ? 0.0 : std::abs(difference) / terms; }
     static Mat3 turn(Field<4> const& orientation, std::int64_t k) { return to_matrix(as_quaternion(orientation.view().load(k))); }
     bool is_bead(std::int64_t k) const { return principal_[static_cast<std::size_t>(k)].moments[0] == 0; }
     Vec3 outboard_force(std::int64_t k) const;
@@ -92,7 +91,6 @@ class RigidDynamics : public AbsoluteDynamics {
     void add_noise(std::int64_t k, double c, double spread, std::uint64_t seed, std::uint64_t step, NoiseStage linear, NoiseStage angular);
     HandleAcceleration handle_acceleration(std::int64_t k, Vec3 const& r) const;
     double newton_euler_residual(std::int64_t k) const;
-    DirectionsView tips(DirectionsField& field) { return group_.has_tips() ? field.view() : DirectionsView{}; }
 };
 
 }  // namespace catena

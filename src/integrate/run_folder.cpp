@@ -4,6 +4,8 @@
 
 #include "error.hpp"
 
+#include "mpi/first_rank.hpp"
+
 namespace catena {
 namespace fs = std::filesystem;
 namespace {
@@ -20,7 +22,7 @@ char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", 
 
 RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
     : scene_(scene), communicator_(communicator), root_(communicator.rank() == 0), first_step_(first_step), folder_(options.output) {
-    on_root(communicator, [&] {
+    on_first_rank(communicator, [&] {
         bool const exists = fs::exists(folder_);
         std::error_code ignored;
         bool const empty = !exists || fs::is_empty(folder_, ignored);
@@ -40,7 +42,7 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
 }
 
 void RunFolder::open(Topology const& topology, Frame const& first, std::vector<std::string> const& columns) {
-    on_root(communicator_, [&] {
+    on_first_rank(communicator_, [&] {
         // The frame of the checkpoint's step is written anew: it may have been no frame of the run before.
         std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_ - 1) : std::nullopt;
         if (!appends_) topology_files_ = write_topology(folder_, topology, first);

@@ -12,23 +12,6 @@
 
 namespace catena {
 
-/// Runs `action` on rank 0 alone; an InputError there is thrown on every rank. Collective.
-template <class Action>
-void on_root(Communicator const& communicator, Action const& action) {
-    std::string error;
-    if (communicator.rank() == 0) try {
-            action();
-        } catch (InputError const& e) {
-            error = e.what();
-        }
-    auto length = static_cast<std::int64_t>(error.size());
-    communicator.broadcast(std::as_writable_bytes(std::span(&length, 1)));
-    if (length == 0) return;
-    error.resize(static_cast<std::size_t>(length));
-    communicator.broadcast(std::as_writable_bytes(std::span(error)));
-    throw InputError(error);
-}
-
 class RunFolder {
   public:
     /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Collective; throws InputError on every rank.

@@ -9,6 +9,7 @@
 #include "integrate/sites.hpp"
 #include "integrate/start_velocities.hpp"
 #include "integrate/stepper.hpp"
+#include "mpi/first_rank.hpp"
 
 namespace catena {
 namespace {
@@ -173,7 +174,7 @@ class Run {
 
     std::int64_t restore() {
         Checkpoint c;
-        on_root(communicator_, [&] {
+        on_first_rank(communicator_, [&] {
             c = read_checkpoint(options_.restart);
             if (c.scene_hash != scene_.hash)
                 throw InputError("the checkpoint belongs to another scene", options_.restart,

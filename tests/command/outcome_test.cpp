@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "command/describe.hpp"
-#include "command/first_rank.hpp"
+#include "mpi/first_rank.hpp"
 #include "command/session.hpp"
 #include "command/text.hpp"
 #include "integrate/chain_system.hpp"

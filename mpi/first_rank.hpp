@@ -8,7 +8,7 @@
 #include "error.hpp"
 #include "mpi/communicator.hpp"
 
-namespace catena::command {
+namespace catena {
 
 /// A failure that every rank knows of: all of them end in good order, with status 1.
 class SharedError : public ComputationError {
@@ -41,4 +41,4 @@ void on_first_rank(Communicator const& communicator, Action const& action) {
     throw SharedError(text);
 }
 
-}  // namespace catena::command
+}  // namespace catena

@@ -1,7 +1,18 @@
+#include <algorithm>
+
 #include "dca/solver.hpp"
 #include "error.hpp"
 
 namespace catena {
+
+void add_tree(ChainGroup const& group, Communicator const& communicator, SolverReport& report) {
+    report.directions = group.directions;
+    report.ranks = communicator.size();
+    for (dca::ChainTree const& tree : group.partition.trees) {
+        report.run_length = std::max(report.run_length, tree.run_length);
+        report.depth = std::max(report.depth, tree.depth());
+    }
+}
 
 void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     dca::Schedule const& schedule = group.schedule;
