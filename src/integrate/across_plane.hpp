@@ -16,7 +16,7 @@ struct NeededWrench {
 };
 
 /// The wrench of every joint on its outboard body, about the joint, ground axes: sums of `needed` from the tip on, unit by unit of the
-/// canonical tree. Precondition: free tips. Collective.
+/// canonical tree, as if every tip were free. Collective.
 std::vector<std::pair<Vec3, Vec3>> sums_from_tip(ChainGroup const&, Communicator const&, std::vector<NeededWrench> const& needed);
 
 }  // namespace catena

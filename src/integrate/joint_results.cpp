@@ -22,7 +22,7 @@ BodyResults JointDynamics::results() const {
         Vec3 const t = to_ground * torque, v = to_ground * force;
         r.joint_force.push_back({{t[0], t[1], t[2], v[0], v[1], v[2]}});
     }
-    if (group_.planar && !group_.has_tips()) add_across_plane(r);
+    if (group_.planar) add_across_plane(r);
     for (LocalTip const& tip : group_.tips) {
         auto const [force_origin, force_pitch] = tip_force_.view();
         double f[6] = {0, 0, 0, 0, 0, 0};
@@ -38,7 +38,8 @@ BodyResults JointDynamics::results() const {
     return r;
 }
 
-/// Force along the axis and torque across it, of planar chains. With a jointed tip the ground holds them twice: they stay 0.
+/// Force along the axis and torque across it, of planar chains. Where a tip is jointed the ground holds the chain across its plane
+/// twice: they stay 0.
 void JointDynamics::add_across_plane(BodyResults& r) const {
     std::vector<NeededWrench> needed;
     for (std::int64_t k = 0; k < group_.size; ++k) {
@@ -53,13 +54,16 @@ void JointDynamics::add_across_plane(BodyResults& r) const {
         needed.push_back({force, torque + cross(to_ground * -group_.r1[k], force), to_next});
     }
     auto const sums = sums_from_tip(group_, communicator_, needed);
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-        auto const body = static_cast<std::int64_t>(k);
-        Vec3 const axis = to_matrix(as_quaternion(motion_.orientation[body])) * as_matrix(group_.axes1[body]).column(2);
-        Vec3 const force = dot(axis, sums[k].first) * axis, torque = plus_scaled(sums[k].second, -dot(axis, sums[k].second), axis);
-        for (int i = 0; i < 3; ++i) {
-            r.joint_force[k][i] += torque[i];
-            r.joint_force[k][3 + i] += force[i];
+    for (dca::Piece const& piece : group_.pieces) {
+        if (group_.partition.jointed_tip[piece.chain]) continue;
+        for (std::int64_t k = piece.local; k < piece.local + piece.count; ++k) {
+            Vec3 const axis = to_matrix(as_quaternion(motion_.orientation[k])) * as_matrix(group_.axes1[k]).column(2);
+            auto const& [needed_force, needed_torque] = sums[k];
+            Vec3 const force = dot(axis, needed_force) * axis, torque = plus_scaled(needed_torque, -dot(axis, needed_torque), axis);
+            for (int i = 0; i < 3; ++i) {
+                r.joint_force[k][i] += torque[i];
+                r.joint_force[k][3 + i] += force[i];
+            }
         }
     }
 }

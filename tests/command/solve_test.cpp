@@ -101,6 +101,25 @@ TEST(Solve, TensionIsPositiveWhereALinkPulls) {
     }
 }
 
+/// Of two planar chains under gravity across their plane, one held at both ends: the other's joints carry its weight all the same.
+TEST(Solve, AChainHeldAtBothEndsLeavesTheForcesOfOthersAcrossThePlane) {
+    TemporaryFolder const folder;
+    std::string const bar = "{mass: 2, com: [0.5, 0, 0], inertia: [0.1, 0.2, 0.2], joint: {type: planar, axis: [0, 0, 1]",
+                      free_chain =
+                          "  - {name: free, base: fixed, bodies: [" + bar + "}}, " + bar + ", translation: [1, 0, 0], q: 0.3}}]}\n",
+                      head = "units: si\nforces: {gravity: [0, -9.81, -2]}\nchains:\n";
+    std::ofstream(folder / "one.yaml") << head << free_chain;
+    std::ofstream(folder / "two.yaml")
+        << head << free_chain << "  - {name: held, base: fixed, bodies: [" << bar << ", q: 1.5707963267948966}}, " << bar
+        << ", translation: [1, 0, 0], q: -1.5707963267948966}}, " << bar
+        << ", translation: [1, 0, 0], q: -1.5707963267948966}}], tip: {joint: {type: planar, axis: [0, 0, 1], "
+           "translation: [1, 0, 0], anchor: [1, 0, 0]}}}\n";
+    Json const one = solved({folder / "one.yaml"})["joint_forces"], two = solved({folder / "two.yaml"})["joint_forces"];
+    for (std::size_t k = 0; k < 2; ++k) EXPECT_EQ(one[k], two[k]) << k;
+    EXPECT_NEAR(two[0][5].get<double>(), 8.0, 1e-13);  // both bars' weight along the axis
+    EXPECT_EQ(two[2][5].get<double>(), 0.0);           // held twice: not determined
+}
+
 TEST(Solve, ArraysEndAtTenThousandBodies) {
     EXPECT_EQ(solved({input("random-link.yaml"), "--set", small + "10000"})["bead_accelerations"].size(), 10000U);
     Json const larger = solved({input("random-link.yaml"), "--set", small + "10001"});
