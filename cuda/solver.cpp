@@ -1,7 +1,5 @@
 #include "cuda/solver.hpp"
 
-#include "error.hpp"
-
 namespace catena::cuda {
 
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Communicator const&);
@@ -12,7 +10,6 @@ template <int K>
 std::unique_ptr<ChainSolver> make_sliding_solver(ChainGroup const&, Communicator const&);
 
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Communicator const& communicator) {
-    if (!why_not().empty()) throw InputError(why_not(), "solver.backend: cuda", "use another backend on this machine");
     if (group.beads) return make_bead_solver(group, communicator);
     if (group.axes == Axes::world) return make_absolute_solver(group, communicator);
     switch (group.directions) {

@@ -103,7 +103,9 @@ class TreeSolver final : public ChainSolver {
           joint_force_(group.size + 1),
           tip_force_(group.has_tips() ? group.size : 0),
           sweeps_{Leaf(group_.view()), group_.restricted(), matrices_.data(), biases_.data(),
-                  joints_.data(),      offsets_.data(),     forces_.data()} {}
+                  joints_.data(),      offsets_.data(),     forces_.data()} {
+        check(cudaDeviceSynchronize(), "take the model");  // which went up on another stream
+    }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
         auto const start = now();
@@ -182,7 +184,7 @@ class TreeSolver final : public ChainSolver {
     }
     /// `more`: joints after the last body.
     ConstDirectionsView up(ConstDirectionsView const& host, DeviceField<K> const& device, std::int64_t more) const {
-        if (!host) return {};
+        if (!host || host_.size == 0) return {};
         View<K> const to = device.view();
         check(cudaMemcpy2DAsync(to.origin, static_cast<std::size_t>(to.pitch) * sizeof(double), host.origin,
                                 static_cast<std::size_t>(host.pitch) * sizeof(double),
@@ -191,6 +193,7 @@ class TreeSolver final : public ChainSolver {
         return {to.origin, to.pitch};
     }
     void down(DirectionsView const& host, DeviceField<K> const& device) const {
+        if (host_.size == 0) return;
         View<K> const from = device.view();
         check(cudaMemcpy2DAsync(host.origin, static_cast<std::size_t>(host.pitch) * sizeof(double), from.origin,
                                 static_cast<std::size_t>(from.pitch) * sizeof(double),

@@ -17,6 +17,7 @@ class Communicator {
     virtual int rank() const = 0;
     virtual int size() const = 0;
     virtual int ranks_on_host() const = 0;
+    virtual int rank_on_host() const = 0;
 
     /// Every rank gets the blocks of all ranks, one after the other in rank order. `bytes_of_rank[r]`: length of rank r's block, known to
     /// all.

@@ -84,13 +84,17 @@ MpiHandle duplicate_of_world() {
     return MpiHandle(handle);
 }
 
-int size_of_host(MPI_Comm world) {
+struct OnHost {
+    int rank = 0, ranks = 1;
+};
+OnHost place_on_host(MPI_Comm world) {
     MPI_Comm host = MPI_COMM_NULL;
     check(MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
     MpiHandle const owner(host);
-    int size = 0;
-    check(MPI_Comm_size(owner, &size), "MPI_Comm_size");
-    return size;
+    OnHost place;
+    check(MPI_Comm_rank(owner, &place.rank), "MPI_Comm_rank");
+    check(MPI_Comm_size(owner, &place.ranks), "MPI_Comm_size");
+    return place;
 }
 
 // A double as an integer of the same order, NaN above all.
@@ -107,12 +111,13 @@ class MpiCommunicator final : public Communicator {
         : library_(argc, argv), world_(duplicate_of_world()), largest_message_(static_cast<std::size_t>(largest_message)) {
         check(MPI_Comm_rank(world_, &rank_), "MPI_Comm_rank");
         check(MPI_Comm_size(world_, &size_), "MPI_Comm_size");
-        ranks_on_host_ = size_of_host(world_);
+        on_host_ = place_on_host(world_);
     }
 
     int rank() const override { return rank_; }
     int size() const override { return size_; }
-    int ranks_on_host() const override { return ranks_on_host_; }
+    int ranks_on_host() const override { return on_host_.ranks; }
+    int rank_on_host() const override { return on_host_.rank; }
     std::int64_t rounds() const override { return rounds_; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
@@ -251,7 +256,8 @@ class MpiCommunicator final : public Communicator {
     MpiLibrary library_;  // before world_: MPI ends after its communicators
     MpiHandle world_;
     std::size_t largest_message_;
-    int rank_ = 0, size_ = 1, ranks_on_host_ = 1;
+    int rank_ = 0, size_ = 1;
+    OnHost on_host_;
     mutable std::int64_t rounds_ = 0;
 };
 

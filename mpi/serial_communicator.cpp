@@ -15,6 +15,7 @@ class SerialCommunicator final : public Communicator {
     int rank() const override { return 0; }
     int size() const override { return 1; }
     int ranks_on_host() const override { return 1; }
+    int rank_on_host() const override { return 0; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override {

@@ -8,13 +8,24 @@
 #include "error.hpp"
 
 namespace catena {
+namespace {
+
+/// All ranks or none: one that stops alone would leave the others waiting.
+void require_gpu(Communicator const& communicator) {
+    std::string const& why_not = cuda::why_not();
+    if (communicator.max(why_not.empty() ? 0 : 1) == 0) return cuda::choose_device(communicator);
+    throw InputError(why_not.empty() ? "another rank has no GPU that can be used" : why_not, "solver.backend: cuda",
+                     "use auto, another backend, or a build with CUDA on a machine with a GPU");
+}
+
+}  // namespace
+
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
     if (asked == Backend::cuda_levels)
         throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments, openmp or cuda)");
-    if (asked == Backend::cuda && !cuda::why_not().empty())
-        throw InputError(cuda::why_not(), "solver.backend: cuda", "use auto, or another backend");
     if (scene.solver.gpu_levels != "auto") throw not_in_this_version("solver.gpu_levels: " + scene.solver.gpu_levels);
+    if (asked == Backend::cuda) require_gpu(communicator);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
@@ -30,7 +41,9 @@ int choose_threads(Scene const& scene, Communicator const& communicator) {
 
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
     : scene_(scene), communicator_(communicator), backend_(choose_backend(scene, communicator)) {
-    executor_ = backend_ == Backend::openmp ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
+    // What the GPU does not do runs on all the host's threads.
+    bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda && openmp_is_built());
+    executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
     groups_ = make_groups(scene, axes, scene.solver.handles, backend_ == Backend::serial, communicator);
     for (auto const& group : groups_) {
         auto solver =

@@ -13,7 +13,8 @@
 
 namespace catena {
 
-/// What `auto` becomes. Throws "not in this version" for backends of later versions.
+/// What `auto` becomes. Throws "not in this version" for backends of later versions, and where `cuda` is asked for and some rank has no
+/// GPU. Collective.
 Backend choose_backend(Scene const&, Communicator const&);
 /// Threads of the openmp backend on this rank: solver.threads, else the host's cores over its ranks.
 int choose_threads(Scene const&, Communicator const&);
@@ -57,8 +58,12 @@ class ChainSystem {
     Accelerations accelerations();
     /// OpenMM's forces of the last evaluation alone. Collective.
     std::vector<Vec3> bead_forces() const;
+    struct JointForces {
+        std::vector<Vector<double, 6>> of_bodies;
+        std::vector<TipForce> of_tips;
+    };
     /// The joint forces alone. Collective.
-    std::vector<Vector<double, 6>> joint_forces();
+    JointForces joint_forces();
 
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;

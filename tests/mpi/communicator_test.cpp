@@ -62,6 +62,7 @@ TEST_P(CommunicatorTest, RanksAreNumberedAndShareThisHost) {
     EXPECT_LT(ranks().rank(), ranks().size());
     EXPECT_EQ(ranks().size(), world().size());
     EXPECT_EQ(ranks().ranks_on_host(), ranks().size());
+    EXPECT_EQ(ranks().rank_on_host(), ranks().rank());  // they are all here
     EXPECT_EQ(ranks().size(), launch_environment().size);
 }
 

@@ -1,0 +1,15 @@
+#include "cuda/kernel_image.hpp"
+
+namespace catena::cuda {
+namespace {
+
+__global__ void nothing() {}
+
+}  // namespace
+
+cudaError_t status_of_kernel_image() {
+    cudaFuncAttributes attributes;
+    return cudaFuncGetAttributes(&attributes, nothing);
+}
+
+}  // namespace catena::cuda
