@@ -89,7 +89,10 @@ std::vector<BodyResults> ChainSystem::results() const {
     return all;
 }
 
-std::vector<Vector<double, 6>> ChainSystem::joint_forces() { return joint_forces(results()); }
+ChainSystem::JointForces ChainSystem::joint_forces() {
+    std::vector<BodyResults> const found = results();
+    return {joint_forces(found), tip_forces(found)};
+}
 
 std::vector<Vector<double, 6>> ChainSystem::joint_forces(std::vector<BodyResults> const& results) const {
     std::vector<double> all(communicator_.rank() == 0 ? static_cast<std::size_t>(6 * scene_.bodies()) : 0);

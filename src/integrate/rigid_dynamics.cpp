@@ -1,6 +1,5 @@
 #include "integrate/rigid_dynamics.hpp"
 
-#define EIGEN_DONT_PARALLELIZE  // threads are the executor's
 #include <Eigen/Eigenvalues>
 #include <cmath>
 

@@ -110,7 +110,11 @@ class Run {
         f.positions = sites_.positions(s);
         if (scene_.output.velocities) f.velocities = sites_.velocities(s);
         f.orientations = sites_.orientations(s);
-        if (scene_.output.joint_forces) f.joint_forces = sites_.joint_forces(system_.joint_forces());
+        if (scene_.output.joint_forces) {
+            auto const [of_bodies, of_tips] = system_.joint_forces();
+            f.joint_forces = sites_.joint_forces(of_bodies);
+            for (TipForce const& tip : of_tips) f.tip_forces.push_back(tip.wrench);
+        }
         return f;
     }
 

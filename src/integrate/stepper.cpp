@@ -55,7 +55,8 @@ class JointStepper final : public Stepper {
     }
     void restore(Checkpoint const& c) override {
         for (JointState& state : system_.joint_states()) state.time = static_cast<double>(c.step) * h_;
-        corrections_ = static_cast<int>(c.integers.at("corrections_of_tips"));
+        if (auto const kept = c.integers.find("corrections_of_tips"); kept != c.integers.end())
+            corrections_ = static_cast<int>(kept->second);
         std::vector<JointRates>* const carried = integrator_->carried();
         for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.distribute_rates(i, c.arrays, (*carried)[i]);
         integrator_->restored();

@@ -29,6 +29,7 @@ struct Topology {
     std::vector<std::string> residue;  // three-letter name of each site; bodies: "BDY"
     std::vector<double> mass;
     std::vector<std::int64_t> bodies;  // a rigid body's site, or the first of those it carries
+    std::vector<std::int64_t> tips;    // chains whose last body is on a joint to the ground
     std::optional<Vec3> box;
     bool si = false;  // units stay the user's: no unit attributes are written but "m", "s", ...
 };
@@ -40,7 +41,8 @@ struct Frame {
     std::vector<Vec3> velocities;    // empty: not written
     std::vector<Quat> orientations;  // of the topology's bodies, W
     std::vector<Vector<double, 6>>
-        joint_forces;  // [torque, force] on each site at its inboard joint (on a body's first), W; empty: not written
+        joint_forces,  // [torque, force] on each site at its inboard joint (on a body's first), W; empty: not written
+        tip_forces;    // the same at each of the topology's tips, on the last body
 };
 
 /// H5MD 1.1 file for MDAnalysis and others.

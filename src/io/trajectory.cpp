@@ -58,7 +58,8 @@ class H5mdWriter final : public TrajectoryWriter {
         if (contents_.velocities) series_.velocity.put(place(), frames_, frame.velocities.data());
         if (contents_.periodic) series_.edges.put(place(), frames_, box_.data);
         if (!contents_.bodies.empty()) series_.orientation.put(place(), frames_, frame.orientations.data());
-        if (contents_.joint_forces) write_joint_forces(frame);
+        if (contents_.joint_forces) put_wrenches(frame.joint_forces, series_.torque, series_.force);
+        if (series_.tip_force) put_wrenches(frame.tip_forces, series_.tip_torque, series_.tip_force);
         series_.time.put(place(), frames_, &frame.time);
         series_.step.put(place(), frames_, &frame.step);
         ++frames_;
@@ -127,7 +128,8 @@ class H5mdWriter final : public TrajectoryWriter {
         if (!file_) throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
         if (frame.positions.size() != contents_.sites || !fits(frame.velocities.size(), contents_.velocities, contents_.sites) ||
             !fits(frame.orientations.size(), true, contents_.bodies.size()) ||
-            !fits(frame.joint_forces.size(), contents_.joint_forces, contents_.sites))
+            !fits(frame.joint_forces.size(), contents_.joint_forces, contents_.sites) ||
+            !fits(frame.tip_forces.size(), contents_.joint_forces, contents_.tips))
             throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(frame.step) +
                                    "): the frame's arrays do not fit the topology");
         if (frames_ > 0 && frame.step <= last_step_)
@@ -135,14 +137,14 @@ class H5mdWriter final : public TrajectoryWriter {
                                    "): its last frame is already of step " + std::to_string(last_step_));
     }
 
-    void write_joint_forces(Frame const& frame) {
+    void put_wrenches(std::vector<Vector<double, 6>> const& wrenches, Series& torques, Series& forces) {
         std::vector<double> torque, force;
-        for (Vector<double, 6> const& wrench : frame.joint_forces) {
+        for (Vector<double, 6> const& wrench : wrenches) {
             torque.insert(torque.end(), wrench.data, wrench.data + 3);
             force.insert(force.end(), wrench.data + 3, wrench.data + 6);
         }
-        series_.torque.put(place(), frames_, torque.data());
-        series_.force.put(place(), frames_, force.data());
+        torques.put(place(), frames_, torque.data());
+        forces.put(place(), frames_, force.data());
     }
 
     std::string name_;

@@ -83,6 +83,11 @@ class Builder {
         std::string const frame = "W, on each body at its inboard joint; at the first of its sites";
         add_element(at(own), "joint_torque", {contents_.sites, 3}, units_.torque, series_.torque, frame);
         add_element(at(own), "joint_force", {contents_.sites, 3}, units_.force, series_.force, frame);
+        if (contents_.tips == 0) return;
+        std::string const at_tip = "W, on the last body at its joint to the ground";
+        Group const torque = add_element(at(own), "tip_torque", {contents_.tips, 3}, units_.torque, series_.tip_torque, at_tip);
+        Group const force = add_element(at(own), "tip_force", {contents_.tips, 3}, units_.force, series_.tip_force, at_tip);
+        for (Group const* const element : {&torque, &force}) put_array(at(*element), "chain", topology_.tips);
     }
 
     void describe_chains(Place const& own) {
@@ -158,13 +163,14 @@ TrajectoryContents contents_of(Topology const& topology, bool velocities, bool j
     contents.periodic = topology.box.has_value();
     contents.si = topology.si;
     contents.sites = topology.mass.size();
+    contents.tips = topology.tips.size();
     contents.bodies.assign(topology.bodies.begin(), topology.bodies.end());
     return contents;
 }
 
 std::vector<Series*> TrajectorySeries::present() {
     std::vector<Series*> all;
-    for (Series* series : {&position, &velocity, &edges, &orientation, &torque, &force, &time, &step})
+    for (Series* series : {&position, &velocity, &edges, &orientation, &torque, &force, &tip_torque, &tip_force, &time, &step})
         if (*series) all.push_back(series);
     return all;
 }
@@ -202,6 +208,10 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     if (!contents.joint_forces) return series;
     series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
     series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);
+    require(root, "catena/tip_force", contents.tips > 0, "forces of tips");
+    if (contents.tips == 0) return series;
+    series.tip_torque = Series::open(root, "catena/tip_torque/value", H5T_NATIVE_DOUBLE);
+    series.tip_force = Series::open(root, "catena/tip_force/value", H5T_NATIVE_DOUBLE);
     return series;
 }
 

@@ -11,6 +11,8 @@
 //                                 body's or that of its first bead
 //       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each body (at its first site) at its inboard joint, ground
 //                                 axes
+//       tip_torque, tip_force     {step, time, value [frames][tips][3]}, on the last body of each chain with a joint from there to the
+//                                 ground, at that joint, ground axes; chain [tips] from 0
 //
 // All steps are one dataset and all times another, linked hard from each element, so the elements cannot disagree. MDAnalysis
 // 2.11 wants exactly one group in /particles, named `trajectory`, and `unit` attributes of variable length.
@@ -30,13 +32,13 @@ namespace catena::hdf5 {
 struct TrajectoryContents {
     std::vector<hsize_t> bodies;  // their sites
     bool velocities = false, joint_forces = false, periodic = false, si = false;
-    hsize_t sites = 0;
+    hsize_t sites = 0, tips = 0;
 };
 TrajectoryContents contents_of(Topology const&, bool velocities, bool joint_forces);
 
 /// The growing datasets; those that a run does not write are empty.
 struct TrajectorySeries {
-    Series step, time, position, velocity, edges, orientation, torque, force;
+    Series step, time, position, velocity, edges, orientation, torque, force, tip_torque, tip_force;
 
     /// `step` is the last: a frame counts when its step is there.
     std::vector<Series*> present();

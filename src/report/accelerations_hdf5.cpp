@@ -27,7 +27,16 @@ void write(std::string const& draft, std::string const& file, Solution const& s)
     Dataset accelerations = put_array(root, "accelerations", s.acceleration);
     Dataset forces = put_array(root, "joint_forces", s.joint_force);
     Dataset starts = put_array(root, "offsets", H5T_NATIVE_INT64, offsets.data(), shape);
-    for (Dataset* const data : {&accelerations, &forces, &starts}) check(data->close(), file, writing);
+    std::vector<std::int64_t> chains;
+    std::vector<double> wrenches;
+    for (TipForce const& tip : s.tip_force) {
+        chains.push_back(tip.chain);
+        wrenches.insert(wrenches.end(), tip.wrench.data, tip.wrench.data + 6);
+    }
+    std::array<hsize_t, 2> const of_tips{s.tip_force.size(), 6};
+    Dataset tips = put_array(root, "tip_forces", H5T_NATIVE_DOUBLE, wrenches.data(), of_tips);
+    Dataset tip_chains = put_array(root, "tip_chains", chains);
+    for (Dataset* const data : {&accelerations, &forces, &starts, &tips, &tip_chains}) check(data->close(), file, writing);
     flush_to_disk(handle, file, writing);
     check(handle.close(), file, writing);
 }

@@ -33,7 +33,8 @@ char const* kind_of(ChainSpec const&);
 /// Numbers in the acceleration of body k: as many as its inboard joint has coordinates; 3 of a bead; 6 of a free or linked rigid body.
 int accelerations_of(ChainSpec const&, std::size_t k);
 
-/// Writes /accelerations, /joint_forces (both flat) and /offsets ([bodies + 1][2]: where a body's numbers begin in the one and the other).
+/// Writes /accelerations, /joint_forces (both flat), /offsets ([bodies + 1][2]: where a body's numbers begin in the one and the other),
+/// /tip_forces ([tips][6]) and /tip_chains ([tips], from 0).
 /// Throws ComputationError naming file and cause. The first of the two tells beforehand, by InputError, what is no regular file, and "built
 /// without HDF5" where it is absent.
 void require_accelerations_writer(std::string const& file);

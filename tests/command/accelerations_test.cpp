@@ -61,6 +61,23 @@ TEST(Accelerations, HoldTheNumbersOfTheJson) {
     EXPECT_EQ(forces.size(), 5U * 6 + 4 + 3 * 6);
 }
 
+TEST(Accelerations, HoldTheForcesOfTips) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"solve", input("four-bar.yaml"), "--accelerations", "a.h5", "--json", "-", "--repeat", "1"}, folder.path());
+    expect_good(e);
+    hid_t const file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    auto const forces = dataset<double>(file, "tip_forces", H5T_NATIVE_DOUBLE);
+    auto const chains = dataset<std::int64_t>(file, "tip_chains", H5T_NATIVE_INT64);
+    H5Fclose(file);
+    Json const tip = e.json()["tip_forces"].at(0);
+    std::vector<double> expected = tip["torque"].get<std::vector<double>>();
+    for (Json const& f : tip["force"]) expected.push_back(f.get<double>());
+    EXPECT_EQ(forces, expected);
+    EXPECT_EQ(chains, std::vector<std::int64_t>{0});
+    EXPECT_GT(std::abs(forces.at(4)), 1.0);  // it carries a part of the bars' weight
+}
+
 TEST(Accelerations, FilesThatCannotBeAreRefusedBeforeAnythingIsComputed) {
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}), 2, "no such folder");
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2,

@@ -8,7 +8,7 @@
 
 namespace catena::test {
 
-/// Five beads in one chain and three bodies in another.
+/// Five beads in one chain and three bodies in another, both held by their tips.
 inline Topology sample_topology() {
     Topology topology;
     topology.title = "sample";
@@ -16,6 +16,7 @@ inline Topology sample_topology() {
     topology.residue = {"MET", "ASP", "VAL", "PHE", "MET", "BDY", "BDY", "BDY"};
     topology.mass = {131.2, 115.09, 99.13, 147.18, 131.2, 1, 2, 3};
     topology.bodies = {5, 6, 7};
+    topology.tips = {0, 1};
     topology.box = Vec3{{10, 11, 12}};
     return topology;
 }
@@ -32,6 +33,7 @@ inline Frame sample_frame(std::int64_t step, Topology const& topology) {
         frame.velocities.push_back({{next() * 1e-300, -0.0, next() * 1e300}});
         frame.joint_forces.push_back({{next(), next(), next(), next(), next(), next()}});
     }
+    for (std::size_t k = 0; k < topology.tips.size(); ++k) frame.tip_forces.push_back({{next(), next(), next(), next(), next(), next()}});
     frame.velocities[0][1] = std::numeric_limits<double>::denorm_min();
     for (std::size_t k = 0; k < topology.bodies.size(); ++k) frame.orientations.push_back({next(), next(), next(), next()});
     return frame;

@@ -72,15 +72,18 @@ TEST(Trajectory, ReadsBackBitForBit) {
     expect_same_bits(numbers(file, "particles/trajectory/position/value"), flat(frames, [](Frame const& f) { return f.positions; }));
     expect_same_bits(numbers(file, "particles/trajectory/velocity/value"), flat(frames, [](Frame const& f) { return f.velocities; }));
     expect_same_bits(numbers(file, "catena/orientation/value"), flat(frames, [](Frame const& f) { return f.orientations; }));
-    auto const half = [](std::size_t first) {
-        return [first](Frame const& frame) {
+    auto const half = [](std::vector<Vector<double, 6>> Frame::* wrenches, std::size_t first) {
+        return [wrenches, first](Frame const& frame) {
             std::vector<Vec3> part;
-            for (auto const& w : frame.joint_forces) part.push_back({{w.data[first], w.data[first + 1], w.data[first + 2]}});
+            for (auto const& w : frame.*wrenches) part.push_back({{w.data[first], w.data[first + 1], w.data[first + 2]}});
             return part;
         };
     };
-    expect_same_bits(numbers(file, "catena/joint_torque/value"), flat(frames, half(0)));
-    expect_same_bits(numbers(file, "catena/joint_force/value"), flat(frames, half(3)));
+    expect_same_bits(numbers(file, "catena/joint_torque/value"), flat(frames, half(&Frame::joint_forces, 0)));
+    expect_same_bits(numbers(file, "catena/joint_force/value"), flat(frames, half(&Frame::joint_forces, 3)));
+    expect_same_bits(numbers(file, "catena/tip_torque/value"), flat(frames, half(&Frame::tip_forces, 0)));
+    expect_same_bits(numbers(file, "catena/tip_force/value"), flat(frames, half(&Frame::tip_forces, 3)));
+    EXPECT_EQ((read<std::int64_t>(file, "catena/tip_force/chain", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{0, 1}));
     expect_same_bits(numbers(file, "particles/trajectory/mass"), topology.mass);
     expect_same_bits(numbers(file, "particles/trajectory/box/edges/value"), {10, 11, 12, 10, 11, 12, 10, 11, 12});
     EXPECT_EQ((read<std::int64_t>(file, "catena/orientation/site", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{5, 6, 7}));
@@ -90,8 +93,8 @@ TEST(Trajectory, EveryElementHasTheSameStepDataset) {
     TemporaryFolder const folder;
     std::string const file = folder / "trajectory.h5md";
     write_frames(file, {0, 5});
-    for (char const* element :
-         {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation", "catena/joint_force"}) {
+    for (char const* element : {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation",
+                                "catena/joint_force", "catena/tip_force"}) {
         EXPECT_EQ((read<std::int64_t>(file, std::string(element) + "/step", H5T_NATIVE_INT64)), (std::vector<std::int64_t>{0, 5}))
             << element;
         EXPECT_EQ(numbers(file, std::string(element) + "/time"), (std::vector<double>{0, 0.5})) << element;
@@ -106,13 +109,14 @@ TEST(Trajectory, WithoutBoxVelocitiesAndForcesTheseAreAbsent) {
     topology.mass.resize(5);
     topology.residue.resize(5);
     topology.bodies.clear();
+    topology.tips.clear();
     topology.box.reset();
     auto const trajectory = make_trajectory(file, topology, false, false, {});
     trajectory->write(sample_frame(1, topology));
     trajectory->close();
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    for (char const* absent :
-         {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation", "catena/joint_force"})
+    for (char const* absent : {"particles/trajectory/velocity", "particles/trajectory/box/edges", "catena/orientation",
+                               "catena/joint_force", "catena/tip_force"})
         EXPECT_EQ(H5Lexists(handle.get(), absent, H5P_DEFAULT), 0) << absent;
     EXPECT_EQ(H5Lexists(handle.get(), "particles/trajectory/box", H5P_DEFAULT), 1);
 }
