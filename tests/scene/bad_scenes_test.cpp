@@ -161,6 +161,13 @@ output: {every: 0})y",
     {"observable", R"y(chains: [{sequence: GGG, model: calvados2}]
 output: {observables: [energi]})y",
      "`energi` is no observable (s.yaml: output.observables[0], line 2): did you mean `energy`?"},
+    {"temperature_of_nothing", R"y(chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], com: [1, 0, 0], joint: {type: weld}}]}]
+output: {observables: [energy, temperature]})y",
+     "no temperature where nothing is free to move (s.yaml: output.observables[1], line 2): leave it out"},
+    {"temperature_of_the_driven",
+     R"y(chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], com: [1, 0, 0], joint: {type: revolute, axis: [0, 0, 1], motion: {rate: 1}}}]}]
+output: {observables: [temperature]})y",
+     "no temperature while a joint of chain `chain-1` is driven (s.yaml: output.observables[0], line 2): leave it out"},
     {"observable_twice", R"y(chains: [{sequence: GGG, model: calvados2}]
 output: {observables: [energy, energy]})y",
      "`energy` is listed twice (s.yaml: output.observables[1], line 2): list it once"},
