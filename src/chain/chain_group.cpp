@@ -1,6 +1,5 @@
 #include "chain/chain_group.hpp"
 
-#define EIGEN_DONT_PARALLELIZE  // threads are the executor's
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>

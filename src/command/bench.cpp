@@ -15,7 +15,9 @@ namespace {
 
 Outcome list() {
     Outcome outcome;
-    outcome.text = "solve    matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend\n";
+    outcome.text =
+        "solve    matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor (--backend "
+        "cuda: the GPU's)\n";
     outcome.json = {{"benchmarks", {"solve"}}};
     return outcome;
 }
@@ -85,7 +87,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     Outcome outcome;
     outcome.json = {{"bench", "solve"},
                     {"build", version_json()},
-                    {"hardware", {{"processor", processor_name()}, {"hardware_threads", processor_threads()}}},
+                    {"hardware", hardware_json()},
                     {"ranks", communicator.size()},
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
@@ -105,10 +107,9 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
         }
     outcome.json["valid"] = outcome.valid;
     outcome.text = fmt::format(
-        "ns a body, median of {}; a whole evaluation holds kinematics and loads too. {}, {} threads on {}; {}, "
+        "ns a body, median of {}; a whole evaluation holds kinematics and loads too. {}, {}; {}, "
         "{}\n",
-        request.repeat, counted(communicator.size(), "rank", "ranks"), processor_threads(), processor_name(), compiler_name(),
-        instruction_set());
+        request.repeat, counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set());
     outcome.text += table.text();
     outcome.complaint = "a residual above its bound: see the results";
     return outcome;

@@ -10,7 +10,6 @@
 #include "command/version.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
-#include "report/hardware.hpp"
 #include "report/solver_errors.hpp"
 
 namespace catena::command {
@@ -73,7 +72,7 @@ Outcome report_scenes(std::vector<Scene> const& scenes, Communicator const& comm
     Outcome outcome;
     outcome.json = {{"report", "solver error against run time"},
                     {"build", version_json()},
-                    {"hardware", {{"processor", processor_name()}, {"hardware_threads", processor_threads()}}},
+                    {"hardware", hardware_json()},
                     {"ranks", communicator.size()},
                     {"forward_error", "largest difference of the joint accelerations from the reference, relative to the largest"},
                     {"studies", Json::array()}};
@@ -91,8 +90,7 @@ Outcome report_scenes(std::vector<Scene> const& scenes, Communicator const& comm
         outcome.json["valid"] = outcome.valid;
         write_text_file(json, json_text(outcome.json));
         Picture const picture = draw_report(json, png);
-        outcome.text +=
-            fmt::format("{} threads on {}, {}\n", processor_threads(), processor_name(), counted(communicator.size(), "rank", "ranks"));
+        outcome.text += fmt::format("{}, {}\n", hardware_text(), counted(communicator.size(), "rank", "ranks"));
         outcome.text += "wrote " + json + "\n" + (picture.file.empty() ? picture.remark : "drew " + picture.file) + "\n";
         outcome.text += outcome.valid ? "VALID\n" : "INVALID\n";
     });

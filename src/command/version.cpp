@@ -25,6 +25,17 @@ nlohmann::ordered_json version_json() {
             {"cuda", cuda::version()}};
 }
 
+nlohmann::ordered_json hardware_json() {
+    nlohmann::ordered_json hardware{{"processor", processor_name()}, {"hardware_threads", processor_threads()}, {"gpu", nullptr}};
+    if (cuda::why_not().empty()) hardware["gpu"] = cuda::device_name();
+    return hardware;
+}
+
+std::string hardware_text() {
+    std::string const gpu = cuda::why_not().empty() ? ", " + cuda::device_name() : "";
+    return fmt::format("{} threads on {}{}", processor_threads(), processor_name(), gpu);
+}
+
 std::string version_text() {
     std::string text = fmt::format("catena {} ({}, {})\n", version(), compiler_name(), instruction_set());
     nlohmann::ordered_json const all = version_json();

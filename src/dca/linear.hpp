@@ -68,7 +68,6 @@ struct Symmetric {
 };
 
 using Vec3 = Vector<double, 3>;
-CATENA_HD double not_a_number() { return __builtin_nan(""); }
 
 using Mat3 = Matrix<double, 3, 3>;
 using Sym3 = Symmetric<double, 3>;

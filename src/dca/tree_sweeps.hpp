@@ -88,7 +88,7 @@ struct TreeSweeps {
     CATENA_HD static void mark_lost(Symmetric<double, K>& factor, Symmetric<double, K> const& floating, int restricted) {
         double constexpr lost = 0x1p-33;  // fewer than six digits would be left
         for (int i = 0; i < restricted; ++i)
-            if (1 / factor(i, i) < lost * floating(i, i)) factor(i, i) = not_a_number();
+            if (1 / factor(i, i) < lost * floating(i, i)) factor(i, i) = __builtin_nan("");
     }
 };
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#define EIGEN_DONT_PARALLELIZE  // a 3x3 problem
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 

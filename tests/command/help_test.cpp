@@ -1,3 +1,4 @@
+#include "cuda/solver.hpp"
 #include "tests/command/program.hpp"
 
 namespace catena::test {
@@ -22,7 +23,8 @@ TEST(Help, VersionSaysWhatIsInTheBuild) {
     Ended const e = catena({"--version"});
     expect_good(e);
     EXPECT_TRUE(e.out.starts_with("catena ")) << e.out;
-    for (std::string const part : {"MPI", "OpenMP", "OpenMM", "HDF5", "CUDA    "})
+    for (std::string const& part :
+         {std::string("MPI"), std::string("OpenMP"), std::string("OpenMM"), std::string("HDF5"), "CUDA    " + cuda::version()})
         EXPECT_NE(e.out.find("  " + part), std::string::npos) << e.out;
 }
 

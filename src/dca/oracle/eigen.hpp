@@ -1,7 +1,6 @@
 // Inside the oracles: dense matrices of any oracle scalar.
 #pragma once
 
-#define EIGEN_DONT_PARALLELIZE  // the oracles are serial whatever the rest is compiled with
 #include <Eigen/Dense>
 
 #include "dca/oracle/algebra.hpp"
