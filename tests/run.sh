@@ -7,7 +7,7 @@ usage() {
 usage: tests/run.sh [--quick] [--long] [--help]
 
 Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
-  format      clang-format finds nothing to change
+  format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests (1 to 3 ranks)
@@ -70,7 +70,15 @@ build() {
 }
 
 format() {
-    find src mpi cuda tests \( -name '*.hpp' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh' \) -print0 | xargs -0 "$VIRTUAL_ENV/bin/clang-format" --dry-run --Werror
+    local status=0 scripts script
+    if [ $tools = yes ]; then
+        find src mpi cuda tests \( -name '*.hpp' -o -name '*.cpp' -o -name '*.cu' -o -name '*.cuh' \) -print0 | xargs -0 "$VIRTUAL_ENV/bin/clang-format" --dry-run --Werror || status=1
+    fi
+    mapfile -t scripts < <(find jobs tests -name '*.sh' | sort)
+    scripts+=(.ci/run)
+    for script in "${scripts[@]}"; do bash -n "$script" || status=1; done
+    shellcheck -x "${scripts[@]}" || status=1
+    return $status
 }
 
 tidy() {
@@ -92,14 +100,15 @@ finish() {
 }
 
 say "Packages"
-need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev ccache git
+need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev ccache git shellcheck
 need_science
 tools=yes
 need_python "$root/tests/requirements.txt" || tools=no
 mpi_environment
 
 say "format"
-if [ $tools = yes ]; then check format format || true; else echo "   LEFT OUT: no clang-format (PyPI cannot be reached)"; fi
+[ $tools = yes ] || echo "   LEFT OUT: no clang-format (PyPI cannot be reached), only the shell scripts are checked"
+check format format || true
 
 if build release; then
     ctests release-tests --preset release

@@ -6,10 +6,10 @@
 #include <limits>
 
 #include "command/describe.hpp"
-#include "mpi/first_rank.hpp"
 #include "command/session.hpp"
 #include "command/text.hpp"
 #include "integrate/chain_system.hpp"
+#include "mpi/first_rank.hpp"
 
 namespace catena::command {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "cuda/solver.hpp"
 #include "dca/oracle/oracle.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
+#include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 
@@ -26,7 +26,7 @@ std::string name_of_variant(testing::TestParamInfo<Variant> const& info) {
 class Solver : public testing::TestWithParam<Variant> {
   protected:
     void SetUp() override {
-        if (GetParam().backend == Backend::cuda && !cuda::why_not().empty()) GTEST_SKIP() << "NOT RUN: " << cuda::why_not();
+        if (GetParam().backend == Backend::cuda) need_gpu();
         if (GetParam().backend != Backend::openmp) return;
         try {
             openmp_executor(2);

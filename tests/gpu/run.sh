@@ -4,13 +4,15 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 build=${1:-$root/build/gpu}
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+export CATENA_NEEDS_GPU=1  # a test that finds no GPU fails
 
 nvidia-smi -L
+mkdir -p "$build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCATENA_WITH_CUDA=ON >"$build.configure.log" 2>&1 || { cat "$build.configure.log"; exit 1; }
 cmake --build "$build" --parallel "$(nproc)" --target gpu dca catena-cli
 failed=0
-ctest --test-dir "$build" --output-on-failure -R '^gpu\.|cuda' || failed=1
-for tool in memcheck racecheck synccheck; do
+ctest --test-dir "$build" --output-on-failure --no-tests=error -R '^gpu\.|cuda' || failed=1
+for tool in memcheck racecheck synccheck initcheck; do
     echo "== compute-sanitizer $tool"
     compute-sanitizer --tool "$tool" --error-exitcode 1 "$build/tests/gpu/gpu" --gtest_filter='*ManyChains*:*Absolute*' | tail -n 3 || failed=1
 done

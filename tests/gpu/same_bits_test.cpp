@@ -1,45 +1,57 @@
 // What the GPU computes has the bits of the same tree on the host: one operation for one, each rounded alike.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
+#include <cstring>
+#include <optional>
+#include <string>
 
-#include "cuda/solver.hpp"
-#include "dca/tree.hpp"
 #include "integrate/chain_system.hpp"
+#include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 
 namespace catena::test {
 namespace {
 
+using Accelerations = ChainSystem::Accelerations;
+
+template <class T>
+bool same_bits(std::vector<T> const& a, std::vector<T> const& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+void expect_same_bits(Accelerations const& a, Accelerations const& b) {
+    EXPECT_TRUE(same_bits(a.joint_acceleration, b.joint_acceleration));
+    EXPECT_TRUE(same_bits(a.acceleration, b.acceleration));
+    EXPECT_TRUE(same_bits(a.alpha, b.alpha));
+    EXPECT_TRUE(same_bits(a.base_acceleration, b.base_acceleration));
+    EXPECT_TRUE(same_bits(a.joint_force, b.joint_force));
+    EXPECT_TRUE(same_bits(a.tip_force, b.tip_force));
+}
+
 class Gpu : public ::testing::Test {
   protected:
-    void SetUp() override {
-        if (!cuda::why_not().empty()) GTEST_SKIP() << "NOT RUN: " << cuda::why_not();
-    }
-    struct Found {
-        ChainSystem::Accelerations a;
-        double residual;
-    };
-    Found solve(Scene scene, Backend backend, Axes axes) const {
+    void SetUp() override { need_gpu(); }
+    Accelerations solve(Scene scene, Backend backend, Axes axes) const {
         scene.solver.backend = backend;
         ChainSystem system(scene, axes, *communicator_);
         system.evaluate();
         EXPECT_LE(system.residual(), system.residual_bound());
-        return {system.accelerations(), system.residual()};
+        return system.accelerations();
     }
     void expect_same(Scene const& scene, Axes axes = Axes::joint) const {
-        Found const host = solve(scene, Backend::segments, axes), device = solve(scene, Backend::cuda, axes);
-        auto const same = [](auto const& x, auto const& y) {
-            return x.size() == y.size() && (x.empty() || std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0);
-        };
-        EXPECT_TRUE(same(host.a.joint_acceleration, device.a.joint_acceleration));
-        EXPECT_TRUE(same(host.a.acceleration, device.a.acceleration));
-        EXPECT_TRUE(same(host.a.alpha, device.a.alpha));
-        EXPECT_TRUE(same(host.a.joint_force, device.a.joint_force));
-        EXPECT_TRUE(same(device.a.joint_force, solve(scene, Backend::cuda, axes).a.joint_force)) << "a second time";
+        Accelerations const device = solve(scene, Backend::cuda, axes);
+        expect_same_bits(device, solve(scene, Backend::segments, axes));
+        SCOPED_TRACE("a second time");
+        expect_same_bits(device, solve(scene, Backend::cuda, axes));
     }
     static Scene scene_of(std::string const& generator, Handles handles) {
         Scene scene = parse_scene("chains: [" + generator + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
+        scene.solver.handles = handles;
+        return scene;
+    }
+    static Scene scene_of(ChainSpec const& chain, Handles handles) {
+        Scene scene;
+        scene.chains = {chain};
+        scene.forces.gravity = {{1, 2, -9.81}};
         scene.solver.handles = handles;
         return scene;
     }
@@ -78,9 +90,39 @@ TEST_F(Gpu, ManyChainsAndTips) {
 TEST_F(Gpu, AbsoluteCoordinates) {
     for (Handles const handles : {Handles::projected, Handles::full})
         for (char const* const base : {"free", "fixed"})
-            expect_same(
-                scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: 300, joint: spherical, seed: 1}}}", handles),
-                Axes::world);
+            for (char const* const tip : {"", ", tip: {joint: {type: spherical}}"})
+                expect_same(
+                    scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: 300, joint: spherical, seed: 1}}" + tip + "}",
+                             handles),
+                    Axes::world);
+}
+
+/// Wrenches on all bodies, joint torques, springs, dampers, drag, prescribed motions, and every joint at the tip.
+TEST_F(Gpu, LoadsDrivesAndTips) {
+    using enum JointType;
+    std::optional<JointType> const tips[] = {std::nullopt, spherical, revolute, universal, weld, prismatic, helical};
+    std::uint64_t seed = 0;
+    for (RandomJoints const joints :
+         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::mixed, RandomJoints::universal, RandomJoints::weld,
+          RandomJoints::prismatic, RandomJoints::helical, RandomJoints::planar, RandomJoints::any})
+        for (std::optional<JointType> const tip : tips)
+            for (Base const base : {Base::fixed, Base::free}) {
+                // Joints that cannot turn, or only in a plane, hold a tip a second time.
+                if (tip && base == Base::fixed && (joints == RandomJoints::prismatic || joints == RandomJoints::planar)) continue;
+                SCOPED_TRACE("seed " + std::to_string(++seed));
+                ChainSpec const chain = random_chain(
+                    seed, {.bodies = 40, .joints = joints, .base = base, .springs = true, .drag = true, .driven = 0.2, .tip = tip});
+                for (Handles const handles : {Handles::projected, Handles::full}) expect_same(scene_of(chain, handles));
+                if (HasFailure()) return;
+            }
+}
+
+TEST_F(Gpu, LinksWithTips) {
+    for (Base const base : {Base::fixed, Base::free})
+        for (Tip const tip : {Tip::free, Tip::jointed}) {
+            expect_same(scene_of(random_bead_chain(5, 300, base, tip), Handles::projected));
+            expect_same(scene_of(random_linked_chain(5, 300, base, tip), Handles::projected));
+        }
 }
 
 }  // namespace

@@ -10,11 +10,6 @@ namespace {
 
 using oracle::Quad;
 
-struct Case {
-    ChainSpec chain;
-    oracle::Loads loads;
-};
-
 /// Every kind of chain in turn: fixed and free base, each mixture of joints, with and without springs; n from 1 to `largest`,
 /// small ones more often.
 Case random_case(std::uint64_t seed, double largest) {
@@ -31,13 +26,7 @@ Case random_case(std::uint64_t seed, double largest) {
 
 template <class S>
 void compare(int count, double largest) {
-    Agreement<S> agreement;
-    for (int seed = 0; seed < count; ++seed) {
-        Case const c = random_case(static_cast<std::uint64_t>(seed), largest);
-        ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
-    }
-    agreement.print();
-    EXPECT_GT(agreement.error(), 0.0);  // two algorithms, not one
+    solvers_agree<S>(count, 16, [&](std::uint64_t seed) { return random_case(seed, largest); });
 }
 
 TEST(RandomChains, AThousandRandomChains) { compare<double>(1000, 32); }
@@ -65,15 +54,9 @@ class EveryJoint : public ::testing::TestWithParam<RandomJoints> {
     }
     template <class S>
     static void compare(int count, std::size_t largest) {
-        Agreement<S> agreement;
-        for (int seed = 0; seed < count; ++seed) {
-            Case const c = random_case(static_cast<std::uint64_t>(seed), largest);
-            ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
-            auto const found = oracle::aba<double>(c.chain, c.loads);
-            double const bound = 16 * static_cast<double>(c.chain.size()) * 0x1p-52 * oracle::condition_estimate(c.chain, c.loads);
-            ASSERT_LE(oracle::rnea_residual(c.chain, c.loads, found.qdd, found.base_acceleration), bound) << "seed " << seed;
-        }
-        agreement.print();
+        solvers_agree<S>(
+            count, 16, [&](std::uint64_t seed) { return random_case(seed, largest); },
+            [](Case const& c) { inverse_dynamics_agree(c, 16, oracle::condition_estimate(c.chain, c.loads)); });
     }
 };
 INSTANTIATE_TEST_SUITE_P(Kinds, EveryJoint,

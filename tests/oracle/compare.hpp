@@ -1,8 +1,14 @@
 // What the tests of the oracles share.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
+#include <functional>
+#include <optional>
+#include <string>
 
 #include "dca/oracle/oracle.hpp"
 #include "tests/support/random_chain.hpp"
@@ -145,5 +151,43 @@ class Agreement {
     int count_ = 0;
     double error_ = 0, ratio_ = 0, condition_ratio_ = 0;
 };
+
+struct Case {
+    ChainSpec chain;
+    oracle::Loads loads;
+};
+
+/// Asserts that inverse dynamics accept the accelerations found, within c n eps growth.
+inline void inverse_dynamics_agree(Case const& given, double c, double growth) {
+    auto const found = oracle::aba<double>(given.chain, given.loads);
+    ASSERT_LE(oracle::rnea_residual(given.chain, given.loads, found.qdd, found.base_acceleration),
+              c * static_cast<double>(given.chain.size()) * 0x1p-52 * growth);
+}
+
+/// Asserts that the solvers agree on the chains of seeds 0 .. count - 1, within Agreement's c; `check` asserts more of each chain. A seed
+/// may be without a chain.
+template <class S>
+void solvers_agree(
+    int count, double c, std::function<std::optional<Case>(std::uint64_t)> const& random_case,
+    std::function<void(Case const&)> const& check = [](Case const&) {}) {
+    Agreement<S> agreement;
+    for (int seed = 0; seed < count; ++seed) {
+        std::optional<Case> const made = random_case(static_cast<std::uint64_t>(seed));
+        if (!made) continue;
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(made->chain.size()) + " bodies");
+        ASSERT_LE(agreement.add(made->chain, made->loads), c);
+        ASSERT_NO_FATAL_FAILURE(check(*made));
+    }
+    agreement.print();
+    EXPECT_GT(agreement.error(), 0.0);  // two algorithms, not one
+}
+
+/// Largest second time derivative of some quantities, by their values a time h before, now and a time h later.
+inline double second_derivative(std::vector<double> const& behind, std::vector<double> const& now, std::vector<double> const& ahead,
+                                double h) {
+    double most = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) most = std::max(most, std::abs(ahead[i] - 2 * now[i] + behind[i]) / (h * h));
+    return most;
+}
 
 }  // namespace catena::test

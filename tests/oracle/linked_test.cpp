@@ -9,10 +9,6 @@ namespace {
 
 using oracle::Quad;
 
-struct Case {
-    ChainSpec chain;
-    oracle::Loads loads;
-};
 /// Every pair of ends in turn. A chain on fixed ends needs three beads, or it can be stretched straight.
 Case random_case(std::uint64_t seed, std::size_t largest, bool linked) {
     Random random(4'000'000 + seed);
@@ -33,12 +29,7 @@ Case random_case(std::uint64_t seed, std::size_t largest, bool linked) {
 
 template <class S>
 void compare(int count, std::size_t largest, bool linked) {
-    Agreement<S> agreement;
-    for (int seed = 0; seed < count; ++seed) {
-        Case const c = random_case(static_cast<std::uint64_t>(seed), largest, linked);
-        ASSERT_LE(agreement.add(c.chain, c.loads), 16) << "seed " << seed << ", " << c.chain.size() << " bodies";
-    }
-    agreement.print();
+    solvers_agree<S>(count, 16, [&](std::uint64_t seed) { return random_case(seed, largest, linked); });
 }
 TEST(Linked, SolversAgree) { compare<double>(400, 12, true); }
 TEST(Linked, SolversAgreeIn113Bits) { compare<Quad>(24, 6, true); }
@@ -118,10 +109,7 @@ TEST(Linked, LinksKeepTheirLengthsAndEnergyItsBalance) {
         auto const a = oracle::aba<double>(c.chain, c.loads);
         auto const now = lengths(c.chain);
         auto const opening = [&](double h) {
-            auto const ahead = lengths(moved_linked(c.chain, a, h)), behind = lengths(moved_linked(c.chain, a, -h));
-            double most = 0;
-            for (std::size_t i = 0; i < now.size(); ++i) most = std::max(most, std::abs(ahead[i] - 2 * now[i] + behind[i]) / (h * h));
-            return most;
+            return second_derivative(lengths(moved_linked(c.chain, a, -h)), now, lengths(moved_linked(c.chain, a, h)), h);
         };
         double const h = 2e-4, coarse = opening(h), fine = opening(h / 2), size = 1 + largest(a.com_acceleration) + largest(a.alpha);
         EXPECT_LT(coarse, 0.02 * size) << seed;

@@ -38,16 +38,14 @@ int held_by(JointType tip) {
 
 class Tips : public ::testing::TestWithParam<JointType> {
   protected:
-    struct Case {
-        ChainSpec chain;
-        oracle::Loads loads;
+    struct TipCase : Case {
         RandomJoints joints;
         /// Whether the joints leave the tip every motion it forbids, so that its forces are unique.
         bool held_once() const {
             return chain.base == Base::free || (joints != RandomJoints::prismatic && freedoms(chain) >= held_by(chain.tip_joint.type));
         }
     };
-    static Case random_case(std::uint64_t seed, std::size_t largest) {
+    static TipCase random_case(std::uint64_t seed, std::size_t largest) {
         Random random(3'000'000 + seed);
         RandomChainOptions options;
         options.base = seed % 2 == 0 ? Base::fixed : Base::free;
@@ -58,24 +56,20 @@ class Tips : public ::testing::TestWithParam<JointType> {
         options.driven = random.chance(0.3) ? 0.2 : 0;
         options.tip = GetParam();
         options.time = random.uniform(0, 3);
-        Case c{random_chain(seed, options), {random.vector(10), {}}, options.joints};
+        TipCase c{{random_chain(seed, options), {random.vector(10), {}}}, options.joints};
         c.loads.time = options.time;
         return c;
     }
     /// c = 64: the articulated bodies answer by way of unit wrenches, whose system has a condition number of its own.
     template <class S>
     static void compare(int count, std::size_t largest) {
-        Agreement<S> agreement;
-        for (int seed = 0; seed < count; ++seed) {
-            Case const c = random_case(static_cast<std::uint64_t>(seed), largest);
-            if (!c.held_once()) continue;
-            ASSERT_LE(agreement.add(c.chain, c.loads), 64) << "seed " << seed << ", " << c.chain.size() << " bodies";
-            auto const found = oracle::aba<double>(c.chain, c.loads);
-            double const bound = 64 * static_cast<double>(c.chain.size()) * 0x1p-52 *
-                                 std::max(growth(c.chain, c.loads), oracle::condition_estimate(c.chain, c.loads));
-            ASSERT_LE(oracle::rnea_residual(c.chain, c.loads, found.qdd, found.base_acceleration), bound) << "seed " << seed;
-        }
-        agreement.print();
+        auto const held_once = [&](std::uint64_t seed) -> std::optional<Case> {
+            TipCase const c = random_case(seed, largest);
+            return c.held_once() ? std::optional<Case>(c) : std::nullopt;
+        };
+        solvers_agree<S>(count, 64, held_once, [](Case const& c) {
+            inverse_dynamics_agree(c, 64, std::max(growth(c.chain, c.loads), oracle::condition_estimate(c.chain, c.loads)));
+        });
     }
 };
 INSTANTIATE_TEST_SUITE_P(Joints, Tips,
@@ -100,7 +94,7 @@ TEST_P(Tips, PlanarChainsAreHeldTwice) {
 /// The wrench of the tip's joint goes on what it says: balances of the whole chain about the ground's origin.
 TEST_P(Tips, BalancesOfTheWhole) {
     for (std::uint64_t seed = 1; seed < 40; seed += 2) {
-        Case const c = random_case(seed, 8);
+        TipCase const c = random_case(seed, 8);
         if (!c.chain.bodies.drag.empty()) continue;
         auto const k = oracle::kinematics<double>(c.chain, c.loads);
         auto const r = oracle::aba<double>(c.chain, c.loads);
@@ -170,10 +164,7 @@ double opening(ChainSpec const& chain, oracle::OracleResult<double> const& a, or
     loads.time = start + h;
     std::vector<double> const ahead = kept(moved(chain, a, h), loads, g, origin);
     loads.time = start - h;
-    std::vector<double> const behind = kept(moved(chain, a, -h), loads, g, origin);
-    double most = 0;
-    for (std::size_t i = 0; i < now.size(); ++i) most = std::max(most, std::abs(ahead[i] - 2 * now[i] + behind[i]) / (h * h));
-    return most;
+    return second_derivative(kept(moved(chain, a, -h), loads, g, origin), now, ahead, h);
 }
 /// G where the tip's coordinates put it: the joint's definition, written out once more.
 std::pair<Mat3, Vec3> ground_frame(ChainSpec const& chain, oracle::Loads const& loads) {
@@ -194,7 +185,7 @@ std::pair<Mat3, Vec3> ground_frame(ChainSpec const& chain, oracle::Loads const& 
 TEST_P(Tips, StayClosed) {
     int moving = 0;
     for (std::uint64_t seed = 0; seed < 32; ++seed) {
-        Case const c = random_case(seed, 6);
+        TipCase const c = random_case(seed, 6);
         if (!c.held_once() || freedoms(c.chain) <= held_by(GetParam())) continue;
         auto const a = oracle::aba<double>(c.chain, c.loads);
         auto const [g, origin] = ground_frame(c.chain, c.loads);
@@ -211,7 +202,7 @@ TEST_P(Tips, StayClosed) {
 /// The tip's velocity is what its joint allows.
 TEST_P(Tips, ProjectedVelocitiesFit) {
     for (std::uint64_t seed = 0; seed < 32; ++seed) {
-        Case const c = random_case(seed, 6);
+        TipCase const c = random_case(seed, 6);
         auto const [g, origin] = ground_frame(c.chain, c.loads);
         oracle::OracleResult<double> still;
         still.qdd.assign(c.chain.size(), Vec3::zero());

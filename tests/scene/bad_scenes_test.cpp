@@ -4,13 +4,6 @@
 namespace catena::test {
 namespace {
 
-TEST_P(Refused, in_one_line) {
-    std::string const message = refusal_of(GetParam().yaml);
-    EXPECT_EQ(message, GetParam().message);
-    static std::regex const grammar(R"(not in this version: \S.* \(s\.yaml: .*\)|\S.* \(s\.yaml.*\): \S.*)");
-    EXPECT_TRUE(std::regex_match(message, grammar)) << message;
-}
-
 Refusal const beads_cases[] = {
     {"unknown_letter", "chains: [{sequence: GAXS, model: calvados2}]",
      "`X` at position 3 of the sequence is no residue of calvados2 (s.yaml: chains[0].sequence, line 1): use the one-letter codes "

@@ -7,6 +7,8 @@
 namespace catena::test {
 namespace {
 
+double random_mass(Random& random) { return std::pow(10.0, random.uniform(-0.5, 0.5)); }
+
 /// From random second moments of mass about random principal axes: positive definite, triangle inequality kept.
 Sym3 random_inertia(Random& random, double mass) {
     double const a = mass * std::pow(random.uniform(0.03, 0.3), 2), b = mass * std::pow(random.uniform(0.03, 0.3), 2),
@@ -141,6 +143,23 @@ TipJoint random_tip_link(Random& random, Vec3 const& end) {
     tip.anchor = end + random.uniform(0.2, 0.6) * random.direction();
     return tip;
 }
+/// Velocities are made to fit the tip.
+void join_to_ground(ChainSpec& chain, TipJoint const& tip, double time = 0) {
+    chain.tip = Tip::jointed;
+    chain.tip_joint = tip;
+    oracle::project_velocities(chain, time);
+}
+/// Where a chain on links starts: at its random anchor if the base is fixed.
+Vec3 random_start(Random& random, Base base, Vec3& anchor) {
+    anchor = random.vector(1);
+    return base == Base::fixed ? anchor : random.vector(1);
+}
+ChainSpec without_bodies(char const* name, Base base) {
+    ChainSpec chain;
+    chain.name = name;
+    chain.base = base;
+    return chain;
+}
 
 /// Moves numbers by up to `size` of themselves.
 class Perturbation {
@@ -205,12 +224,10 @@ Quat Random::orientation() { return from_axis_angle(direction(), uniform(-3, 3))
 
 ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
     Random random(seed);
-    ChainSpec chain;
-    chain.name = "random";
-    chain.base = options.base;
+    ChainSpec chain = without_bodies("random", options.base);
     BodyArrays& b = chain.bodies;
     for (std::size_t k = 0; k < options.bodies; ++k) {
-        b.mass.push_back(std::pow(10.0, random.uniform(-0.5, 0.5)));
+        b.mass.push_back(random_mass(random));
         b.com.push_back(random.uniform(0.02, 0.3) * random.direction());
         b.inertia.push_back(random_inertia(random, b.mass.back()));
         append_joint(random, options, b);
@@ -226,25 +243,18 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
         b.free_velocity = options.moving ? random.vector(1) : Vec3::zero();
     }
     for (std::size_t k = 0; k < options.bodies && options.drag; ++k) b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});
-    if (options.tip && options.bodies > 0) {
-        chain.tip = Tip::jointed;
-        chain.tip_joint = random_tip(random, options);
-        oracle::project_velocities(chain, options.time);
-    }
+    if (options.tip && options.bodies > 0) join_to_ground(chain, random_tip(random, options), options.time);
     return chain;
 }
 
 ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip) {
     Random random(seed);
-    ChainSpec chain;
-    chain.name = "random beads";
-    chain.base = base;
+    ChainSpec chain = without_bodies("random beads", base);
     BeadArrays& b = chain.beads;
-    b.anchor = random.vector(1);
-    Vec3 position = base == Base::fixed ? b.anchor : random.vector(1);
+    Vec3 position = random_start(random, base, b.anchor);
     Vec3 velocity = base == Base::fixed ? Vec3::zero() : random.vector(1);
     for (std::size_t k = 0; k < beads; ++k) {
-        b.mass.push_back(std::pow(10.0, random.uniform(-0.5, 0.5)));
+        b.mass.push_back(random_mass(random));
         b.length.push_back(random.uniform(0.2, 0.6));
         b.residue.push_back("UNK");
         Vec3 const along = b.length.back() * random.direction(), spin = random.vector(3);
@@ -255,28 +265,21 @@ ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Ti
         b.position.push_back(position);
         b.velocity.push_back(velocity);
     }
-    if (tip == Tip::jointed) {
-        chain.tip = tip;
-        chain.tip_joint = random_tip_link(random, position);
-        oracle::project_velocities(chain);
-    }
+    if (tip == Tip::jointed) join_to_ground(chain, random_tip_link(random, position));
     return chain;
 }
 
 ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base, Tip tip) {
     Random random(seed);
-    ChainSpec chain;
-    chain.name = "random linked bodies";
-    chain.base = base;
+    ChainSpec chain = without_bodies("random linked bodies", base);
     LinkedArrays& b = chain.linked;
-    b.anchor = random.vector(1);
-    Vec3 end = base == Base::fixed ? b.anchor : random.vector(1);
+    Vec3 end = random_start(random, base, b.anchor);
     for (std::size_t k = 0; k < bodies; ++k) {
         bool const bead = random.chance(0.5);
         Quat const orientation = bead ? Quat::identity() : random.orientation();
         Vec3 const zero = Vec3::zero(), inboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction(),
                    outboard = bead ? zero : random.uniform(0.1, 0.4) * random.direction();
-        b.mass.push_back(std::pow(10.0, random.uniform(-0.5, 0.5)));
+        b.mass.push_back(random_mass(random));
         b.inertia.push_back(bead ? Sym3::zero() : random_inertia(random, b.mass.back()));
         b.orientation.push_back(as_array(orientation));
         b.inboard.push_back(inboard);
@@ -288,9 +291,10 @@ ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base,
         b.velocity.push_back(random.vector(1));
         b.omega.push_back(bead ? zero : random.vector(3));
     }
-    chain.tip = tip;
-    if (tip == Tip::jointed) chain.tip_joint = random_tip_link(random, end);
-    oracle::project_velocities(chain);
+    if (tip == Tip::jointed)
+        join_to_ground(chain, random_tip_link(random, end));
+    else
+        oracle::project_velocities(chain);
     return chain;
 }
 

@@ -1,0 +1,19 @@
+// Whether tests of the GPU's backend run on this machine.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "cuda/solver.hpp"
+
+namespace catena::test {
+
+/// To be called in SetUp. Without a GPU the test is skipped; where CATENA_NEEDS_GPU is set, it fails: nothing may pass by not running.
+inline void need_gpu() {
+    if (cuda::why_not().empty()) return;
+    if (std::getenv("CATENA_NEEDS_GPU") != nullptr) FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_not();
+    GTEST_SKIP() << "NOT RUN: " << cuda::why_not();
+}
+
+}  // namespace catena::test
