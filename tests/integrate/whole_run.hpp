@@ -1,0 +1,51 @@
+// Whole runs of a scene in a folder of the test's own, by all ranks of the test or by some communicator of one.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "integrate/simulation.hpp"
+#include "io/output.hpp"
+#include "tests/integrate/scenes.hpp"
+#include "tests/mpi/world.hpp"
+
+namespace catena::test {
+
+class WholeRun : public ::testing::TestWithParam<RunScene> {
+  protected:
+    WholeRun() {
+        // Every rank must name the same folder: rank 0's.
+        std::string name = (std::filesystem::temp_directory_path() / ("catena-run-" + std::to_string(::getpid()))).string();
+        name.resize(200, ' ');
+        catena::testing::world().broadcast(std::as_writable_bytes(std::span(name)));
+        folder_ = name.substr(0, name.find(' '));
+    }
+    ~WholeRun() override {
+        catena::testing::world().barrier();
+        std::error_code ignored;
+        if (catena::testing::world().rank() == 0) std::filesystem::remove_all(folder_, ignored);
+        catena::testing::world().barrier();
+    }
+    void run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
+             Backend backend = Backend::automatic) {
+        RunOptions options;
+        options.output = folder_ + "/" + name;
+        options.steps = steps;
+        options.restart = restart.empty() ? "" : folder_ + "/" + restart;
+        options.quiet = true;
+        Scene scene = parse_scene(GetParam().text, "scene.yaml");
+        scene.solver.backend = backend;
+        nlohmann::json const summary = run_simulation(std::move(scene), communicator, options);
+        EXPECT_TRUE(summary["valid"].get<bool>());
+    }
+    /// The checkpoint of run `name`, bit for bit.
+    auto arrays(std::string const& name) const { return read_checkpoint(folder_ + "/" + name + "/checkpoint.h5").arrays; }
+
+    std::string folder_;
+};
+
+}  // namespace catena::test
