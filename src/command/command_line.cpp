@@ -108,7 +108,8 @@ void add_commands(CLI::App& app, Words& words) {
                      "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute)")
         ->type_name("J,...");
     add_repeat(*command, words, "21");
-    command->add_option("--backend", words.backends, "serial, segments, openmp, cuda (default: those of the processor in this build)")->type_name("B,...");
+    command->add_option("--backend", words.backends, "serial, segments, openmp, cuda (default: those of the processor in this build)")
+        ->type_name("B,...");
     command->footer(
         "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json");
 
