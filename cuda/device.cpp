@@ -20,14 +20,12 @@ std::string look_for_a_gpu() {
     int devices = 0;
     cudaError_t const status = cudaGetDeviceCount(&devices);
     if (status != cudaSuccess) return std::string("no GPU can be used: ") + cudaGetErrorString(status);
-    if (devices == 0) return "there is no GPU";
-    if (cudaError_t const image = status_of_kernel_image(); image != cudaSuccess) {
-        cudaGetLastError();  // that it stays behind would fail the next call
-        cudaDeviceProp const gpu = properties();
-        return std::string("no kernels for ") + gpu.name + " (" + cudaGetErrorString(image) +
-               "; configure with -DCATENA_CUDA_ARCHITECTURES=" + std::to_string(10 * gpu.major + gpu.minor) + ")";
-    }
-    return "";
+    return devices == 0 ? "there is no GPU" : "";
+}
+
+/// Of kernels for another architecture, CUDA says one of these.
+bool lacks_kernels(cudaError_t status) {
+    return status == cudaErrorNoKernelImageForDevice || status == cudaErrorInvalidKernelImage || status == cudaErrorUnsupportedPtxVersion;
 }
 
 }  // namespace
@@ -44,10 +42,17 @@ std::string version() {
 
 std::string device_name() { return properties().name; }
 
-void choose_device(Communicator const& communicator) {
+std::string choose_device(Communicator const& communicator) {
     int devices = 0;
     check(cudaGetDeviceCount(&devices), "be counted");
-    check(cudaSetDevice(communicator.rank_on_host() % devices), "be chosen");
+    cudaError_t status = cudaSetDevice(communicator.rank_on_host() % devices);
+    if (status == cudaSuccess) status = status_of_kernel_image();
+    if (status == cudaSuccess) return "";
+    cudaGetLastError();  // that it stays behind would fail the next call
+    std::string const reason = "no use of " + device_name() + ": " + cudaGetErrorString(status);
+    if (!lacks_kernels(status)) return reason;
+    cudaDeviceProp const gpu = properties();
+    return reason + "; configure with -DCATENA_CUDA_ARCHITECTURES=" + std::to_string(10 * gpu.major + gpu.minor);
 }
 
 }  // namespace catena::cuda

@@ -10,7 +10,7 @@ std::string const& why_not() {
 std::string version() { return "none"; }
 std::string device_name() { throw ComputationError(why_not()); }
 
-void choose_device(Communicator const&) { throw ComputationError(why_not()); }
+std::string choose_device(Communicator const&) { return why_not(); }
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&) { throw ComputationError(why_not()); }
 
 }  // namespace catena::cuda

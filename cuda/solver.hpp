@@ -8,17 +8,19 @@
 
 namespace catena::cuda {
 
-/// Empty where a GPU can be used, else why not ("built without CUDA", CUDA's own words, no kernels for this GPU). Asks once.
+/// Empty where there is a GPU, else why not ("built without CUDA", CUDA's own words). Asks once, and leaves the GPU alone.
 std::string const& why_not();
 /// "13.0, NVIDIA H200", "13.0, no GPU can be used: ..." or "none".
 std::string version();
-/// "NVIDIA H200". Precondition: a GPU can be used.
+/// "NVIDIA H200". Precondition: there is a GPU.
 std::string device_name();
 
-/// From here on this rank uses the host's GPU number (rank on the host) modulo (GPUs). Precondition: a GPU can be used.
-void choose_device(Communicator const&);
+/// From here on this thread uses the host's GPU number (rank on the host) modulo (GPUs). Empty, or why that GPU cannot be used (no
+/// kernels for it in this build, CUDA's own words). Precondition: there is a GPU.
+std::string choose_device(Communicator const&);
 
-/// The same tree and the same operations as make_tree_solver's. Precondition: a GPU can be used, and one is chosen.
+/// The same tree and the same operations as make_tree_solver's, on the GPU chosen last, which must be current in every thread that
+/// calls the solver.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&);
 
 }  // namespace catena::cuda

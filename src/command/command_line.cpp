@@ -43,7 +43,9 @@ void add_common(CLI::App& command, Words& words) {
         ->allow_extra_args(false);
     command.add_option("--handles", c.handles, "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3)")
         ->type_name("KIND");
-    command.add_option("--threads", c.threads, "threads a rank for backend openmp (0: the host's cores over its ranks)")->type_name("N");
+    command
+        .add_option("--threads", c.threads, "threads a rank of openmp, and of what cuda leaves to the host (0: its cores over its ranks)")
+        ->type_name("N");
     command.add_option("--gpu-levels", c.gpu_levels, "levels of the tree on the GPU: auto (others: not in this version)")->type_name("K");
     command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")
         ->type_name("FILE");
@@ -76,7 +78,9 @@ void add_commands(CLI::App& app, Words& words) {
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
     add_repeat(*command, words, "11");
-    command->add_option("--accelerations", words.accelerations, "write accelerations and joint forces of any number of bodies (HDF5)")
+    command
+        ->add_option("--accelerations", words.accelerations,
+                     "write accelerations and forces of joints and tips, of any number of bodies (HDF5)")
         ->type_name("FILE");
     command->footer(
         "Examples:\n  catena solve inputs/arm.yaml --json arm.json\n"

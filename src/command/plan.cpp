@@ -113,7 +113,7 @@ std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system)
     }
     if (full) lines.emplace_back("projection on the restricted directions: handles are full, as in the founding chapter");
     if (!scene.forces.openmm) lines.emplace_back("OpenMM: forces.openmm is not in the scene");
-    if (system.backend() != Backend::openmp && system.backend() != Backend::cuda)
+    if (system.backend() != Backend::openmp && !(system.backend() == Backend::cuda && openmp_is_built()))
         lines.emplace_back("threads: this backend has one a rank");
     if (system.communicator().size() == 1) lines.emplace_back("messages: there is one rank");
     if (system.backend() != Backend::cuda)

@@ -10,12 +10,18 @@
 namespace catena {
 namespace {
 
-/// All ranks or none: one that stops alone would leave the others waiting.
-void require_gpu(Communicator const& communicator) {
-    std::string const& why_not = cuda::why_not();
-    if (communicator.max(why_not.empty() ? 0 : 1) == 0) return cuda::choose_device(communicator);
-    throw InputError(why_not.empty() ? "another rank has no GPU that can be used" : why_not, "solver.backend: cuda",
-                     "use auto, another backend, or a build with CUDA on a machine with a GPU");
+/// Ends all ranks together, with the words of the first that has a reason. Collective.
+void refuse_cuda(Communicator const& communicator, std::string const& reason) {
+    std::string own = reason, all(static_cast<std::size_t>(communicator.size()) * 200, ' ');
+    own.resize(200, ' ');
+    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), 200));
+    auto const found = all.find_first_not_of(' ');
+    if (found == std::string::npos) return;
+    std::string text = all.substr(found, 200 - found % 200);
+    text.erase(text.find_last_not_of(' ') + 1);
+    if (communicator.size() > 1) text += ", rank " + std::to_string(found / 200);
+    throw InputError(text, "solver.backend: cuda", "use auto, another backend, or a build with CUDA on a machine with a GPU");
 }
 
 }  // namespace
@@ -25,7 +31,7 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     if (asked == Backend::cuda_levels)
         throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments, openmp or cuda)");
     if (scene.solver.gpu_levels != "auto") throw not_in_this_version("solver.gpu_levels: " + scene.solver.gpu_levels);
-    if (asked == Backend::cuda) require_gpu(communicator);
+    if (asked == Backend::cuda) refuse_cuda(communicator, cuda::why_not());
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
@@ -41,6 +47,7 @@ int choose_threads(Scene const& scene, Communicator const& communicator) {
 
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
     : scene_(scene), communicator_(communicator), backend_(choose_backend(scene, communicator)) {
+    if (backend_ == Backend::cuda) refuse_cuda(communicator, cuda::choose_device(communicator));
     // What the GPU does not do runs on all the host's threads.
     bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda && openmp_is_built());
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();

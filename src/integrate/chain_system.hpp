@@ -16,7 +16,7 @@ namespace catena {
 /// What `auto` becomes. Throws "not in this version" for backends of later versions, and where `cuda` is asked for and some rank has no
 /// GPU. Collective.
 Backend choose_backend(Scene const&, Communicator const&);
-/// Threads of the openmp backend on this rank: solver.threads, else the host's cores over its ranks.
+/// Threads of this rank with openmp, and of what cuda leaves to the host: solver.threads, else the host's cores over its ranks.
 int choose_threads(Scene const&, Communicator const&);
 
 class ChainSystem {

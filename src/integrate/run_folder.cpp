@@ -3,7 +3,6 @@
 #include <filesystem>
 
 #include "error.hpp"
-
 #include "mpi/first_rank.hpp"
 
 namespace catena {

@@ -208,10 +208,10 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     if (!contents.joint_forces) return series;
     series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
     series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);
-    require(root, "catena/tip_force", contents.tips > 0, "forces of tips");
-    if (contents.tips == 0) return series;
+    if (!has(root, "catena/tip_force")) return series;  // none, or a file of a version that did not write them
     series.tip_torque = Series::open(root, "catena/tip_torque/value", H5T_NATIVE_DOUBLE);
     series.tip_force = Series::open(root, "catena/tip_force/value", H5T_NATIVE_DOUBLE);
+    if (series.tip_force.row()[0] != contents.tips) refuse(root, "has another number of tips");
     return series;
 }
 

@@ -78,6 +78,30 @@ TEST(Accelerations, HoldTheForcesOfTips) {
     EXPECT_GT(std::abs(forces.at(4)), 1.0);  // it carries a part of the bars' weight
 }
 
+TEST(Accelerations, TheTrajectoryHoldsTheForcesOfTips) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "two.yaml")
+        << "units: si\nforces: {gravity: [0, -9.81, 0]}\nchains:\n"
+           "  - {name: first, base: fixed, generator: {random: {bodies: 5, joint: spherical}}}\n"
+           "  - {name: held, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 6, joint: universal}}}\n"
+           "dynamics: {integrator: rk4, step: 1e-4, steps: 2}\noutput: {every: 1, joint_forces: true}\n";
+    expect_good(catena({"run", "two.yaml", "--output", "r", "--quiet"}, folder.path()));
+    Json const tip = catena({"solve", "two.yaml", "--repeat", "1", "--json", "-"}, folder.path()).json()["tip_forces"].at(0);
+    hid_t const file = H5Fopen((folder / "r/trajectory.h5md").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+    ASSERT_GE(file, 0);
+    auto const force = dataset<double>(file, "catena/tip_force/value", H5T_NATIVE_DOUBLE),
+               torque = dataset<double>(file, "catena/tip_torque/value", H5T_NATIVE_DOUBLE);
+    auto const chain = dataset<std::int64_t>(file, "catena/tip_force/chain", H5T_NATIVE_INT64);
+    H5Fclose(file);
+    ASSERT_EQ(force.size(), 9U);  // frames of steps 0, 1, 2
+    ASSERT_EQ(torque.size(), 9U);
+    EXPECT_EQ(chain, std::vector<std::int64_t>{1});
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(force[i], tip["force"][i].get<double>());
+        EXPECT_EQ(torque[i], tip["torque"][i].get<double>());
+    }
+}
+
 TEST(Accelerations, FilesThatCannotBeAreRefusedBeforeAnythingIsComputed) {
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/no/such/folder/a.h5"}), 2, "no such folder");
     expect_refused(catena({"solve", input("arm.yaml"), "--accelerations", "/dev/null"}), 2,

@@ -1,6 +1,7 @@
 // One line on standard error and the right status for each class of mistake.
 #include <fstream>
 
+#include "cuda/solver.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -14,6 +15,12 @@ TEST(Errors, TheCommandLine) {
     expect_refused(catena({"solve", input("arm.yaml"), "--backend", "cuda-levels"}), 2, "not in this version: --backend cuda-levels");
     expect_refused(catena({"plan", input("arm.yaml"), "--explain"}), 2, "not in this version: --explain");
     expect_refused(catena({"bench", "peers"}), 2, "not in this version: catena bench peers");
+}
+
+TEST(Errors, AGpuThatIsNotThere) {
+    if (cuda::why_not().empty()) GTEST_SKIP() << "there is one";
+    for (char const* const command : {"check", "plan", "solve"})
+        expect_refused(catena({command, input("arm.yaml"), "--backend", "cuda"}), 2, cuda::why_not() + " (solver.backend: cuda)");
 }
 
 TEST(Errors, TheScene) {

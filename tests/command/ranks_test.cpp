@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "cuda/solver.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -35,6 +36,11 @@ TEST(Ranks, InputErrorsAreOneLineAndStatusTwo) {
     expect_refused(catena_on(3, {"solve", "missing.yaml"}), 2, "missing.yaml");
     expect_refused(catena_on(3, {"slove"}), 2, "did you mean `solve`?");
     expect_refused(catena_on(2, {"solve", input("arm.yaml"), "--json", "/no/such/folder/x"}), 2, "no such folder");
+}
+
+TEST(Ranks, AGpuThatIsNotThereEndsThemAll) {
+    if (cuda::why_not().empty()) GTEST_SKIP() << "there is one";
+    expect_refused(catena_on(3, {"solve", input("arm.yaml"), "--backend", "cuda"}), 2, cuda::why_not() + ", rank 0 (solver.backend: cuda)");
 }
 
 TEST(Ranks, AFailureThatEveryRankMeetsIsOneLineAndStatusOne) {

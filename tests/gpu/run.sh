@@ -9,11 +9,17 @@ export CATENA_NEEDS_GPU=1  # a test that finds no GPU fails
 nvidia-smi -L
 mkdir -p "$build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCATENA_WITH_CUDA=ON >"$build.configure.log" 2>&1 || { cat "$build.configure.log"; exit 1; }
-cmake --build "$build" --parallel "$(nproc)" --target gpu gpu_run dca catena-cli
+targets=(gpu dca catena-cli)
+if cmake --build "$build" --target help | grep -q '^gpu_run:'; then
+    targets+=(gpu_run)
+else
+    echo "LEFT OUT: whole runs (the build has no HDF5)"
+fi
+cmake --build "$build" --parallel "$(nproc)" --target "${targets[@]}"
 failed=0
 ctest --test-dir "$build" --output-on-failure --no-tests=error -R '^gpu|cuda' || failed=1
 for tool in memcheck racecheck synccheck initcheck; do
     echo "== compute-sanitizer $tool"
-    compute-sanitizer --tool "$tool" --error-exitcode 1 "$build/tests/gpu/gpu" --gtest_filter='*ManyChains*:*Absolute*' | tail -n 3 || failed=1
+    compute-sanitizer --tool "$tool" --error-exitcode 1 "$build/tests/gpu/gpu" --gtest_filter='*ManyChains*:*Absolute*:*Sliding*' | tail -n 3 || failed=1
 done
 exit $failed

@@ -7,7 +7,7 @@ namespace {
 
 class GpuRun : public WholeRun {
   protected:
-    void SetUp() override { need_gpu(); }
+    void SetUp() override { need_gpu(catena::testing::world()); }
 };
 
 TEST_P(GpuRun, EndsInTheBitsOfTheHost) {

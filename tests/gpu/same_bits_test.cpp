@@ -33,6 +33,7 @@ class Gpu : public ::testing::Test {
     Accelerations solve(Scene scene, Backend backend, Axes axes) const {
         scene.solver.backend = backend;
         ChainSystem system(scene, axes, *communicator_);
+        EXPECT_EQ(system.backend(), backend);
         system.evaluate();
         EXPECT_LE(system.residual(), system.residual_bound());
         return system.accelerations();
@@ -115,6 +116,18 @@ TEST_F(Gpu, LoadsDrivesAndTips) {
                 for (Handles const handles : {Handles::projected, Handles::full}) expect_same(scene_of(chain, handles));
                 if (HasFailure()) return;
             }
+}
+
+/// Short, for the checkers: joints that move their meeting frames, drives, loads and a tip that slides.
+TEST_F(Gpu, SlidingAndDriven) {
+    expect_same(scene_of(random_chain(9, {.bodies = 40,
+                                          .joints = RandomJoints::any,
+                                          .base = Base::fixed,
+                                          .springs = true,
+                                          .drag = true,
+                                          .driven = 0.2,
+                                          .tip = JointType::helical}),
+                         Handles::projected));
 }
 
 TEST_F(Gpu, LinksWithTips) {

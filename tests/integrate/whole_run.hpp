@@ -41,6 +41,9 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         scene.solver.backend = backend;
         nlohmann::json const summary = run_simulation(std::move(scene), communicator, options);
         EXPECT_TRUE(summary["valid"].get<bool>());
+        if (backend != Backend::automatic && communicator.rank() == 0) {
+            EXPECT_EQ(summary["solver"]["backend"], name_of(backend));
+        }
     }
     /// The checkpoint of run `name`, bit for bit.
     auto arrays(std::string const& name) const { return read_checkpoint(folder_ + "/" + name + "/checkpoint.h5").arrays; }

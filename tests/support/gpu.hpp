@@ -9,9 +9,10 @@
 
 namespace catena::test {
 
-/// To be called in SetUp. Without a GPU the test is skipped; where CATENA_NEEDS_GPU is set, it fails: nothing may pass by not running.
-inline void need_gpu() {
-    if (cuda::why_not().empty()) return;
+/// To be called in SetUp. Where a rank has no GPU all skip the test; where CATENA_NEEDS_GPU is set, it fails: nothing may pass by not
+/// running. Collective.
+inline void need_gpu(Communicator const& communicator = *serial_communicator()) {
+    if (communicator.max(cuda::why_not().empty() ? 0 : 1) == 0) return;
     if (std::getenv("CATENA_NEEDS_GPU") != nullptr) FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_not();
     GTEST_SKIP() << "NOT RUN: " << cuda::why_not();
 }
