@@ -16,6 +16,22 @@ TEST(Philox, KnownAnswers) {
     expect({{0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}}, 0xa4093822, 0x299f31d0, {{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}});
 }
 
+// Each of the series' operations rounds to half an eps of a term no larger than a few of the result.
+TEST(Philox, OwnFunctionsAreThoseOfTheLibrary) {
+    double constexpr eps = 0x1p-52, two_pi = 6.283185307179586476925;
+    auto const look = [&](double u) {
+        EXPECT_NEAR(log_of_uniform(u), std::log(u), 2 * eps * std::abs(std::log(u))) << u;
+        CosSin const r = cos_sin_of_turns(u);
+        // 2 pi u is itself rounded in the library's argument
+        EXPECT_NEAR(r.cos, std::cos(two_pi * u), 2 * eps * (1 + two_pi * u)) << u;
+        EXPECT_NEAR(r.sin, std::sin(two_pi * u), 2 * eps * (1 + two_pi * u)) << u;
+    };
+    for (int i = 1; i < 100000; ++i) look(i / 100000.0);
+    for (double u = 0x1p-54; u < 0.5; u *= 1.75) look(u), look(1 - u);
+    EXPECT_EQ(cos_sin_of_turns(0.25).sin, 1);
+    EXPECT_EQ(cos_sin_of_turns(0.5).cos, -1);
+}
+
 // Means of n numbers scatter by 1 / sqrt(n), of squares by sqrt(2 / n), of products by 1 / sqrt(n): five of these are allowed.
 TEST(Philox, NormalNumbersAreStandardAndIndependent) {
     int const n = 200000;
