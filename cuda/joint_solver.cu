@@ -1,15 +1,15 @@
-#include "cuda/tree_solver.cuh"
+#include "cuda/device_solver.cuh"
 
 namespace catena::cuda {
 
-template <int K>
-std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Communicator const& communicator) {
-    return std::make_unique<TreeSolver<dca::BodyLeaf<K, dca::MeetingFrames<K, false>>>>(group, communicator);
+template <int K, bool sliding>
+std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, DeviceSpace const& space, Communicator const& communicator) {
+    return make_solver<dca::BodyLeaf<K, dca::MeetingFrames<K, sliding>>>(group, space, communicator);
 }
-template std::unique_ptr<ChainSolver> make_joint_solver<2>(ChainGroup const&, Communicator const&);
-template std::unique_ptr<ChainSolver> make_joint_solver<3>(ChainGroup const&, Communicator const&);
-template std::unique_ptr<ChainSolver> make_joint_solver<4>(ChainGroup const&, Communicator const&);
-template std::unique_ptr<ChainSolver> make_joint_solver<5>(ChainGroup const&, Communicator const&);
-template std::unique_ptr<ChainSolver> make_joint_solver<6>(ChainGroup const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<2, false>(ChainGroup const&, DeviceSpace const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<3, false>(ChainGroup const&, DeviceSpace const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<4, false>(ChainGroup const&, DeviceSpace const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<5, false>(ChainGroup const&, DeviceSpace const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<6, false>(ChainGroup const&, DeviceSpace const&, Communicator const&);
 
 }  // namespace catena::cuda

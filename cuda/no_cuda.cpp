@@ -1,3 +1,4 @@
+#include "cuda/bead_dynamics.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
 
@@ -12,5 +13,9 @@ std::string device_name() { throw ComputationError(why_not()); }
 
 std::string choose_device(Communicator const&) { return why_not(); }
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&) { throw ComputationError(why_not()); }
+
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
+    throw ComputationError(why_not());
+}
 
 }  // namespace catena::cuda

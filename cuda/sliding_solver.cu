@@ -1,12 +1,12 @@
-#include "cuda/tree_solver.cuh"
+#include "cuda/device_solver.cuh"
 
 namespace catena::cuda {
 
-template <int K>
-std::unique_ptr<ChainSolver> make_sliding_solver(ChainGroup const& group, Communicator const& communicator) {
-    return std::make_unique<TreeSolver<dca::BodyLeaf<K, dca::MeetingFrames<K, true>>>>(group, communicator);
+template <int K, bool sliding>
+std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, DeviceSpace const& space, Communicator const& communicator) {
+    return make_solver<dca::BodyLeaf<K, dca::MeetingFrames<K, sliding>>>(group, space, communicator);
 }
-template std::unique_ptr<ChainSolver> make_sliding_solver<5>(ChainGroup const&, Communicator const&);
-template std::unique_ptr<ChainSolver> make_sliding_solver<6>(ChainGroup const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<5, true>(ChainGroup const&, DeviceSpace const&, Communicator const&);
+template std::unique_ptr<ChainSolver> make_joint_solver<6, true>(ChainGroup const&, DeviceSpace const&, Communicator const&);
 
 }  // namespace catena::cuda

@@ -103,22 +103,34 @@ struct ChainGroup {
     std::vector<std::int64_t> const& first_of_rank() const { return partition.first_of_rank; }
 };
 
-/// Fills halos of a field: entry size from the outboard neighbour's first body, entry -1 from the inboard neighbour's last one.
-template <int D>
-void exchange_from_outboard(Communicator const& communicator, ChainGroup const& group, View<D> field) {
+/// Access to a field's bodies on the host.
+struct HostAccess {
+    template <int D>
+    Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
+        return field.load(k);
+    }
+    template <int D>
+    void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
+        field.store(k, value);
+    }
+};
+/// Fills halos of a field: entry size from the outboard neighbour's first body, entry -1 from the inboard neighbour's last one. `access`
+/// reads and writes bodies of the field, wherever it is.
+template <int D, class Access = HostAccess>
+void exchange_from_outboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    Vector<double, D> send = field.load(0), receive = field.load(group.size);
+    Vector<double, D> send = access.template get<D>(field, 0), receive = send;
     communicator.exchange(std::as_bytes(std::span(send.data)), group.neighbour_inboard, std::as_writable_bytes(std::span(receive.data)),
                           group.neighbour_outboard);
-    if (group.neighbour_outboard >= 0) field.store(group.size, receive);
+    if (group.neighbour_outboard >= 0) access.template put<D>(field, group.size, receive);
 }
-template <int D>
-void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field) {
+template <int D, class Access = HostAccess>
+void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    Vector<double, D> send = field.load(group.size - 1), receive = field.load(-1);
+    Vector<double, D> send = access.template get<D>(field, group.size - 1), receive = send;
     communicator.exchange(std::as_bytes(std::span(send.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(receive.data)),
                           group.neighbour_inboard);
-    if (group.neighbour_inboard >= 0) field.store(-1, receive);
+    if (group.neighbour_inboard >= 0) access.template put<D>(field, -1, receive);
 }
 
 /// A canonical unit of the tree on this rank: what composes along a chain does so unit by unit, whatever the number of ranks.

@@ -53,7 +53,7 @@ Measured measure(Scene& scene, std::string const& joint, Backend backend, Commun
     Measured m{joint, scene.bodies(), name_of(backend), system.executor().threads(), time_evaluations(system, repeat), 0, 0};
     m.residual = system.residual();
     m.bound = system.residual_bound();
-    spdlog::info("{} {} {}: {:.1f} ns a body", joint, m.bodies, m.backend, m.a_body(m.timing.evaluation));
+    spdlog::info("{} {} {}: {:.3g} ns a body", joint, m.bodies, m.backend, m.a_body(m.timing.evaluation));
     return m;
 }
 
@@ -98,7 +98,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
             for (Backend const backend : backends) {
                 Measured const m = measure(scene, joint, backend, communicator, request.repeat);
                 outcome.valid = outcome.valid && m.valid();
-                auto const ns = [&](Spread const& s) { return s.count > 0 ? fmt::format("{:.1f}", m.a_body(s)) : "-"; };
+                auto const ns = [&](Spread const& s) { return s.count > 0 ? fmt::format("{:.3g}", m.a_body(s)) : "-"; };
                 table.add({joint, std::to_string(bodies), m.backend, std::to_string(m.threads), ns(m.timing.matrix_sweep),
                            ns(m.timing.bias_sweep), ns(m.timing.evaluation), ns(oracle), fmt::format("{:.1e}", m.residual),
                            fmt::format("{:.1e}", m.bound), m.valid() ? "VALID" : "INVALID"});

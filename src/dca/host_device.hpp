@@ -3,9 +3,11 @@
 
 #if defined(__CUDACC__)
 #define CATENA_HD __host__ __device__ inline
+#define CATENA_LAMBDA __device__  // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
 #define CATENA_UNROLL _Pragma("unroll")
 #else
 #define CATENA_HD inline
+#define CATENA_LAMBDA
 #define CATENA_UNROLL _Pragma("GCC unroll 8")
 #endif
 

@@ -10,7 +10,7 @@ namespace {
 
 template <int K, bool sliding = false>
 std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
-    return std::make_unique<TreeSolver<BodyLeaf<K, MeetingFrames<K, sliding>>>>(group, executor, communicator);
+    return std::make_unique<TreeSolver<BodyLeaf<K, MeetingFrames<K, sliding>>, HostSpace>>(group, HostSpace(executor), communicator);
 }
 
 }  // namespace

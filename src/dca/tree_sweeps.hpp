@@ -1,5 +1,5 @@
 // One item of every sweep over the canonical tree, host and device: a run, a merge, a root. Who calls them for which items is the
-// driver's business (tree_solver.hpp; cuda/).
+// driver's business (tree_solver.hpp).
 #pragma once
 
 #include "dca/leaves.hpp"
@@ -61,6 +61,13 @@ struct TreeSweeps {
         forces[root.first] = solve_upper(joints[root.first].factor, solve_lower(joints[root.first].factor, -segment.b1));
         if (root.jointed_tip)
             forces[root.next] = disassemble(joints[root.next], offsets[root.next], forces[root.first], Directions::zero());
+    }
+
+    /// Whether the matrix of joint k is positive definite, as its pivots say.
+    CATENA_HD bool definite(std::int64_t k) const {
+        for (int i = 0; i < restricted[k]; ++i)
+            if (double const p = joints[k].factor(i, i); !(p > 0) || p - p != 0) return false;
+        return true;
     }
 
     CATENA_HD void disassemble_forces(Merge const& m) const {

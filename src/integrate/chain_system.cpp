@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "chain/gather.hpp"
+#include "cuda/bead_dynamics.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
 
@@ -53,6 +54,10 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
     groups_ = make_groups(scene, axes, scene.solver.handles, backend_ == Backend::serial, communicator);
     for (auto const& group : groups_) {
+        if (group->beads && backend_ == Backend::cuda) {
+            absolute_.push_back(cuda::make_bead_dynamics(*group, scene, communicator));
+            continue;
+        }
         auto solver =
             backend_ == Backend::cuda ? cuda::make_tree_solver(*group, communicator) : make_tree_solver(*group, *executor_, communicator);
         if (group->beads) {

@@ -1,7 +1,6 @@
 // Links of fixed length along a chain, and from the last bead or body to the ground.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "dca/linear.hpp"
@@ -9,13 +8,14 @@
 namespace catena {
 
 /// How far a link d is too long along its direction u at the step's start: the s with |d - s u| = length.
-inline double excess(Vec3 const& d, Vec3 const& u, double length) {
+CATENA_HD double excess(Vec3 const& d, Vec3 const& u, double length) {
     double const along = dot(d, u), e = dot(d, d) - length * length;
-    return e / (along + std::sqrt(std::max(along * along - e, 0.0)));
+    double const square = along * along - e;
+    return e / (along + std::sqrt(square > 0 ? square : 0.0));
 }
 
 /// |v_rel, perpendicular|^2 / length of a link along u whose ends part with velocity v (formulas: -c).
-inline double swing(Vec3 const& v, Vec3 const& u, double length) {
+CATENA_HD double swing(Vec3 const& v, Vec3 const& u, double length) {
     Vec3 const across = plus_scaled(v, -dot(v, u), u);
     return dot(across, across) / length;
 }

@@ -22,7 +22,20 @@ TEST_P(GpuRun, EndsInTheBitsOfTheHost) {
     EXPECT_EQ(arrays("restarted"), arrays("host"));
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, GpuRun, ::testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
+auto const name_of_scene = [](auto const& scene) { return scene.param.name; };
+INSTANTIATE_TEST_SUITE_P(Integrators, GpuRun, ::testing::ValuesIn(run_scenes), name_of_scene);
+
+/// A long chain that ranks share, and so many short ones that the last rank holds one unit of it: levels of its tree are empty there.
+RunScene long_and_short(char const* name, int beads, int beads_of_short) {
+    auto const chain = [](std::string const& head, int n) {
+        return "{" + head + ", base: free, velocities: thermal, generator: {freely_jointed: {beads: " + std::to_string(n) +
+               ", length: 0.38}}}";
+    };
+    return {name, "chains: [" + chain("name: a", beads) + ", " + chain("name: b, count: 500", beads_of_short) +
+                      "]\ndynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 20}\n"};
+}
+INSTANTIATE_TEST_SUITE_P(CutChains, GpuRun,
+                         ::testing::Values(long_and_short("runs_of_32", 4128, 8), long_and_short("more_levels", 8224, 16)), name_of_scene);
 
 }  // namespace
 }  // namespace catena::test

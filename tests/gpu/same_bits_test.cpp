@@ -1,23 +1,19 @@
 // What the GPU computes has the bits of the same tree on the host: one operation for one, each rounded alike.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <optional>
 #include <string>
 
 #include "integrate/chain_system.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
+#include "tests/support/same_bits.hpp"
 
 namespace catena::test {
 namespace {
 
 using Accelerations = ChainSystem::Accelerations;
 
-template <class T>
-bool same_bits(std::vector<T> const& a, std::vector<T> const& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
 void expect_same_bits(Accelerations const& a, Accelerations const& b) {
     EXPECT_TRUE(same_bits(a.joint_acceleration, b.joint_acceleration));
     EXPECT_TRUE(same_bits(a.acceleration, b.acceleration));

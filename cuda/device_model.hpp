@@ -6,21 +6,35 @@
 
 namespace catena::cuda {
 
-class DeviceGroup {
+/// A copy of a host's field that does not change.
+template <int D>
+class FixedField {
   public:
-    explicit DeviceGroup(ChainGroup const& group)
+    explicit FixedField(Field<D> const& host) : field_(host.size()) {
+        field_.upload(host.view(), nullptr);
+        check(cudaStreamSynchronize(nullptr), "take the model");
+    }
+    ConstView<D> view() const { return field_.view(); }
+
+  private:
+    DeviceField<D> field_;
+};
+
+class DeviceModel {
+  public:
+    explicit DeviceModel(ChainGroup const& group)
         : size_(group.size),
           is_last_(group.is_last),
           restricted_(group.restricted_of_joint),
           jointed_tip_(group.jointed_tip),
           tip_screw_(group.tip_screw),
-          inverse_mass_(copy_of(group.inverse_mass)),
-          inverse_inertia_(copy_of(group.inverse_inertia)),
-          r1_(copy_of(group.r1)),
-          r2_(copy_of(group.r2)),
-          axes1_(copy_of(group.axes1)),
-          axes2_(copy_of(group.axes2)),
-          screw_(copy_of(group.screw)) {}
+          inverse_mass_(group.inverse_mass),
+          inverse_inertia_(group.inverse_inertia),
+          r1_(group.r1),
+          r2_(group.r2),
+          axes1_(group.axes1),
+          axes2_(group.axes2),
+          screw_(group.screw) {}
 
     GroupView view() const {
         return {size_,      is_last_.data(), jointed_tip_.data(), tip_screw_.data(), inverse_mass_.view(), inverse_inertia_.view(),
@@ -29,22 +43,15 @@ class DeviceGroup {
     std::uint8_t const* restricted() const { return restricted_.data(); }
 
   private:
-    template <int D>
-    static DeviceField<D> copy_of(Field<D> const& host) {
-        if (!host.view().origin || host.size() == 0) return {};
-        DeviceField<D> field(host.size());
-        field.upload(host.view(), nullptr);
-        return field;
-    }
     std::int64_t size_;
     Buffer<std::uint8_t> is_last_, restricted_;
     Buffer<std::int32_t> jointed_tip_;
     Buffer<Vec3> tip_screw_;
-    DeviceField<1> inverse_mass_;
-    DeviceField<6> inverse_inertia_;
-    DeviceField<3> r1_, r2_;
-    DeviceField<9> axes1_, axes2_;
-    DeviceField<3> screw_;
+    FixedField<1> inverse_mass_;
+    FixedField<6> inverse_inertia_;
+    FixedField<3> r1_, r2_;
+    FixedField<9> axes1_, axes2_;
+    FixedField<3> screw_;
 };
 
 }  // namespace catena::cuda

@@ -1,0 +1,13 @@
+#include "cuda/bead_dynamics.hpp"
+
+#include "cuda/device_solver.cuh"
+#include "integrate/bead_dynamics.hpp"
+
+namespace catena::cuda {
+
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
+    DeviceSpace const space;
+    return std::make_unique<BeadDynamics<DeviceSpace>>(group, scene, space, communicator, make_device_solver(group, space, communicator));
+}
+
+}  // namespace catena::cuda

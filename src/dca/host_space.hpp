@@ -1,0 +1,133 @@
+// A Space: where arrays live and loops over them run. Solvers and integrators are written once for any Space; this one is the host,
+// cuda::DeviceSpace a GPU. Both have the same members; what they promise is said here.
+#pragma once
+
+#include <atomic>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "dca/solver.hpp"
+
+namespace catena {
+
+class HostSpace : public HostAccess {
+  public:
+    /// The executor must outlive the space.
+    explicit HostSpace(Executor const& executor) : executor_(&executor) {}
+
+    /// Memory of the space, zero at first.
+    template <class T>
+    using Array = std::vector<T>;
+    template <int D>
+    using FieldOf = Field<D>;
+    /// `size` bodies of K numbers, K known at run time.
+    using Directions = DirectionsField;
+    /// What does not change, from the host's own array, which must outlive it.
+    template <class T>
+    using List = std::span<T const>;
+    template <int D>
+    class Fixed {
+      public:
+        explicit Fixed(Field<D> const& host) : view_(host.view()) {}
+        ConstView<D> view() const { return view_; }
+
+      private:
+        ConstView<D> view_;
+    };
+    /// The model that the sweeps read.
+    class Model {
+      public:
+        explicit Model(ChainGroup const& group) : group_(group) {}
+        GroupView view() const { return group_.view(); }
+        std::uint8_t const* restricted() const { return group_.restricted_of_joint.data(); }
+
+      private:
+        ChainGroup const& group_;
+    };
+    /// Lists of items level by level: those of a level are independent, the next level's need them.
+    template <class T>
+    using Levels = std::span<std::vector<T> const>;
+
+    template <class Action>
+    void for_each(std::int64_t count, Action const& action) const {
+        executor_->for_each(count, action);
+    }
+    template <class T, class Action>
+    void over(List<T> const& items, Action const& action) const {
+        executor_->for_each(std::ssize(items), [&](std::int64_t i) { action(items[static_cast<std::size_t>(i)]); });
+    }
+    template <class T, class Action>
+    void climb(Levels<T> const& levels, Action const& action) const {
+        for (std::vector<T> const& level : levels) over(List<T>(level), action);
+    }
+    template <class T, class Action>
+    void descend(Levels<T> const& levels, Action const& action) const {
+        for (std::size_t l = levels.size(); l-- > 0;) over(List<T>(levels[l]), action);
+    }
+    /// The smallest i in [0, count) with predicate(i), or count.
+    template <class Predicate>
+    std::int64_t first(std::int64_t count, Predicate const& predicate) const {
+        std::atomic<std::int64_t> found{count};
+        executor_->for_ranges(count, [&](std::int64_t begin, std::int64_t end) {
+            for (std::int64_t i = begin; i < end; ++i) {
+                if (!predicate(i)) continue;
+                std::int64_t before = found;
+                while (i < before && !found.compare_exchange_weak(before, i)) {
+                }
+                return;
+            }
+        });
+        return found;
+    }
+    /// The largest of value(0), ..., value(count - 1), which are 0 or more; a NaN counts as the largest. 0 of none.
+    template <class Value>
+    double largest(std::int64_t count, Value const& value) const {
+        double worst = 0;
+        for (std::int64_t i = 0; i < count; ++i)
+            if (double const v = value(i); v > worst || v != v) worst = v;
+        return worst;
+    }
+
+    /// One item of an array, from and to the host; done when they return.
+    template <class T>
+    T get(T const* place) const {
+        return *place;
+    }
+    template <class T>
+    void put(T* place, T const& value) const {
+        *place = value;
+    }
+    // Body k of a field, halo included.
+    using HostAccess::get, HostAccess::put;
+    /// A whole field for the host to read.
+    template <int D>
+    Field<D> const& read(Field<D> const& field) const {
+        return field;
+    }
+    Directions const& read(Directions const& directions) const { return directions; }
+    /// What the host does to a field.
+    template <int D, class Edit>
+    void edit(Field<D>& field, Edit const& change) const {
+        change(field.view());
+    }
+    /// A view for the host of what a field holds now; `mirror` may hold it.
+    template <int D>
+    struct Mirror {};
+    template <int D>
+    View<D> pull(Field<D>& field, Mirror<D>&) const {
+        return field.view();
+    }
+    /// What the host wrote there since. The mirror may change when it returns.
+    template <int D>
+    void push(Field<D>&, Mirror<D> const&) const {}
+
+    /// Until everything asked for so far is done.
+    void wait() const {}
+    int threads() const { return executor_->threads(); }
+
+  private:
+    Executor const* executor_;
+};
+
+}  // namespace catena

@@ -1,0 +1,95 @@
+// What a step does to one bead or link of chains of point beads, for every Space. Canonical units; ground axes.
+#pragma once
+
+#include <cmath>
+
+#include "dca/philox.hpp"
+#include "dca/solver.hpp"
+#include "integrate/link_geometry.hpp"
+
+namespace catena {
+
+/// The part of a chain on this rank.
+struct BeadPiece {
+    std::int64_t first = 0;     // local bead
+    std::int64_t in_scene = 0;  // its index over the scene
+    Vec3 anchor;                // of a chain on a link to the ground
+};
+/// A link from a chain's last bead to the ground.
+struct BeadTip {
+    std::int64_t bead = 0;
+    Vec3 anchor;
+    double length = 0;
+};
+
+struct BeadChains {
+    std::int64_t size = 0;
+    std::uint8_t const *is_first = nullptr, *has_link = nullptr;  // of its chain; an inboard link
+    ConstView<1> mass, inverse_mass, length;
+    BeadPiece const* piece = nullptr;
+    std::int64_t pieces = 0;
+    BeadTip const* tip = nullptr;
+    View<3> position, velocity, observed, force, momentum, change, direction, tip_direction;
+    DirectionsView bias, tip_bias;  // the link's direction comes first; full handles' other directions stay 0
+
+    CATENA_HD BeadPiece const& piece_of(std::int64_t k) const {
+        std::int64_t low = 0, high = pieces;
+        while (high - low > 1) {
+            std::int64_t const middle = (low + high) / 2;
+            if (piece[middle].first <= k)
+                low = middle;
+            else
+                high = middle;
+        }
+        return piece[low];
+    }
+    /// k = size: the first bead of the next rank, where the chain goes on there.
+    CATENA_HD bool linked(std::int64_t k) const { return k >= size || has_link[k] != 0; }
+    CATENA_HD bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
+    CATENA_HD Vec3 link(std::int64_t k) const { return position.load(k) - (to_ground(k) ? piece_of(k).anchor : position.load(k - 1)); }
+    CATENA_HD Vec3 tip_link(std::int64_t i) const { return tip[i].anchor - position.load(tip[i].bead); }
+
+    CATENA_HD void set_direction(std::int64_t k) const {
+        Vec3 const d = linked(k) ? link(k) : Vec3::zero();
+        direction.store(k, linked(k) ? (1.0 / norm(d)) * d : d);
+    }
+    CATENA_HD void set_tip_direction(std::int64_t i) const {
+        Vec3 const d = tip_link(i);
+        tip_direction.store(tip[i].bead, (1.0 / norm(d)) * d);
+    }
+    CATENA_HD void fall(std::int64_t k, Vec3 const& gravity) const { force.store(k, mass.at(k, 0) * gravity); }
+    CATENA_HD void set_momentum(std::int64_t k, double h) const {
+        momentum.store(k, plus_scaled(mass.at(k, 0) * velocity.load(k), h, force.load(k)));
+    }
+    CATENA_HD void drift(std::int64_t k, double h) const { position.store(k, plus_scaled(position.load(k), h, velocity.load(k))); }
+    CATENA_HD void set_excess(std::int64_t k) const {
+        bias.origin[k] = linked(k) ? excess(link(k), direction.load(k), length.at(k, 0)) : 0.0;
+    }
+    CATENA_HD void set_tip_excess(std::int64_t i) const {
+        tip_bias.origin[tip[i].bead] = excess(tip_link(i), tip_direction.load(tip[i].bead), tip[i].length);
+    }
+    CATENA_HD void close(std::int64_t k, double per_step) const {
+        Vec3 const c = change.load(k);
+        position.store(k, position.load(k) + c);
+        velocity.store(k, plus_scaled(velocity.load(k), per_step, c));
+    }
+    CATENA_HD void thermalise(std::int64_t k, double keep, double spread, std::uint64_t seed, std::uint64_t step) const {
+        BeadPiece const& p = piece_of(k);
+        Vec3 const noise = normal3(seed, step, static_cast<std::uint64_t>(p.in_scene + k - p.first), NoiseStage::thermostat);
+        velocity.store(k, plus_scaled(keep * velocity.load(k), spread * std::sqrt(inverse_mass.at(k, 0)), noise));
+    }
+    CATENA_HD double swing_of(std::int64_t k) const {
+        Vec3 const v = observed.load(k) - (to_ground(k) ? Vec3::zero() : observed.load(k - 1));
+        return swing(v, direction.load(k), length.at(k, 0));
+    }
+    CATENA_HD double tip_swing(std::int64_t i) const {
+        return swing(observed.load(tip[i].bead), tip_direction.load(tip[i].bead), tip[i].length);
+    }
+    CATENA_HD void set_swing(std::int64_t k) const { bias.origin[k] = linked(k) ? swing_of(k) : 0.0; }
+    CATENA_HD void set_tip_swing(std::int64_t i) const { tip_bias.origin[tip[i].bead] = tip_swing(i); }
+    /// Of a link's length, relative.
+    CATENA_HD double error(std::int64_t k) const { return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0; }
+    CATENA_HD double tip_error(std::int64_t i) const { return std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length; }
+};
+
+}  // namespace catena

@@ -1,0 +1,232 @@
+// Chains of point beads on links in absolute coordinates, in any Space: their state stays there.
+#pragma once
+
+#include <cmath>
+#include <utility>
+
+#include "dca/host_space.hpp"
+#include "integrate/absolute_dynamics.hpp"
+#include "integrate/bead_chains.hpp"
+
+namespace catena {
+
+/// Links and pieces of the group's chains on this rank.
+std::vector<std::uint8_t> links_of(ChainGroup const&);
+std::vector<BeadPiece> bead_pieces(ChainGroup const&, Scene const&);
+std::vector<BeadTip> bead_tips(ChainGroup const&, Scene const&);
+/// Where they start.
+void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity);
+
+/// What the last evaluate() of bead chains found, on the host.
+struct BeadSolution {
+    ChainGroup const& group;
+    ConstView<3> force, acceleration, direction, tip_direction;
+    ConstDirectionsView joint_force, tip_force;
+    Vec3 outboard_force(std::int64_t k) const;
+    BodyResults results() const;
+    /// `velocity`: of the evaluation, with its halo. Collective.
+    double residual(Communicator const&, ConstView<3> velocity, std::vector<BeadTip> const&) const;
+};
+
+template <class Space>
+class BeadDynamics final : public AbsoluteDynamics {
+    using Field3 = typename Space::template FieldOf<3>;
+
+  public:
+    /// `solver` takes views of the same space.
+    BeadDynamics(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
+                 std::unique_ptr<ChainSolver> solver)
+        : group_(group),
+          space_(space),
+          communicator_(communicator),
+          solver_(std::move(solver)),
+          gravity_(scene.forces.gravity),
+          links_(links_of(group)),
+          piece_(bead_pieces(group, scene)),
+          tip_(bead_tips(group, scene)),
+          is_first_(group.is_first),
+          has_link_(links_),
+          pieces_(piece_),
+          tips_(tip_),
+          mass_(group.mass),
+          inverse_mass_(group.inverse_mass),
+          length_(group.length),
+          position_(group.size),
+          velocity_(group.size),
+          observed_(group.size),
+          force_(group.size),
+          momentum_(group.size),
+          change_(group.size),
+          direction_(group.size),
+          tip_direction_(group.has_tips() ? group.size : 0),
+          bias_(group.size + 1, group.directions),
+          joint_force_(group.size + 1, group.directions),
+          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_force_(group.has_tips() ? group.size : 0, group.directions) {
+        space_.edit(position_, [&](View<3> position) {
+            space_.edit(velocity_, [&](View<3> velocity) { place_beads(group, scene, position, velocity); });
+        });
+    }
+
+    void update_configuration() override {
+        exchange_from_inboard(communicator_, group_, position_.view(), space_);
+        exchange_from_outboard(communicator_, group_, position_.view(), space_);
+        BeadChains const c = chains();
+        std::int64_t const joints = group_.size + (group_.neighbour_outboard >= 0 ? 1 : 0);
+        space_.for_each(joints, [c] CATENA_LAMBDA(std::int64_t k) { c.set_direction(k); });
+        space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_direction(i); });
+    }
+    void assemble_matrices() override {
+        solver_->assemble_matrices({direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
+    }
+    void set_simple_forces() override {
+        space_.for_each(group_.size, [c = chains(), g = gravity_] CATENA_LAMBDA(std::int64_t k) { c.fall(k, g); });
+    }
+    View<3> bead_forces() override {
+        forces_are_out_ = true;
+        return space_.pull(force_, force_mirror_);
+    }
+    ConstView<3> bead_positions() override { return space_.pull(position_, position_mirror_); }
+    void take_bead_forces() override {
+        if (std::exchange(forces_are_out_, false)) space_.push(force_, force_mirror_);
+    }
+
+    void kick(double h) override { project(h, velocity_.view()); }
+    void observe(double h) override { project(h, observed_.view()); }
+
+    void drift(double h, int sweeps) override {
+        BeadChains const c = chains();
+        space_.for_each(group_.size, [c, h] CATENA_LAMBDA(std::int64_t k) { c.drift(k, h); });
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            exchange_from_inboard(communicator_, group_, position_.view(), space_);
+            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
+            space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_excess(i); });
+            solver_->solve({{}, {}, {}, bias_.view(), of_tips(tip_bias_)}, {{}, change_.view(), {}, {}});
+            space_.for_each(group_.size, [c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
+        }
+    }
+
+    void thermostat(double keep, double kt, std::uint64_t seed, std::uint64_t step) override {
+        double const spread = std::sqrt((1.0 - keep * keep) * kt);
+        space_.for_each(group_.size, [c = chains(), keep, spread, seed, step] CATENA_LAMBDA(std::int64_t k) {
+            c.thermalise(k, keep, spread, seed, step);
+        });
+        kick(0.0);
+    }
+    void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
+        space_.edit(velocity_, [&](View<3> velocity) {
+            for (dca::Piece const& piece : group_.pieces)
+                for (std::int64_t k = piece.local; of_chain[piece.chain] && k < piece.local + piece.count; ++k) {
+                    Vec3 const noise = normal3(seed, 0, static_cast<std::uint64_t>(group_.scene_index(k)), NoiseStage::start);
+                    velocity.store(k, std::sqrt(kt * group_.inverse_mass.view().at(k, 0)) * noise);
+                }
+        });
+        kick(0.0);
+    }
+
+    double constraint_error() override {
+        exchange_from_inboard(communicator_, group_, position_.view(), space_);
+        BeadChains const c = chains();
+        double const along = space_.largest(group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
+        double const at_tips = space_.largest(tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
+        return communicator_.max(larger(along, at_tips));
+    }
+
+    std::vector<StateArray> state() const override {
+        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view())};
+    }
+    void set_state(std::vector<StateArray> const& arrays) override {
+        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
+        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
+    }
+    std::vector<StateArray> observed_state() const override { return {to_array<3>("velocity", space_.read(observed_).view())}; }
+
+    void evaluate() override {
+        exchange_from_inboard(communicator_, group_, observed_.view(), space_);
+        BeadChains const c = chains();
+        space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
+        space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
+        solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(tip_bias_)},
+                       {{}, change_.view(), joint_force_.view(), of_tips(tip_force_)});
+    }
+    BodyResults results() const override {
+        return with_solution([](BeadSolution const& s) { return s.results(); });
+    }
+    double residual() override {
+        exchange_from_inboard(communicator_, group_, observed_.view(), space_);
+        auto const& observed = space_.read(observed_);
+        return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
+    }
+    PotentialEnergy potential() override {
+        auto const& position = space_.read(position_);
+        PotentialEnergy e;
+        for (std::int64_t k = 0; k < group_.size; ++k) e.gravity.push_back(-group_.mass.view().at(k, 0) * dot(gravity_, position[k]));
+        e.springs.assign(static_cast<std::size_t>(group_.size), 0.0);
+        return e;
+    }
+    ChainGroup const& group() const override { return group_; }
+    ChainSolver const& solver() const override { return *solver_; }
+
+    /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations. Not private:
+    /// nvcc takes lambdas for kernels from public members alone.
+    void project(double h, View<3> out) {
+        space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momentum(k, h); });
+        solver_->solve({{}, momentum_.view(), {}, {}, {}}, {{}, out, {}, {}});
+    }
+
+  private:
+    std::int64_t tips() const { return std::ssize(tip_); }
+    DirectionsView of_tips(typename Space::Directions& directions) const {
+        return group_.has_tips() ? directions.view() : DirectionsView{};
+    }
+    BeadChains chains() {
+        BeadChains c;
+        c.size = group_.size;
+        c.is_first = is_first_.data();
+        c.has_link = has_link_.data();
+        c.mass = mass_.view();
+        c.inverse_mass = inverse_mass_.view();
+        c.length = length_.view();
+        c.piece = pieces_.data();
+        c.pieces = std::ssize(piece_);
+        c.tip = tips_.data();
+        c.position = position_.view();
+        c.velocity = velocity_.view();
+        c.observed = observed_.view();
+        c.force = force_.view();
+        c.momentum = momentum_.view();
+        c.change = change_.view();
+        c.direction = direction_.view();
+        c.tip_direction = tip_direction_.view();
+        c.bias = bias_.view();
+        c.tip_bias = tip_bias_.view();
+        return c;
+    }
+    template <class Use>
+    auto with_solution(Use const& use) const {
+        auto const &force = space_.read(force_), &acceleration = space_.read(change_), &direction = space_.read(direction_),
+                   &tip_direction = space_.read(tip_direction_);
+        auto const &joint_force = space_.read(joint_force_), &tip_force = space_.read(tip_force_);
+        return use(BeadSolution{group_, force.view(), acceleration.view(), direction.view(), tip_direction.view(), joint_force.view(),
+                                tip_force.view()});
+    }
+
+    ChainGroup const& group_;
+    Space space_;
+    Communicator const& communicator_;
+    std::unique_ptr<ChainSolver> solver_;
+    Vec3 gravity_;
+    std::vector<std::uint8_t> links_;
+    std::vector<BeadPiece> piece_;
+    std::vector<BeadTip> tip_;
+    typename Space::template List<std::uint8_t> is_first_, has_link_;
+    typename Space::template List<BeadPiece> pieces_;
+    typename Space::template List<BeadTip> tips_;
+    typename Space::template Fixed<1> mass_, inverse_mass_, length_;
+    Field3 position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
+    typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    typename Space::template Mirror<3> position_mirror_, force_mirror_;
+    bool forces_are_out_ = false;
+};
+
+}  // namespace catena
