@@ -1,7 +1,9 @@
 // --accelerations: the numbers of the JSON, flat, with offsets.
 #include <hdf5.h>
 
+#include <algorithm>
 #include <fstream>
+#include <type_traits>
 
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
@@ -11,13 +13,18 @@ namespace {
 
 using Json = nlohmann::json;
 
+/// A dataset of doubles or 64-bit integers.
 template <class T>
-std::vector<T> dataset(hid_t file, char const* name, hid_t type) {
+std::vector<T> dataset(std::string const& path, char const* name) {
+    hid_t const file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
     hid_t const data = H5Dopen2(file, name, H5P_DEFAULT), space = H5Dget_space(data);
-    std::vector<T> values(static_cast<std::size_t>(H5Sget_simple_extent_npoints(space)));
-    EXPECT_GE(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0);
+    hid_t const type = std::is_same_v<T, double> ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT64;
+    EXPECT_GE(space, 0) << path << ", " << name;
+    std::vector<T> values(static_cast<std::size_t>(std::max<hssize_t>(H5Sget_simple_extent_npoints(space), 0)));
+    EXPECT_GE(H5Dread(data, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), 0) << path << ", " << name;
     H5Sclose(space);
     H5Dclose(data);
+    H5Fclose(file);
     return values;
 }
 
@@ -40,12 +47,9 @@ TEST(Accelerations, HoldTheNumbersOfTheJson) {
     Ended const e = catena({"solve", "mixed.yaml", "--accelerations", "a.h5", "--json", "-", "--repeat", "1"}, folder.path());
     expect_good(e);
     Json const json = e.json();
-    hid_t const file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    ASSERT_GE(file, 0);
-    auto const accelerations = dataset<double>(file, "accelerations", H5T_NATIVE_DOUBLE),
-               forces = dataset<double>(file, "joint_forces", H5T_NATIVE_DOUBLE);
-    auto const offsets = dataset<std::int64_t>(file, "offsets", H5T_NATIVE_INT64);
-    H5Fclose(file);
+    std::string const file = folder / "a.h5";
+    auto const accelerations = dataset<double>(file, "accelerations"), forces = dataset<double>(file, "joint_forces");
+    auto const offsets = dataset<std::int64_t>(file, "offsets");
     std::vector<double> expected_accelerations, expected_forces;
     std::vector<std::int64_t> expected_offsets;
     for (std::size_t body = 0; body < 12; ++body) {
@@ -65,11 +69,9 @@ TEST(Accelerations, HoldTheForcesOfTips) {
     TemporaryFolder const folder;
     Ended const e = catena({"solve", input("four-bar.yaml"), "--accelerations", "a.h5", "--json", "-", "--repeat", "1"}, folder.path());
     expect_good(e);
-    hid_t const file = H5Fopen((folder / "a.h5").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    ASSERT_GE(file, 0);
-    auto const forces = dataset<double>(file, "tip_forces", H5T_NATIVE_DOUBLE);
-    auto const chains = dataset<std::int64_t>(file, "tip_chains", H5T_NATIVE_INT64);
-    H5Fclose(file);
+    std::string const file = folder / "a.h5";
+    auto const forces = dataset<double>(file, "tip_forces");
+    auto const chains = dataset<std::int64_t>(file, "tip_chains");
     Json const tip = e.json()["tip_forces"].at(0);
     std::vector<double> expected = tip["torque"].get<std::vector<double>>();
     for (Json const& f : tip["force"]) expected.push_back(f.get<double>());
@@ -87,12 +89,9 @@ TEST(Accelerations, TheTrajectoryHoldsTheForcesOfTips) {
            "dynamics: {integrator: rk4, step: 1e-4, steps: 2}\noutput: {every: 1, joint_forces: true}\n";
     expect_good(catena({"run", "two.yaml", "--output", "r", "--quiet"}, folder.path()));
     Json const tip = catena({"solve", "two.yaml", "--repeat", "1", "--json", "-"}, folder.path()).json()["tip_forces"].at(0);
-    hid_t const file = H5Fopen((folder / "r/trajectory.h5md").c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
-    ASSERT_GE(file, 0);
-    auto const force = dataset<double>(file, "catena/tip_force/value", H5T_NATIVE_DOUBLE),
-               torque = dataset<double>(file, "catena/tip_torque/value", H5T_NATIVE_DOUBLE);
-    auto const chain = dataset<std::int64_t>(file, "catena/tip_force/chain", H5T_NATIVE_INT64);
-    H5Fclose(file);
+    std::string const file = folder / "r/trajectory.h5md";
+    auto const force = dataset<double>(file, "catena/tip_force/value"), torque = dataset<double>(file, "catena/tip_torque/value");
+    auto const chain = dataset<std::int64_t>(file, "catena/tip_force/chain");
     ASSERT_EQ(force.size(), 9U);  // frames of steps 0, 1, 2
     ASSERT_EQ(torque.size(), 9U);
     EXPECT_EQ(chain, std::vector<std::int64_t>{1});

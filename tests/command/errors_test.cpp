@@ -18,7 +18,7 @@ TEST(Errors, TheCommandLine) {
 }
 
 TEST(Errors, AGpuThatIsNotThere) {
-    if (cuda::why_not().empty()) GTEST_SKIP() << "there is one";
+    if (cuda::why_not().empty()) GTEST_SKIP() << "NOT RUN: this machine has a GPU";
     for (char const* const command : {"check", "plan", "solve"})
         expect_refused(catena({command, input("arm.yaml"), "--backend", "cuda"}), 2, cuda::why_not() + " (solver.backend: cuda)");
 }

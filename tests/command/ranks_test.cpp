@@ -39,7 +39,7 @@ TEST(Ranks, InputErrorsAreOneLineAndStatusTwo) {
 }
 
 TEST(Ranks, AGpuThatIsNotThereEndsThemAll) {
-    if (cuda::why_not().empty()) GTEST_SKIP() << "there is one";
+    if (cuda::why_not().empty()) GTEST_SKIP() << "NOT RUN: this machine has a GPU";
     expect_refused(catena_on(3, {"solve", input("arm.yaml"), "--backend", "cuda"}), 2, cuda::why_not() + ", rank 0 (solver.backend: cuda)");
 }
 

@@ -63,7 +63,7 @@ TEST_P(Restart, FromACheckpointWithoutCorrections) {
     run("parts", 10);
     std::string const file = folder_ / "parts/checkpoint.h5";
     Checkpoint old = read_checkpoint(file);
-    if (old.integers.erase("corrections_of_tips") == 0) GTEST_SKIP() << "this integrator makes none";
+    if (old.integers.erase("corrections_of_tips") == 0) GTEST_SKIP() << "NOT RUN: this integrator corrects no tips";
     write_checkpoint(file, old);
     run("parts", 20, file);
     EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(file).arrays);

@@ -50,7 +50,7 @@ class SmallDisk {
 };
 
 #define NEEDS_SMALL_DISK(disk) \
-    if (!(disk).mounted()) GTEST_SKIP() << "NOT TESTED: mounting a small disk needs root (" << std::strerror(errno) << ")"
+    if (!(disk).mounted()) GTEST_SKIP() << "NOT RUN: mounting a small disk needs root (" << std::strerror(errno) << ")"
 
 Checkpoint checkpoint_of(std::size_t doubles) {
     Checkpoint checkpoint;
@@ -126,7 +126,7 @@ TEST(FileTooLarge, CheckpointAndTrajectoryAreNoSuccess) {
 }
 
 TEST(DeviceFull, TableIsNoSuccess) {
-    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "NOT TESTED: no /dev/full here";
+    if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "NOT RUN: no /dev/full here";
     EXPECT_EQ(message_of([] { ObservablesWriter("/dev/full", {"a"}, {}).close(); }), "cannot write (/dev/full): No space left on device");
     EXPECT_EQ(message_of([] { write_text_file("/dev/full", "text"); }), "cannot write (/dev/full): No space left on device");
 }
