@@ -10,8 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "chain/field.hpp"
-#include "dca/solver.hpp"
 #include "error.hpp"
 
 namespace catena::cuda {
@@ -33,6 +31,50 @@ class Stream {
 
   private:
     cudaStream_t stream_ = nullptr;
+};
+
+/// A moment in a stream's work.
+class Moment {
+  public:
+    explicit Moment(cudaStream_t stream) {
+        check(cudaEventCreate(&event_), "make an event");
+        check(cudaEventRecord(event_, stream), "note a moment");
+    }
+    ~Moment() { cudaEventDestroy(event_); }
+    Moment(Moment const&) = delete;
+    Moment& operator=(Moment const&) = delete;
+    /// Waits for this one.
+    double seconds_since(Moment const& start) const {
+        float milliseconds = 0;
+        check(cudaEventSynchronize(event_), "finish its work");
+        check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "tell the time");
+        return 1e-3 * static_cast<double>(milliseconds);
+    }
+
+  private:
+    cudaEvent_t event_ = nullptr;
+};
+
+/// What an action asks of a stream, recorded to be done again. The action must not wait for it.
+class Graph {
+  public:
+    template <class Action>
+    Graph(cudaStream_t stream, Action const& action) {
+        cudaGraph_t graph = nullptr;
+        check(cudaStreamBeginCapture(stream, cudaStreamCaptureModeThreadLocal), "record its work");
+        action();
+        check(cudaStreamEndCapture(stream, &graph), "record its work");
+        cudaError_t const status = cudaGraphInstantiate(&graph_, graph, 0);
+        cudaGraphDestroy(graph);
+        check(status, "take its work as a graph");
+    }
+    ~Graph() { cudaGraphExecDestroy(graph_); }
+    Graph(Graph const&) = delete;
+    Graph& operator=(Graph const&) = delete;
+    void launch(cudaStream_t stream) const { check(cudaGraphLaunch(graph_, stream), "launch a graph"); }
+
+  private:
+    cudaGraphExec_t graph_ = nullptr;
 };
 
 /// Memory of a device, ready for any stream when the constructor returns: zeros or the host's values.
@@ -77,53 +119,5 @@ inline void copy_columns(double* to, std::int64_t to_pitch, double const* from, 
     check(cudaMemcpy2DAsync(to, bytes(to_pitch), from, bytes(from_pitch), bytes(length), static_cast<std::size_t>(columns), kind, stream),
           "move a field");
 }
-
-/// D numbers for each of `size` bodies and one halo body on either side, as BasicField on the host.
-template <int D>
-class DeviceField {
-  public:
-    DeviceField() = default;
-    explicit DeviceField(std::int64_t size)
-        : size_(size), pitch_((size + 2 * halo + 7) / 8 * 8), data_(static_cast<std::size_t>(size > 0 ? D * pitch_ : 0)) {}
-    View<D> view() const { return data_.data() ? View<D>{data_.data() + halo, pitch_, size_} : View<D>{}; }
-    std::int64_t size() const { return size_; }
-
-    /// With its halo; a view without origin leaves what is there.
-    void upload(ConstView<D> host, cudaStream_t stream) const {
-        if (host.origin) copy_columns(before(), pitch_, host.origin - 1, host.pitch, size_ + 2, D, cudaMemcpyHostToDevice, stream);
-    }
-    void download(View<D> host, cudaStream_t stream) const {
-        if (host.origin) copy_columns(host.origin - 1, host.pitch, before(), pitch_, size_ + 2, D, cudaMemcpyDeviceToHost, stream);
-    }
-
-  private:
-    static constexpr std::int64_t halo = 8;
-    double* before() const { return data_.data() ? data_.data() + halo - 1 : nullptr; }
-    std::int64_t size_ = 0, pitch_ = 0;
-    Buffer<double> data_;
-};
-
-/// As DirectionsField on the host.
-class DeviceDirections {
-  public:
-    DeviceDirections() = default;
-    DeviceDirections(std::int64_t size, int directions)
-        : size_(size), directions_(directions), pitch_((size + 7) / 8 * 8), data_(static_cast<std::size_t>(pitch_ * directions)) {}
-    DirectionsView view() const { return {data_.data(), pitch_}; }
-    std::int64_t size() const { return size_; }
-    int directions() const { return directions_; }
-    void upload(ConstDirectionsView host, cudaStream_t stream) const {
-        copy_columns(data_.data(), pitch_, host.origin, host.pitch, size_, directions_, cudaMemcpyHostToDevice, stream);
-    }
-    void download(DirectionsView host, cudaStream_t stream) const {
-        copy_columns(host.origin, host.pitch, data_.data(), pitch_, size_, directions_, cudaMemcpyDeviceToHost, stream);
-    }
-
-  private:
-    std::int64_t size_ = 0;
-    int directions_ = 0;
-    std::int64_t pitch_ = 0;
-    Buffer<double> data_;
-};
 
 }  // namespace catena::cuda

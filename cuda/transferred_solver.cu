@@ -28,20 +28,25 @@ class TransferredSolver final : public ChainSolver {
 
     void assemble_matrices(ConfigurationView const& c) override {
         auto const start = now();
-        solver_->assemble_matrices({up(c.direction, direction_), up(c.rotation, rotation_), up(c.tip_direction, tip_direction_),
-                                    up(c.r2, moving_r2_), up(c.axes2, moving_axes2_)});
+        solver_->assemble_matrices(up(c));
+        solver_->check();
         matrix_seconds_ += now() - start;
+    }
+    void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
+        auto const start = now();
+        solver_->assemble_and_solve(up(configuration), up(loads), wanted(out));
+        bring_back(out);
+        solver_->check();
+        matrix_seconds_ += now() - start;
+    }
+    std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
+                                         int chained, int repeat) override {
+        return solver_->time_evaluations(up(configuration), up(loads), wanted(out), chained, repeat);
     }
     void solve(LoadsView const& l, AccelerationsView const& out) override {
         auto const start = now();
-        solver_->solve({up(l.torque, torque_), up(l.force, force_), up(l.omega, omega_), up(l.bias, bias_), up(l.tip_bias, tip_bias_)},
-                       {wanted(out.alpha, alpha_), wanted(out.acceleration, acceleration_), wanted(out.joint_force, joint_force_),
-                        wanted(out.tip_force, tip_force_)});
-        alpha_.download(out.alpha, space_.stream());
-        acceleration_.download(out.acceleration, space_.stream());
-        joint_force_.download(out.joint_force, space_.stream());
-        tip_force_.download(out.tip_force, space_.stream());
-        space_.wait();
+        solver_->solve(up(l), wanted(out));
+        bring_back(out);
         bias_seconds_ += now() - start;
     }
     SolverReport report() const override {
@@ -53,6 +58,36 @@ class TransferredSolver final : public ChainSolver {
 
   private:
     static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+    ConfigurationView up(ConfigurationView const& c) const {
+        ConfigurationView device;
+        device.direction = up(c.direction, direction_);
+        device.rotation = up(c.rotation, rotation_);
+        device.tip_direction = up(c.tip_direction, tip_direction_);
+        device.r2 = up(c.r2, moving_r2_);
+        device.axes2 = up(c.axes2, moving_axes2_);
+        return device;
+    }
+    LoadsView up(LoadsView const& l) const {
+        LoadsView device;
+        device.torque = up(l.torque, torque_);
+        device.force = up(l.force, force_);
+        device.omega = up(l.omega, omega_);
+        device.bias = up(l.bias, bias_);
+        device.tip_bias = up(l.tip_bias, tip_bias_);
+        device.gyroscopic = l.gyroscopic;
+        return device;
+    }
+    AccelerationsView wanted(AccelerationsView const& out) const {
+        return {wanted(out.alpha, alpha_), wanted(out.acceleration, acceleration_), wanted(out.joint_force, joint_force_),
+                wanted(out.tip_force, tip_force_)};
+    }
+    void bring_back(AccelerationsView const& out) const {
+        alpha_.download(out.alpha, space_.stream());
+        acceleration_.download(out.acceleration, space_.stream());
+        joint_force_.download(out.joint_force, space_.stream());
+        tip_force_.download(out.tip_force, space_.stream());
+        space_.wait();
+    }
     template <int D>
     ConstView<D> up(ConstView<D> const& host, DeviceField<D> const& device) const {
         device.upload(host, space_.stream());

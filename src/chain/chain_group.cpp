@@ -287,7 +287,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     }
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
-    group.partition = dca::Partition(lengths, group.directions, pairwise, communicator.size(), tips);
+    group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
@@ -339,6 +339,7 @@ std::int64_t ChainGroup::scene_index(std::int64_t k) const {
 
 GroupView ChainGroup::view() const {
     return {size,
+            is_first.data(),
             is_last.data(),
             jointed_tip.empty() ? nullptr : jointed_tip.data(),
             tip_screw.data(),

@@ -1,5 +1,6 @@
 // One quantity of D components for every body a rank holds, component after component (a structure of arrays), with one
-// halo body on either side. All addressing is here, so that another layout changes this file alone.
+// halo body on either side. All addressing is here, in DirectionsView and in RecordsView: a GPU's arrays have an order of their own
+// (place_of), so that host code must not reach through a view of a device, nor the other way round.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +19,19 @@ struct FieldView {
     std::int64_t pitch = 0;  // from one component to the next
     std::int64_t size = 0;
 
-    CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * pitch + k]; }
+    CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * pitch + place_of(k)]; }
     CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const {
         Vector<std::remove_const_t<Real>, D> v;
+        Real* const first = origin + place_of(k);
         CATENA_UNROLL
-        for (int i = 0; i < D; ++i) v[i] = origin[i * pitch + k];
+        for (int i = 0; i < D; ++i) v[i] = first[i * pitch];
         return v;
     }
     template <class Value>
     CATENA_HD void store(std::int64_t k, Vector<Value, D> const& v) const {
+        Real* const first = origin + place_of(k);
         CATENA_UNROLL
-        for (int i = 0; i < D; ++i) origin[i * pitch + k] = v[i];
+        for (int i = 0; i < D; ++i) first[i * pitch] = v[i];
     }
     CATENA_HD operator FieldView<Real const, D>() const { return {origin, pitch, size}; }
 };

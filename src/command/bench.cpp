@@ -6,6 +6,7 @@
 #include "command/text.hpp"
 #include "command/version.hpp"
 #include "dca/oracle/oracle.hpp"
+#include "error.hpp"
 #include "report/hardware.hpp"
 #include "report/solver_errors.hpp"
 #include "report/timing.hpp"
@@ -16,9 +17,11 @@ namespace {
 Outcome list() {
     Outcome outcome;
     outcome.text =
-        "solve    matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor (--backend "
-        "cuda: the GPU's)\n";
-    outcome.json = {{"benchmarks", {"solve"}}};
+        "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor (--backend "
+        "cuda: the GPU's)\n"
+        "evaluation  the solver alone, with everything it reads and writes in place: many evaluations of random chains in absolute\n"
+        "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n";
+    outcome.json = {{"benchmarks", {"evaluation", "solve"}}};
     return outcome;
 }
 
@@ -115,10 +118,97 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     return outcome;
 }
 
+/// Bytes a body that an evaluation must read and must write, whatever the algorithm: links: mass, position, velocity, force; acceleration.
+/// Bodies on spherical joints: mass, inertia, two handles, orientation, angular velocity, force, torque; two accelerations. 0: not said.
+struct Traffic {
+    double read = 0, write = 0;
+};
+Traffic traffic_of(std::string const& joint) {
+    if (joint == "link") return {80, 24};
+    if (joint == "spherical") return {208, 48};
+    return {};
+}
+/// So many evaluations one after the other that a moment's noise does not count.
+int chained_for(std::int64_t bodies) { return bodies < 100000 ? 50 : bodies < 2000000 ? 10 : 2; }
+
+struct AtOnce {
+    Spread seconds;
+    double residual = 0, bound = 0;
+    int threads = 1;
+};
+AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communicator, int repeat) {
+    scene.solver.backend = backend;
+    ChainSystem system(scene, Axes::world, communicator);
+    system.evaluate();
+    system.evaluate(false);
+    AtOnce found;
+    found.residual = system.residual();
+    found.bound = system.residual_bound();
+    found.threads = system.executor().threads();
+    found.seconds = spread_of(system.absolute().front()->time_at_once(chained_for(scene.bodies()), repeat));
+    return found;
+}
+
+Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
+    std::vector<Backend> const backends = request.backends.empty() ? cpu_backends() : request.backends;
+    Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
+    Outcome outcome;
+    outcome.json = {{"bench", "evaluation"},
+                    {"build", version_json()},
+                    {"hardware", hardware_json()},
+                    {"ranks", communicator.size()},
+                    {"results", Json::array()}};
+    for (std::string const& joint : request.joints)
+        for (std::int64_t const bodies : request.sizes) {
+            if (joint != "link" && joint != "spherical")
+                throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
+            Scene scene = random_scene(joint, bodies, overrides_of(request));
+            for (Backend const backend : backends) {
+                AtOnce const found = time_at_once(scene, backend, communicator, request.repeat);
+                bool const valid = found.residual <= found.bound;
+                outcome.valid = outcome.valid && valid;
+                auto const n = static_cast<double>(scene.bodies());
+                Traffic const traffic = traffic_of(joint);
+                double const rate = n * (traffic.read + traffic.write) / found.seconds.median * 1e-9;
+                // Two sweeps over what is read, at what an H200's memory delivers.
+                double const floor = n * (2 * traffic.read + traffic.write) / 4.2e12 / found.seconds.median;
+                bool const gpu = backend == Backend::cuda;
+                table.add({joint, std::to_string(bodies), name_of(backend), std::to_string(found.threads),
+                           fmt::format("{:.4g}", 1e6 * found.seconds.median), fmt::format("{:.3g}", 1e9 * found.seconds.median / n),
+                           fmt::format("{:.0f}", rate), gpu ? fmt::format("{:.2f}", floor) : "-", fmt::format("{:.1e}", found.residual),
+                           fmt::format("{:.1e}", found.bound), valid ? "VALID" : "INVALID"});
+                outcome.json["results"].push_back({{"joint", joint},
+                                                   {"bodies", bodies},
+                                                   {"backend", name_of(backend)},
+                                                   {"threads", found.threads},
+                                                   {"chained", chained_for(bodies)},
+                                                   {"repeat", found.seconds.count},
+                                                   {"microseconds",
+                                                    {{"median", 1e6 * found.seconds.median},
+                                                     {"min", 1e6 * found.seconds.min},
+                                                     {"max", 1e6 * found.seconds.max}}},
+                                                   {"gigabytes_per_second", rate},
+                                                   {"floor_over_time", gpu ? Json(floor) : Json(nullptr)},
+                                                   {"residual", found.residual},
+                                                   {"residual_bound", found.bound},
+                                                   {"valid", valid}});
+            }
+        }
+    outcome.json["valid"] = outcome.valid;
+    outcome.text = fmt::format(
+        "an evaluation, inputs and outputs in place, median of {}; GB/s counts what must be read and written once; floor: two sweeps over "
+        "what is read at 4.2 TB/s. {}, {}; {}, {}\n",
+        request.repeat, counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set());
+    outcome.text += table.text();
+    outcome.complaint = "a residual above its bound: see the results";
+    return outcome;
+}
+
 }  // namespace
 
 Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
-    return request.name == "list" ? list() : solve(communicator, request);
+    if (request.name == "list") return list();
+    return request.name == "evaluation" ? evaluation(communicator, request) : solve(communicator, request);
 }
 
 }  // namespace catena::command

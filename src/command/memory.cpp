@@ -62,7 +62,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         auto const n = static_cast<double>(chain.size());
         SolverSizes const size = sizes_for(k);
         dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()),
-                                  dca::run_length_for(static_cast<std::int64_t>(chain.size()), k, pairwise));
+                                  dca::run_length_for(pairwise));
         double const numbers =
             chain.is_beads() ? bead_numbers : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? runge_kutta_numbers : 0);
         m.scene += scene_bytes(chain);

@@ -1,14 +1,19 @@
 // Marks for code that host and device share.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
+
 #if defined(__CUDACC__)
 #define CATENA_HD __host__ __device__ inline
 #define CATENA_LAMBDA __device__  // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
 #define CATENA_UNROLL _Pragma("unroll")
+#define CATENA_NO_UNROLL _Pragma("unroll 1")
 #else
 #define CATENA_HD inline
 #define CATENA_LAMBDA
 #define CATENA_UNROLL _Pragma("GCC unroll 8")
+#define CATENA_NO_UNROLL
 #endif
 
 namespace catena {
@@ -33,6 +38,43 @@ CATENA_HD float fused(float a, float b, float c) {
 template <class Real>
 CATENA_HD Real fused(Real a, Real b, Real c) {
     return a * b + c;
+}
+
+/// place = min(place, value), for any number of threads at once.
+CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
+#if defined(__CUDA_ARCH__)
+    atomicMin(place, value);
+#else
+    std::atomic_ref<unsigned long long> found(*place);
+    unsigned long long before = found.load(std::memory_order_relaxed);
+    while (value < before && !found.compare_exchange_weak(before, value, std::memory_order_relaxed)) {
+    }
+#endif
+}
+
+/// The order of bodies in a GPU's arrays: in tiles of `lanes` runs of `steps` bodies, the runs' first bodies next to each other, then
+/// their second ones, ..., so that threads that walk along a run each touch whole cache lines together.
+namespace gpu_order {
+inline constexpr std::int64_t lanes = 32, steps = 16, tile = lanes * steps;
+CATENA_HD constexpr std::int64_t place(std::int64_t k) {
+    std::int64_t const in_tile = k & (tile - 1);
+    return k - in_tile + (in_tile % steps) * lanes + in_tile / steps;
+}
+CATENA_HD constexpr std::int64_t body(std::int64_t place) {
+    std::int64_t const in_tile = place & (tile - 1);
+    return place - in_tile + (in_tile % lanes) * steps + in_tile / lanes;
+}
+/// Of whole tiles that hold `bodies`.
+CATENA_HD constexpr std::int64_t padded(std::int64_t bodies) { return (bodies + tile - 1) / tile * tile; }
+}  // namespace gpu_order
+
+/// Where body k stands in arrays of the processor that runs this: on the host one body follows the other.
+CATENA_HD std::int64_t place_of(std::int64_t k) {
+#if defined(__CUDA_ARCH__)
+    return gpu_order::place(k);
+#else
+    return k;
+#endif
 }
 
 }  // namespace catena

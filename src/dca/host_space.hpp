@@ -3,16 +3,20 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "dca/records.hpp"
 #include "dca/solver.hpp"
 
 namespace catena {
 
 class HostSpace : public HostAccess {
   public:
+    /// Whether what is asked for is done when the call returns.
+    static constexpr bool answers_at_once = true;
     /// The executor must outlive the space.
     explicit HostSpace(Executor const& executor) : executor_(&executor) {}
 
@@ -45,9 +49,29 @@ class HostSpace : public HostAccess {
       private:
         ChainGroup const& group_;
     };
-    /// Lists of items level by level: those of a level are independent, the next level's need them.
-    template <class T>
-    using Levels = std::span<std::vector<T> const>;
+    /// `count` records, zero at first.
+    template <class T, dca::Order order>
+    class Records {
+      public:
+        explicit Records(std::int64_t count) : records_(static_cast<std::size_t>(count)) {}
+        dca::RecordsView<T, order> view() { return {reinterpret_cast<double*>(records_.data()), 0}; }
+
+      private:
+        std::vector<T> records_;
+    };
+    /// Runs, merges level by level and roots: those of a level are independent, the next level's need them.
+    class Tree {
+      public:
+        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
+             std::int64_t /*slots*/, int /*directions*/)
+            : runs_(runs), levels_(levels), roots_(roots) {}
+
+      private:
+        friend class HostSpace;
+        std::span<dca::Run const> runs_;
+        std::span<std::vector<dca::Merge> const> levels_;
+        std::span<dca::Root const> roots_;
+    };
 
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
@@ -57,13 +81,23 @@ class HostSpace : public HostAccess {
     void over(List<T> const& items, Action const& action) const {
         executor_->for_each(std::ssize(items), [&](std::int64_t i) { action(items[static_cast<std::size_t>(i)]); });
     }
-    template <class T, class Action>
-    void climb(Levels<T> const& levels, Action const& action) const {
-        for (std::vector<T> const& level : levels) over(List<T>(level), action);
+    /// A sweep (tree_sweeps.hpp) from the leaves to the roots, and from the roots to the leaves.
+    template <class Sweep>
+    void climb(Tree const& tree, Sweep const& sweep) const {
+        over(tree.runs_, [&](dca::Run const& run) { climb_run(sweep, run); });
+        for (std::vector<dca::Merge> const& level : tree.levels_) over(std::span(level), [&](dca::Merge const& m) { climb_merge(sweep, m); });
+        over(tree.roots_, [&](dca::Root const& root) { sweep.close(root); });
     }
-    template <class T, class Action>
-    void descend(Levels<T> const& levels, Action const& action) const {
-        for (std::size_t l = levels.size(); l-- > 0;) over(List<T>(levels[l]), action);
+    template <class Sweep>
+    void descend(Tree const& tree, Sweep const& sweep) const {
+        for (std::size_t l = tree.levels_.size(); l-- > 0;) over(std::span(tree.levels_[l]), [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
+        over(tree.runs_, [&](dca::Run const& run) { descend_run(sweep, run); });
+    }
+    /// Both.
+    template <class Sweep>
+    void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
+        climb(tree, sweep);
+        descend(tree, sweep);
     }
     /// The smallest i in [0, count) with predicate(i), or count.
     template <class Predicate>
@@ -98,6 +132,14 @@ class HostSpace : public HostAccess {
     void put(T* place, T const& value) const {
         *place = value;
     }
+    template <class T>
+    T get(dca::RecordsView<T, dca::Order::plain> records, std::int64_t i) const {
+        return records.load(i);
+    }
+    template <class T>
+    void put(dca::RecordsView<T, dca::Order::plain> records, std::int64_t i, T const& record) const {
+        records.store(i, record);
+    }
     // Body k of a field, halo included.
     using HostAccess::get, HostAccess::put;
     /// A whole field for the host to read.
@@ -122,6 +164,17 @@ class HostSpace : public HostAccess {
     template <int D>
     void push(Field<D>&, Mirror<D> const&) const {}
 
+    /// Seconds, `repeat` times the mean of `chained` calls one after the other.
+    template <class Action>
+    std::vector<double> time_chained(int chained, int repeat, Action const& action) const {
+        std::vector<double> seconds;
+        for (int r = 0; r < repeat; ++r) {
+            auto const start = std::chrono::steady_clock::now();
+            for (int i = 0; i < chained; ++i) action();
+            seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() / chained);
+        }
+        return seconds;
+    }
     /// Until everything asked for so far is done.
     void wait() const {}
     int threads() const { return executor_->threads(); }

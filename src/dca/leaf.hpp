@@ -103,6 +103,13 @@ CATENA_HD Vector<Real, K> along(Handle<Real, K> const& h, Vector<Real, 3> const&
     return transposed_times(h.torque, alpha) + transposed_times(h.force, a);
 }
 
+/// A x from the inverse of A, symmetric and positive definite.
+template <class Real>
+CATENA_HD Vector<Real, 3> times_inverse_of(Symmetric<Real, 3> const& inverse, Vector<Real, 3> const& x) {
+    Symmetric<Real, 3> const factor = factorize(inverse, 3);
+    return solve_upper(factor, solve_lower(factor, x));
+}
+
 /// Any unit vectors that make an orthonormal right-handed triple (axis, p, q) with the unit vector `axis`
 /// (Duff et al., "Building an Orthonormal Basis, Revisited", 2017).
 template <class Real>

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dca/leaf.hpp"
+#include "dca/moving_beads.hpp"
 #include "dca/solver.hpp"
 
 namespace catena::dca {
@@ -24,11 +25,22 @@ CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, 
     if (loads.tip_bias && group.has_jointed_tip(k)) b.b2 = b.b2 - loads.tip_bias.load<K>(k);
 }
 
+/// What is wanted of the forces at body k's two joints.
+template <int K>
+CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, std::int64_t k, Vector<double, K> const& inboard,
+                            Vector<double, K> const& outboard) {
+    if (out.joint_force) out.joint_force.template store<K>(k, inboard);
+    if (out.tip_force && group.has_jointed_tip(k)) out.tip_force.template store<K>(k, outboard);
+}
+
 /// Point beads; K = 1 projected, 3 full.
 template <int K_>
 class BeadLeaf {
   public:
     static constexpr int K = K_;
+    /// Whether matrices and biases in one sweep beat one sweep after the other: with more directions registers run out.
+    static constexpr bool at_once = K == 1;
+    using Moving = MovingBeads<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         direction_ = c.direction;
@@ -73,7 +85,7 @@ struct HandlePair {
 template <int K, bool sliding>
 class MeetingFrames {
   public:
-    static constexpr bool any_forces = sliding;
+    static constexpr bool any_forces = sliding, at_once = true;
     explicit MeetingFrames(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
@@ -109,7 +121,7 @@ class MeetingFrames {
 template <int K>
 class GroundFrames {
   public:
-    static constexpr bool any_forces = false;
+    static constexpr bool any_forces = false, at_once = true;
     explicit GroundFrames(GroupView const& group) : r1_(group.r1), r2_(group.r2) {}
     void set(ConfigurationView const& c) { rotation_ = c.rotation; }
     CATENA_HD Vec3 r1(std::int64_t k) const { return r1_.load(k); }
@@ -129,7 +141,7 @@ class GroundFrames {
 template <int K>
 class LinkFrames {
   public:
-    static constexpr bool any_forces = false;
+    static constexpr bool any_forces = false, at_once = false;
     explicit LinkFrames(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
@@ -165,6 +177,7 @@ template <int K_, class Frames>
 class BodyLeaf {
   public:
     static constexpr int K = K_;
+    static constexpr bool at_once = K <= 3 && Frames::at_once;
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
     CATENA_HD GroupView const& group() const { return group_; }
@@ -176,7 +189,7 @@ class BodyLeaf {
     CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
         HandlePair<K> const h = frames_.handles(k);
         Vec3 a1 = group_.inverse_mass.at(k, 0) * load_or_zero(loads.force, k), a2 = a1;
-        Vec3 const alpha = loads.torque.origin ? inverse_inertia(k) * loads.torque.load(k) : Vec3::zero();
+        Vec3 const alpha = loads.torque.origin ? inverse_inertia(k) * applied_torque(loads, k) : Vec3::zero();
         if (loads.omega.origin) {
             Vec3 const w = loads.omega.load(k);
             a1 = a1 + h.to_force_axes * cross(w, cross(w, frames_.r1(k)));
@@ -190,13 +203,19 @@ class BodyLeaf {
                               Vector<double, K> const& outboard_force, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         HandlePair<K> const h = frames_.handles(k);
-        Vec3 const torque = load_or_zero(loads.torque, k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
+        Vec3 const torque = applied_torque(loads, k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
         Vec3 const force = load_or_zero(loads.force, k) + (h.h1.force * inboard_force - h.h2.force * outboard_force);
         out.alpha.store(k, inverse_inertia(k) * torque);
         out.acceleration.store(k, group_.inverse_mass.at(k, 0) * force);
     }
 
   private:
+    CATENA_HD Vec3 applied_torque(LoadsView const& loads, std::int64_t k) const {
+        Vec3 const torque = load_or_zero(loads.torque, k);
+        if (!loads.gyroscopic) return torque;
+        Vec3 const w = loads.omega.load(k);
+        return torque - cross(w, times_inverse_of(inverse_inertia(k), w));
+    }
     CATENA_HD Sym3 inverse_inertia(std::int64_t k) const { return as_symmetric(group_.inverse_inertia.load(k)); }
 
     GroupView group_;

@@ -149,4 +149,42 @@ CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint, Vector<
     return solve_upper(joint.factor, joint.inboard * first + (joint.outboard * next + offset));
 }
 
+/// A joint passed on the way outwards from a known force: its own follows from the next one's, phi = gain phi_next + offset.
+template <class Real, int K>
+struct Elimination {
+    Matrix<Real, K, K> gain;
+    Vector<Real, K> offset;
+};
+
+/// One side of `assemble`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
+/// that force's part in it); they become the joined segment's.
+template <class Real, int K>
+CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,
+                                         SegmentBias<Real, K> const& bias, int restricted) {
+    CATENA_UNROLL
+    for (int i = 0; i < Symmetric<Real, K>::size; ++i) z22.data[i] = z22.data[i] + outboard.z11.data[i];
+    Symmetric<Real, K> const factor = factorize(z22, restricted);
+    Elimination<Real, K> e;
+    e.gain = solve_lower(factor, outboard.z12);
+    e.offset = solve_lower(factor, b2 - bias.b1);
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) {
+        Real b = bias.b2[i];
+        CATENA_UNROLL
+        for (int k = 0; k < K; ++k) b = fused(factor(k, k) * e.offset[k], e.gain(k, i), b);
+        b2[i] = b;
+        CATENA_UNROLL
+        for (int j = 0; j <= i; ++j) {
+            Real z = outboard.z22(i, j);
+            CATENA_UNROLL
+            for (int k = 0; k < K; ++k) z = fused(-e.gain(k, i), factor(k, k) * e.gain(k, j), z);
+            z22(i, j) = z;
+        }
+    }
+    e.offset = solve_upper(factor, e.offset);
+    CATENA_UNROLL
+    for (int j = 0; j < K; ++j) e.gain.set_column(j, solve_upper(factor, e.gain.column(j)));
+    return e;
+}
+
 }  // namespace catena::dca

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "chain/chain_group.hpp"
 #include "dca/executor.hpp"
@@ -16,17 +17,20 @@ template <class Real>
 struct BasicDirectionsView {
     Real* origin = nullptr;
     std::int64_t pitch = 0;
+    CATENA_HD Real& at(std::int64_t k, int direction) const { return origin[direction * pitch + place_of(k)]; }
     template <int K>
     CATENA_HD Vector<double, K> load(std::int64_t k) const {
         Vector<double, K> v;
+        Real* const first = origin + place_of(k);
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) v[i] = origin[i * pitch + k];
+        for (int i = 0; i < K; ++i) v[i] = first[i * pitch];
         return v;
     }
     template <int K>
     CATENA_HD void store(std::int64_t k, Vector<double, K> const& v) const {
+        Real* const first = origin + place_of(k);
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) origin[i * pitch + k] = v[i];
+        for (int i = 0; i < K; ++i) first[i * pitch] = v[i];
     }
     CATENA_HD explicit operator bool() const { return origin != nullptr; }
     CATENA_HD operator BasicDirectionsView<Real const>() const { return {origin, pitch}; }
@@ -46,6 +50,24 @@ class DirectionsField {
     std::vector<double> data_;
 };
 
+/// The part of a bead chain on this rank.
+struct BeadPiece {
+    std::int64_t first = 0;     // local bead
+    std::int64_t in_scene = 0;  // its index over the scene
+    Vec3 anchor;                // of a chain on a link to the ground
+};
+CATENA_HD BeadPiece const& piece_of(BeadPiece const* piece, std::int64_t pieces, std::int64_t k) {
+    std::int64_t low = 0, high = pieces;
+    while (high - low > 1) {
+        std::int64_t const middle = (low + high) / 2;
+        if (piece[middle].first <= k)
+            low = middle;
+        else
+            high = middle;
+    }
+    return piece[low];
+}
+
 /// What the matrices depend on.
 struct ConfigurationView {
     ConstView<3> direction;      // links: unit direction of link k, from inboard to outboard, W; [0, size]; 0 where there is no link
@@ -55,6 +77,10 @@ struct ConfigurationView {
     /// the meeting frame's axes; B.
     ConstView<3> r2;
     ConstView<9> axes2;
+    /// Beads, for assemble_and_solve() alone, instead of directions: positions with their halo, W, and the pieces they belong to.
+    ConstView<3> position{};
+    BeadPiece const* piece = nullptr;
+    std::int64_t pieces = 0;
 };
 
 /// What the biases depend on. A view without origin means zero.
@@ -64,6 +90,8 @@ struct LoadsView {
     ConstView<3> omega;        // angular velocity, B: for the centripetal terms at the handles
     ConstDirectionsView bias;  // subtracted velocity terms of joint k along its directions: the solver makes D^T (A_1^B - A_2^A) = -bias
     ConstDirectionsView tip_bias;  // the same of the joint between last body k and the ground
+    ConstView<3> velocity{};       // with positions given instead of directions: of beads, with their halo, W; instead of `bias`
+    bool gyroscopic = false;       // `torque` lacks -omega x J omega: the solver adds it
 };
 
 struct AccelerationsView {
@@ -78,22 +106,30 @@ struct SolverReport {
     int directions = 0, threads = 1, ranks = 1;
     std::int64_t run_length = 0, depth = 0, merges = 0;
     std::int64_t memory_bytes = 0;
-    std::int64_t matrix_sweeps = 0, bias_sweeps = 0;
+    std::int64_t matrix_sweeps = 0, bias_sweeps = 0, evaluations = 0;  // of the latter each is both, matrices and biases together
     double matrix_seconds = 0, bias_seconds = 0, exchange_seconds = 0;
 };
 
 class ChainSolver {
   public:
     virtual ~ChainSolver() = default;
-    /// Needs no forces. Collective. Throws ComputationError when a joint's matrix is not positive definite.
+    /// Needs no forces. Collective. Throws ComputationError when a joint's matrix is not positive definite, or leaves that to check()
+    /// where it does not wait for what it asked for.
     virtual void assemble_matrices(ConfigurationView const&) = 0;
     /// The bias sweep and the disassembly with the matrices and the configuration given last; may be repeated. Collective.
     virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
-    /// Both, where nothing is to be hidden. Collective.
-    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
-        assemble_matrices(configuration);
-        solve(loads, out);
-    }
+    /// Both, where nothing is to be hidden: the matrices are not kept for solve(). Collective.
+    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) = 0;
+    /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
+    /// Collective.
+    virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,
+                                                 int repeat) = 0;
+    /// Throws ComputationError when a joint's matrix has not been positive definite since the last call, on this rank.
+    virtual void check() {}
+    /// Until everything asked for so far is done.
+    virtual void wait() {}
+    /// From here on the seconds of every sweep are in the report, if need be by waiting for each.
+    virtual void measure(bool /*on*/) {}
     virtual SolverReport report() const = 0;
 };
 

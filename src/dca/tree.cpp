@@ -4,13 +4,6 @@
 
 namespace catena::dca {
 
-// Measured with `catena bench solve` (README, "Numbers"): longer runs store fewer segments, shorter ones leave more to do side by side.
-std::int64_t run_length_for(std::int64_t n, int directions, bool pairwise) {
-    if (pairwise) return 1;
-    if (n <= 512) return 8;
-    return directions == 1 ? 32 : 16;
-}
-
 ChainTree::ChainTree(std::int64_t bodies_in, std::int64_t run_length_in)
     : bodies(bodies_in), run_length(run_length_in), runs((bodies_in + run_length_in - 1) / run_length_in) {
     while (nodes(cut_level) > max_units) ++cut_level;
@@ -25,12 +18,12 @@ int ChainTree::levels() const {
     return level;
 }
 
-Partition::Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks,
+Partition::Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks,
                      std::vector<std::uint8_t> const& jointed_tips)
     : first_of_chain{0}, jointed_tip(jointed_tips) {
     jointed_tip.resize(lengths.size(), 0);
     for (std::int64_t const n : lengths) {
-        trees.emplace_back(n, run_length_for(n, directions, pairwise));
+        trees.emplace_back(n, run_length_for(pairwise));
         first_of_chain.push_back(first_of_chain.back() + n);
     }
     first_of_rank.assign(static_cast<std::size_t>(ranks) + 1, bodies());

@@ -8,14 +8,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "dca/host_device.hpp"
+
 namespace catena::dca {
 
 /// Stands in reports and checkpoints: another version may give other bits.
-inline constexpr int tree_table_version = 1;
+inline constexpr int tree_table_version = 2;
 inline constexpr std::int64_t max_units = 64;
+inline constexpr std::int64_t longest_run = 16;
+/// A run's bodies are joined in parts of so many, which are independent of each other until they join.
+inline constexpr int part_length = 4, parts_of_run = static_cast<int>(longest_run) / part_length;
 
-/// Run length for chains of n bodies whose handles carry `directions` directions. `pairwise`: the chapter's tree of pairs.
-std::int64_t run_length_for(std::int64_t n, int directions, bool pairwise);
+/// `pairwise`: the chapter's tree of pairs.
+inline std::int64_t run_length_for(bool pairwise) { return pairwise ? 1 : longest_run; }
 
 struct ChainTree {
     std::int64_t bodies = 0, run_length = 1;
@@ -40,7 +45,7 @@ class Partition {
     Partition() = default;
     /// `lengths` of the chains; every rank gets a run of units of about equal numbers of bodies. Ranks may be left without any.
     /// `jointed_tips`: one a chain, whether its last body is on a joint to the ground; empty: none is.
-    Partition(std::vector<std::int64_t> const& lengths, int directions, bool pairwise, int ranks,
+    Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks,
               std::vector<std::uint8_t> const& jointed_tips = {});
 
     std::vector<ChainTree> trees;              // one a chain
@@ -71,6 +76,12 @@ struct Run {
     std::int64_t body = 0, count = 0, slot = 0;  // local bodies [body, body + count)
     std::int64_t next = 0;                       // storage index of the joint that follows the run
 };
+CATENA_HD int parts_of(Run const& run) { return static_cast<int>((run.count + part_length - 1) / part_length); }
+CATENA_HD std::int64_t begin_of(Run const& run, int part) { return run.body + part * part_length; }
+CATENA_HD std::int64_t end_of(Run const& run, int part) {
+    std::int64_t const end = (part + 1) * part_length;
+    return run.body + (end < run.count ? end : run.count);
+}
 struct Merge {
     std::int64_t inboard = 0, outboard = 0, slot = 0;
     std::int64_t first = 0, joint = 0, next = 0;

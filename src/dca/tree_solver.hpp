@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "dca/host_space.hpp"
-#include "dca/tree_sweeps.hpp"
+#include "dca/evaluation.hpp"
 
 namespace catena::dca {
 
@@ -14,10 +14,8 @@ template <class Leaf, class Space>
 class TreeSolver final : public ChainSolver {
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
-    using Matrices = typename Sweeps::Matrices;
-    using Biases = typename Sweeps::Biases;
-    template <class T>
-    using Array = typename Space::template Array<T>;
+    template <class T, Order order>
+    using Records = typename Space::template Records<T, order>;
 
   public:
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
@@ -26,65 +24,60 @@ class TreeSolver final : public ChainSolver {
           space_(space),
           communicator_(communicator),
           model_(group),
-          runs_(schedule_.runs),
-          levels_(schedule_.levels),
-          top_levels_(schedule_.top_levels),
-          roots_(schedule_.roots),
-          top_roots_(schedule_.top_roots),
+          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, K),
+          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, K),
           top_copies_(schedule_.top_copies),
-          matrices_(static_cast<std::size_t>(schedule_.slots)),
-          biases_(matrices_.size()),
-          joints_(static_cast<std::size_t>(schedule_.joints)),
-          offsets_(joints_.size()),
-          forces_(joints_.size()),
-          sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.data(), biases_.data(),
-                  joints_.data(),      offsets_.data(),     forces_.data()} {}
+          matrices_(schedule_.slots),
+          biases_(schedule_.slots),
+          joints_(schedule_.joints),
+          offsets_(schedule_.joints),
+          forces_(schedule_.joints),
+          lost_(1),
+          sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
+                  joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
+        space_.put(lost_.data(), none_lost);
+    }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
-        auto const start = now();
+        Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
-        auto const merge = [sweeps = sweeps_] CATENA_LAMBDA(Merge const& m) { sweeps.assemble_matrices(m); };
-        auto const close = [sweeps = sweeps_] CATENA_LAMBDA(Root const& root) { sweeps.close_matrices(root); };
-        space_.over(runs_, [sweeps = sweeps_] CATENA_LAMBDA(Run const& run) { sweeps.assemble_matrices(run); });
-        space_.climb(levels_, merge);
-        if (!schedule_.shared.empty()) gather_shared(matrices_);
-        space_.climb(top_levels_, merge);
-        space_.over(roots_, close);
-        space_.over(top_roots_, close);
+        MatrixSweep<Leaf> const sweep{sweeps_};
+        space_.climb(tree_, sweep);
+        if (!schedule_.shared.empty()) {
+            gather_shared(matrices_);
+            space_.climb(top_, sweep);
+        }
         ++report_.matrix_sweeps;
-        // Roots see every pivot's failure: a NaN or infinity travels up, a negative pivot is looked for.
-        std::int64_t const joints = schedule_.joints;
-        std::int64_t const bad =
-            space_.first(joints, [sweeps = sweeps_, halo = schedule_.halo, none = schedule_.none] CATENA_LAMBDA(std::int64_t k) -> bool {
-                return k != halo && k != none && !sweeps.definite(k);
-            });
-        report_.matrix_seconds += now() - start;
-        if (bad < joints) refuse_indefinite(group_, communicator_.rank(), bad);
+        if (Space::answers_at_once) check();
     }
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        auto const start = now();
-        auto const up = [sweeps = sweeps_, loads] CATENA_LAMBDA(Merge const& m) { sweeps.assemble_biases(loads, m); };
-        auto const close = [sweeps = sweeps_] CATENA_LAMBDA(Root const& root) { sweeps.close_biases(root); };
-        auto const down = [sweeps = sweeps_] CATENA_LAMBDA(Merge const& m) { sweeps.disassemble_forces(m); };
-        space_.over(runs_, [sweeps = sweeps_, loads] CATENA_LAMBDA(Run const& run) { sweeps.assemble_biases(loads, run); });
-        space_.climb(levels_, up);
-        if (!schedule_.shared.empty()) gather_shared(biases_);
-        space_.climb(top_levels_, up);
-        space_.over(roots_, close);
-        space_.over(top_roots_, close);
-        space_.descend(top_levels_, down);
-        space_.over(top_copies_, [forces = forces_.data()] CATENA_LAMBDA(TopCopy const& copy) { forces[copy.to] = forces[copy.from]; });
-        space_.descend(levels_, down);
-        space_.over(runs_, [sweeps = sweeps_, loads, out] CATENA_LAMBDA(Run const& run) { sweeps.disassemble_forces(loads, out, run); });
-        if (out.joint_force)  // of the joint after this rank's last body
-            space_.for_each(1, [sweeps = sweeps_, out, from = schedule_.halo, to = schedule_.bodies] CATENA_LAMBDA(std::int64_t) {
-                out.joint_force.template store<K>(to, sweeps.forces[from]);
-            });
-        space_.wait();
+        Stopwatch const watch(*this, report_.bias_seconds);
+        up_and_down(BiasSweep<Leaf>{sweeps_, loads, out}, [&] { gather_shared(biases_); }, out);
         ++report_.bias_sweeps;
-        report_.bias_seconds += now() - start;
     }
+
+    void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
+        bool const plain = group_.partition.trees.front().run_length == 1;  // the chapter's tree of pairs
+        if (!Leaf::at_once || plain) {
+            assemble_matrices(configuration);
+            return solve(loads, out);
+        }
+        if constexpr (Leaf::at_once) evaluate(configuration, loads, out);
+    }
+    std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
+                                         int chained, int repeat) override {
+        return space_.time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
+    }
+
+    void check() override {
+        unsigned long long const bad = space_.get(lost_.data());
+        if (bad == none_lost) return;
+        space_.put(lost_.data(), none_lost);
+        refuse_indefinite(group_, communicator_.rank(), static_cast<std::int64_t>(bad));
+    }
+    void wait() override { space_.wait(); }
+    void measure(bool on) override { measured_ = on; }
 
     SolverReport report() const override {
         SolverReport r = report_;
@@ -95,22 +88,70 @@ class TreeSolver final : public ChainSolver {
     }
 
   private:
-    static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+    static constexpr unsigned long long none_lost = ~0ULL;
+
+    void evaluate(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+        Stopwatch const watch(*this, report_.matrix_seconds);
+        sweeps_.leaf.set(configuration);
+        auto const gather = [&] {
+            gather_shared(matrices_);
+            gather_shared(biases_);
+        };
+        if constexpr (requires { typename Leaf::Moving; })
+            up_and_down(Evaluation<Leaf, typename Leaf::Moving>{sweeps_, {model_.view(), model_.restricted(), configuration, loads}, out},
+                        gather, out);
+        else
+            up_and_down(Evaluation<Leaf, Resting<Leaf>>{sweeps_, {sweeps_.leaf, loads}, out}, gather, out);
+        ++report_.evaluations;
+        if (Space::answers_at_once) check();
+    }
+
+    /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
+    class Stopwatch {
+      public:
+        Stopwatch(TreeSolver& solver, double& seconds) : solver_(solver), seconds_(seconds), start_(now()) {}
+        ~Stopwatch() {
+            if (solver_.measured_) solver_.space_.wait();
+            if (solver_.measured_ || Space::answers_at_once) seconds_ += now() - start_;
+        }
+        Stopwatch(Stopwatch const&) = delete;
+        Stopwatch& operator=(Stopwatch const&) = delete;
+        static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+      private:
+        TreeSolver& solver_;
+        double& seconds_;
+        double start_;
+    };
+
+    template <class Sweep, class Gather>
+    void up_and_down(Sweep const& sweep, Gather const& gather, AccelerationsView const& out) {
+        if (schedule_.shared.empty()) {
+            space_.climb_and_descend(tree_, sweep);
+        } else {
+            space_.climb(tree_, sweep);
+            gather();
+            space_.climb_and_descend(top_, sweep);
+            space_.over(top_copies_, CopyForces<Leaf>{sweeps_});
+            space_.descend(tree_, sweep);
+        }
+        if (out.joint_force && group_.neighbour_outboard >= 0) space_.for_each(1, ForceOfNextRank<Leaf>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
+    }
 
     /// One collective: the units of chains that several ranks share, to all ranks.
     template <class Segment>
-    void gather_shared(Array<Segment>& segments) {
-        auto const start = now();
+    void gather_shared(Records<Segment, Order::plain>& segments) {
+        auto const start = Stopwatch::now();
         std::vector<Segment> own;
         std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
         for (SharedUnit const& unit : schedule_.shared) {
             bytes[unit.owner] += sizeof(Segment);
-            if (unit.source >= 0) own.push_back(space_.get(segments.data() + unit.source));
+            if (unit.source >= 0) own.push_back(space_.get(segments.view(), unit.source));
         }
         std::vector<Segment> all(schedule_.shared.size());
         communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
-        for (std::size_t i = 0; i < all.size(); ++i) space_.put(segments.data() + schedule_.shared[i].slot, all[i]);
-        report_.exchange_seconds += now() - start;
+        for (std::size_t i = 0; i < all.size(); ++i) space_.put(segments.view(), schedule_.shared[i].slot, all[i]);
+        report_.exchange_seconds += Stopwatch::now() - start;
     }
 
     ChainGroup const& group_;
@@ -118,15 +159,16 @@ class TreeSolver final : public ChainSolver {
     Space space_;
     Communicator const& communicator_;
     typename Space::Model model_;
-    typename Space::template List<Run> runs_;
-    typename Space::template Levels<Merge> levels_, top_levels_;
-    typename Space::template List<Root> roots_, top_roots_;
+    std::vector<Run> no_runs_;
+    typename Space::Tree tree_, top_;
     typename Space::template List<TopCopy> top_copies_;
-    Array<Matrices> matrices_;
-    Array<Biases> biases_;
-    Array<JointMatrix<double, K>> joints_;
-    Array<Vector<double, K>> offsets_, forces_;
+    Records<SegmentMatrix<double, K>, Order::plain> matrices_;
+    Records<SegmentBias<double, K>, Order::plain> biases_;
+    Records<JointMatrix<double, K>, Order::by_body> joints_;
+    Records<Vector<double, K>, Order::by_body> offsets_, forces_;
+    typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
+    bool measured_ = false;
     SolverReport report_;
 };
 

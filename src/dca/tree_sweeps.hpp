@@ -1,11 +1,20 @@
-// One item of every sweep over the canonical tree, host and device: a run, a merge, a root. Who calls them for which items is the
-// driver's business (tree_solver.hpp).
+// One item of every sweep over the canonical tree, host and device: a part of a run, a run, a merge, a root. Who calls them for which
+// items is the driver's business (tree_solver.hpp) and the space's.
+//
+// A sweep is an object with Segment (what travels upwards), part(Run, p), joined(inboard, outboard, joint), load and store of slots,
+// close(Root) and, if it `descends`, node(joint), force(node, first, next) and down(Run, p, first, next), the forces at the ends of part p.
 #pragma once
 
 #include "dca/leaves.hpp"
+#include "dca/records.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::dca {
+
+/// A joint whose matrix is not positive definite; none at first.
+struct Lost {
+    unsigned long long joint = ~0ULL;
+};
 
 template <class Leaf_>
 struct TreeSweeps {
@@ -17,86 +26,220 @@ struct TreeSweeps {
     using Directions = Vector<double, K>;
 
     Leaf leaf;
-    std::uint8_t const* restricted = nullptr;  // of every joint (ChainGroup::restricted_of_joint)
-    Matrices* matrices = nullptr;              // by slot
-    Biases* biases = nullptr;
-    Joint* joints = nullptr;  // by joint
-    Directions* offsets = nullptr;
-    Directions* forces = nullptr;
+    std::uint8_t const* restricted = nullptr;         // of every joint (ChainGroup::restricted_of_joint)
+    RecordsView<Matrices, Order::plain> matrices;     // by slot
+    RecordsView<Biases, Order::plain> biases;
+    RecordsView<Joint, Order::by_body> joints;        // by joint
+    RecordsView<Directions, Order::by_body> offsets, forces;
+    unsigned long long* lost = nullptr;               // the smallest joint whose matrix was not positive definite
 
     static std::int64_t bytes(Schedule const& schedule) {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
                schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + 2 * sizeof(Directions));
     }
-
-    CATENA_HD void assemble_matrices(Run const& run) const {
-        Matrices segment = leaf.matrix(run.body);
-        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)
-            segment = assemble(segment, leaf.matrix(k), restricted[k], joints[k]);
-        matrices[run.slot] = segment;
+    /// The smallest joint so far whose matrix is not positive definite, as its pivots say.
+    CATENA_HD void watch(std::int64_t k, Symmetric<double, K> const& factor, Lost& found) const {
+        bool good = true;
+        CATENA_UNROLL
+        for (int i = 0; i < K; ++i) good = good && (i >= restricted[k] || (factor(i, i) > 0 && factor(i, i) - factor(i, i) == 0));
+        auto const bad = static_cast<unsigned long long>(k);
+        found.joint = good || bad > found.joint ? found.joint : bad;
     }
-    CATENA_HD void assemble_matrices(Merge const& m) const {
-        matrices[m.slot] = assemble(matrices[m.inboard], matrices[m.outboard], restricted[m.joint], joints[m.joint]);
+    /// Apart from the watching, so that it does not stand between a loop's reads.
+    CATENA_HD void note(Lost const& found) const {
+        if (found.joint != Lost{}.joint) lower_to(lost, found.joint);
     }
-    CATENA_HD void close_matrices(Root const& root) const {
-        Matrices segment = matrices[root.slot];
-        if (root.jointed_tip) segment = assemble(segment, Matrices::zero(), restricted[root.next], joints[root.next]);
-        joints[root.first].factor = factorize(segment.z11, restricted[root.first]);
-        if (root.jointed_tip) refuse_redundant(root);
+    /// What the way down needs of a joint.
+    struct Node {
+        Joint joint;
+        Directions offset;
+    };
+    CATENA_HD Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
+    /// The forces at a chain's ends, from its bias as it is held.
+    CATENA_HD void close(Root const& root, Symmetric<double, K> const& factor, Biases const& held) const {
+        Directions const force = solve_upper(factor, solve_lower(factor, -held.b1));
+        forces.store(root.first, force);
+        if (!root.jointed_tip) return;
+        Node const tip = node(root.next);
+        forces.store(root.next, disassemble(tip.joint, tip.offset, force, Directions::zero()));
     }
-
-    CATENA_HD void assemble_biases(LoadsView const& loads, Run const& run) const {
-        Biases segment = leaf.bias(loads, run.body);
-        for (std::int64_t k = run.body + 1; k < run.body + run.count; ++k)
-            segment = assemble(segment, leaf.bias(loads, k), joints[k], offsets[k]);
-        biases[run.slot] = segment;
-    }
-    CATENA_HD void assemble_biases(LoadsView const&, Merge const& m) const {
-        biases[m.slot] = assemble(biases[m.inboard], biases[m.outboard], joints[m.joint], offsets[m.joint]);
-    }
-    /// Ground is a segment with zeta = 0: its acceleration stands in the biases of the joints to it.
-    CATENA_HD void close_biases(Root const& root) const {
-        Biases segment = biases[root.slot];
-        if (root.jointed_tip) segment = assemble(segment, Biases::zero(), joints[root.next], offsets[root.next]);
-        forces[root.first] = solve_upper(joints[root.first].factor, solve_lower(joints[root.first].factor, -segment.b1));
-        if (root.jointed_tip)
-            forces[root.next] = disassemble(joints[root.next], offsets[root.next], forces[root.first], Directions::zero());
-    }
-
-    /// Whether the matrix of joint k is positive definite, as its pivots say.
-    CATENA_HD bool definite(std::int64_t k) const {
-        for (int i = 0; i < restricted[k]; ++i)
-            if (double const p = joints[k].factor(i, i); !(p > 0) || p - p != 0) return false;
-        return true;
-    }
-
-    CATENA_HD void disassemble_forces(Merge const& m) const {
-        forces[m.joint] = disassemble(joints[m.joint], offsets[m.joint], forces[m.first], forces[m.next]);
-    }
-    CATENA_HD void disassemble_forces(LoadsView const& loads, AccelerationsView const& out, Run const& run) const {
-        Directions const first = forces[run.body];
-        Directions next = forces[run.next];
-        for (std::int64_t k = run.body + run.count - 1; k >= run.body; --k) {
-            Directions const force = k == run.body ? first : disassemble(joints[k], offsets[k], first, next);
-            leaf.accelerate(loads, k, force, next, out);
-            if (out.joint_force) out.joint_force.template store<K>(k, force);
-            if (out.tip_force && leaf.group().has_jointed_tip(k)) out.tip_force.template store<K>(k, next);
-            next = force;
+    /// The joint between the ground and a chain's first body, which it returns: `floating`, the chain as it floats; `held`, with its tip.
+    CATENA_HD Joint fasten(Root const& root, Matrices const& floating, Matrices const& held) const {
+        Lost found;
+        Joint first = joints.load(root.first);
+        first.factor = factorize(held.z11, restricted[root.first]);
+        if (root.jointed_tip) {
+            Joint next = joints.load(root.next);
+            refuse_redundant(next.factor, floating.z22, restricted[root.next]);
+            joints.store(root.next, next);
+            watch(root.next, next.factor, found);
+            refuse_redundant(first.factor, floating.z11, restricted[root.first]);
         }
+        joints.store(root.first, first);
+        watch(root.first, first.factor, found);
+        note(found);
+        return first;
     }
 
   private:
-    /// Where base and tip hold a chain more than once nothing but rounding is left of a pivot: it is made to fail. What was there before:
-    /// the chain as it floats.
-    CATENA_HD void refuse_redundant(Root const& root) const {
-        mark_lost(joints[root.next].factor, matrices[root.slot].z22, restricted[root.next]);
-        mark_lost(joints[root.first].factor, matrices[root.slot].z11, restricted[root.first]);
+    /// Where base and tip hold a chain more than once nothing but rounding is left of a pivot: it is made to fail.
+    CATENA_HD static void refuse_redundant(Symmetric<double, K>& factor, Symmetric<double, K> const& floating, int of) {
+        double constexpr lost_digits = 0x1p-33;  // fewer than six would be left
+        CATENA_UNROLL
+        for (int i = 0; i < K; ++i)
+            if (i < of && 1 / factor(i, i) < lost_digits * floating(i, i)) factor(i, i) = __builtin_nan("");
     }
-    CATENA_HD static void mark_lost(Symmetric<double, K>& factor, Symmetric<double, K> const& floating, int restricted) {
-        double constexpr lost = 0x1p-33;  // fewer than six digits would be left
-        for (int i = 0; i < restricted; ++i)
-            if (1 / factor(i, i) < lost * floating(i, i)) factor(i, i) = __builtin_nan("");
+};
+
+/// action(k) for bodies k of [begin, end) in turn, unrolled for the smallest handles: larger ones fill the instruction cache as they are.
+template <int K, class Action>
+CATENA_HD void each_body(std::int64_t begin, std::int64_t end, Action const& action) {
+    if constexpr (K == 1) {
+        CATENA_UNROLL
+        for (int i = 0; i < part_length; ++i)
+            if (begin + i < end) action(begin + i);
+    } else {
+        CATENA_NO_UNROLL
+        for (std::int64_t k = begin; k < end; ++k) action(k);
     }
+}
+
+/// The matrices of every segment and joint.
+template <class Leaf>
+struct MatrixSweep {
+    static constexpr bool descends = false;
+    using Sweeps = TreeSweeps<Leaf>;
+    using Joint = typename Sweeps::Joint;
+    using Segment = typename Sweeps::Matrices;
+    Sweeps s;
+
+    CATENA_HD Segment part(Run const& run, int p) const {
+        std::int64_t const begin = begin_of(run, p);
+        Lost found;
+        Segment segment = s.leaf.matrix(begin);
+        each_body<Leaf::K>(begin + 1, end_of(run, p), [&](std::int64_t k) { segment = joined(segment, s.leaf.matrix(k), k, found); });
+        s.note(found);
+        return segment;
+    }
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
+        Lost found;
+        Segment const segment = joined(inboard, outboard, k, found);
+        s.note(found);
+        return segment;
+    }
+    CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    CATENA_HD void close(Root const& root) const {
+        Segment const floating = load(root.slot);
+        s.fasten(root, floating, root.jointed_tip ? joined(floating, Segment::zero(), root.next) : floating);
+    }
+
+  private:
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k, Lost& found) const {
+        Joint joint;
+        Segment const segment = assemble(inboard, outboard, s.restricted[k], joint);
+        s.joints.store(k, joint);
+        s.watch(k, joint.factor, found);
+        return segment;
+    }
+};
+
+/// The biases, joint forces and accelerations, with the matrices assembled last.
+template <class Leaf>
+struct BiasSweep {
+    static constexpr bool descends = true;
+    using Sweeps = TreeSweeps<Leaf>;
+    using Segment = typename Sweeps::Biases;
+    using Directions = typename Sweeps::Directions;
+    using Node = typename Sweeps::Node;
+    Sweeps s;
+    LoadsView loads;
+    AccelerationsView out;
+
+    CATENA_HD Segment part(Run const& run, int p) const {
+        std::int64_t const begin = begin_of(run, p);
+        Segment segment = s.leaf.bias(loads, begin);
+        each_body<Leaf::K>(begin + 1, end_of(run, p), [&](std::int64_t k) { segment = joined(segment, s.leaf.bias(loads, k), k); });
+        return segment;
+    }
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
+        Directions offset;
+        Segment const segment = assemble(inboard, outboard, s.joints.load(k), offset);
+        s.offsets.store(k, offset);
+        return segment;
+    }
+    CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
+    /// Ground is a segment with zeta = 0: its acceleration stands in the biases of the joints to it.
+    CATENA_HD void close(Root const& root) const {
+        Segment const floating = load(root.slot);
+        Segment const held = root.jointed_tip ? joined(floating, Segment::zero(), root.next) : floating;
+        s.close(root, s.joints.load(root.first).factor, held);
+    }
+    CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
+    CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
+        return disassemble(node.joint, node.offset, first, next);
+    }
+    CATENA_HD void down(Run const& run, int p, Directions const& first, Directions next) const {
+        std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
+        each_body<Leaf::K>(begin, end, [&](std::int64_t forwards) {
+            std::int64_t const k = begin + end - 1 - forwards;
+            Directions const at_k = k == begin ? first : force(node(k), first, next);
+            s.leaf.accelerate(loads, k, at_k, next, out);
+            store_forces(s.leaf.group(), out, k, at_k, next);
+            next = at_k;
+        });
+    }
+};
+
+/// A run's parts join one after the other.
+template <class Sweep>
+CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
+    auto segment = sweep.part(run, 0);
+    for (int p = 1; p < parts_of(run); ++p) segment = sweep.joined(segment, sweep.part(run, p), begin_of(run, p));
+    sweep.store(run.slot, segment);
+}
+template <class Sweep>
+CATENA_HD void climb_merge(Sweep const& sweep, Merge const& m) {
+    sweep.store(m.slot, sweep.joined(sweep.load(m.inboard), sweep.load(m.outboard), m.joint));
+}
+template <class Sweep>
+CATENA_HD void descend_merge(Sweep const& sweep, Merge const& m, typename Sweep::Node const& node) {
+    sweep.s.forces.store(m.joint, sweep.force(node, sweep.s.forces.load(m.first), sweep.s.forces.load(m.next)));
+}
+/// Part p alone: the forces at its ends follow from those at the run's, part after part from the far end.
+template <class Sweep>
+CATENA_HD void descend_part(Sweep const& sweep, Run const& run, int p) {
+    if (p >= parts_of(run)) return;
+    auto const first = sweep.s.forces.load(run.body);
+    auto next = sweep.s.forces.load(run.next);
+    for (int q = parts_of(run) - 1; q > p; --q) next = sweep.force(sweep.node(begin_of(run, q)), first, next);
+    sweep.down(run, p, p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next), next);
+}
+template <class Sweep>
+CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
+    auto const first = sweep.s.forces.load(run.body);
+    auto next = sweep.s.forces.load(run.next);
+    for (int p = parts_of(run) - 1; p >= 0; --p) {
+        auto const at_begin = p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next);
+        sweep.down(run, p, at_begin, next);
+        next = at_begin;
+    }
+}
+
+/// Forces at the top of chains that several ranks share, to this rank's own joints.
+template <class Leaf>
+struct CopyForces {
+    TreeSweeps<Leaf> s;
+    CATENA_HD void operator()(TopCopy const& copy) const { s.forces.store(copy.to, s.forces.load(copy.from)); }
+};
+/// The force of the joint after this rank's last body, which the next rank's first body feels.
+template <class Leaf>
+struct ForceOfNextRank {
+    TreeSweeps<Leaf> s;
+    DirectionsView out;
+    std::int64_t from, to;
+    CATENA_HD void operator()(std::int64_t) const { out.template store<Leaf::K>(to, s.forces.load(from)); }
 };
 
 }  // namespace catena::dca

@@ -87,6 +87,13 @@ class AbsoluteDynamics : public BeadHost {
     /// Accelerations and joint forces at the configuration, matrices and forces of now and the velocities observed last: one bias sweep.
     /// Collective.
     virtual void evaluate() = 0;
+    /// Matrices and evaluate() together, where neither has anything to hide behind it. Collective.
+    virtual void evaluate_at_once() {
+        assemble_matrices();
+        evaluate();
+    }
+    /// Seconds of the solver's part of evaluate_at_once() (ChainSolver::time_evaluations). Collective.
+    virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
     /// Of the last evaluate(), ground axes.
     virtual BodyResults results() const = 0;
     /// Largest local backward residual of the last evaluate() (formulas, "Residuals"), over all ranks. Collective.

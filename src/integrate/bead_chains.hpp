@@ -9,12 +9,6 @@
 
 namespace catena {
 
-/// The part of a chain on this rank.
-struct BeadPiece {
-    std::int64_t first = 0;     // local bead
-    std::int64_t in_scene = 0;  // its index over the scene
-    Vec3 anchor;                // of a chain on a link to the ground
-};
 /// A link from a chain's last bead to the ground.
 struct BeadTip {
     std::int64_t bead = 0;
@@ -32,17 +26,7 @@ struct BeadChains {
     View<3> position, velocity, observed, force, momentum, change, direction, tip_direction;
     DirectionsView bias, tip_bias;  // the link's direction comes first; full handles' other directions stay 0
 
-    CATENA_HD BeadPiece const& piece_of(std::int64_t k) const {
-        std::int64_t low = 0, high = pieces;
-        while (high - low > 1) {
-            std::int64_t const middle = (low + high) / 2;
-            if (piece[middle].first <= k)
-                low = middle;
-            else
-                high = middle;
-        }
-        return piece[low];
-    }
+    CATENA_HD BeadPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
     /// k = size: the first bead of the next rank, where the chain goes on there.
     CATENA_HD bool linked(std::int64_t k) const { return k >= size || has_link[k] != 0; }
     CATENA_HD bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
@@ -63,10 +47,10 @@ struct BeadChains {
     }
     CATENA_HD void drift(std::int64_t k, double h) const { position.store(k, plus_scaled(position.load(k), h, velocity.load(k))); }
     CATENA_HD void set_excess(std::int64_t k) const {
-        bias.origin[k] = linked(k) ? excess(link(k), direction.load(k), length.at(k, 0)) : 0.0;
+        bias.at(k, 0) = linked(k) ? excess(link(k), direction.load(k), length.at(k, 0)) : 0.0;
     }
     CATENA_HD void set_tip_excess(std::int64_t i) const {
-        tip_bias.origin[tip[i].bead] = excess(tip_link(i), tip_direction.load(tip[i].bead), tip[i].length);
+        tip_bias.at(tip[i].bead, 0) = excess(tip_link(i), tip_direction.load(tip[i].bead), tip[i].length);
     }
     CATENA_HD void close(std::int64_t k, double per_step) const {
         Vec3 const c = change.load(k);
@@ -85,8 +69,8 @@ struct BeadChains {
     CATENA_HD double tip_swing(std::int64_t i) const {
         return swing(observed.load(tip[i].bead), tip_direction.load(tip[i].bead), tip[i].length);
     }
-    CATENA_HD void set_swing(std::int64_t k) const { bias.origin[k] = linked(k) ? swing_of(k) : 0.0; }
-    CATENA_HD void set_tip_swing(std::int64_t i) const { tip_bias.origin[tip[i].bead] = tip_swing(i); }
+    CATENA_HD void set_swing(std::int64_t k) const { bias.at(k, 0) = linked(k) ? swing_of(k) : 0.0; }
+    CATENA_HD void set_tip_swing(std::int64_t i) const { tip_bias.at(tip[i].bead, 0) = tip_swing(i); }
     /// Of a link's length, relative.
     CATENA_HD double error(std::int64_t k) const { return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0; }
     CATENA_HD double tip_error(std::int64_t i) const { return std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length; }

@@ -125,6 +125,7 @@ class BeadDynamics final : public AbsoluteDynamics {
     }
 
     double constraint_error() override {
+        solver_->check();
         exchange_from_inboard(communicator_, group_, position_.view(), space_);
         BeadChains const c = chains();
         double const along = space_.largest(group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
@@ -149,10 +150,21 @@ class BeadDynamics final : public AbsoluteDynamics {
         solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(tip_bias_)},
                        {{}, change_.view(), joint_force_.view(), of_tips(tip_force_)});
     }
+    void evaluate_at_once() override {
+        if (group_.has_tips()) return AbsoluteDynamics::evaluate_at_once();
+        exchange_from_inboard(communicator_, group_, observed_.view(), space_);
+        exchange_from_outboard(communicator_, group_, observed_.view(), space_);
+        solver_->assemble_and_solve(where(), what(), {{}, change_.view(), joint_force_.view(), {}});
+    }
+    std::vector<double> time_at_once(int chained, int repeat) override {
+        return solver_->time_evaluations(where(), what(), {{}, change_.view(), {}, {}}, chained, repeat);
+    }
     BodyResults results() const override {
+        solver_->check();
         return with_solution([](BeadSolution const& s) { return s.results(); });
     }
     double residual() override {
+        solver_->check();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         auto const& observed = space_.read(observed_);
         return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
@@ -175,6 +187,20 @@ class BeadDynamics final : public AbsoluteDynamics {
     }
 
   private:
+    ConfigurationView where() const {
+        ConfigurationView at;
+        at.direction = direction_.view();
+        at.position = position_.view();
+        at.piece = pieces_.data();
+        at.pieces = std::ssize(piece_);
+        return at;
+    }
+    LoadsView what() const {
+        LoadsView loads;
+        loads.force = force_.view();
+        loads.velocity = observed_.view();
+        return loads;
+    }
     std::int64_t tips() const { return std::ssize(tip_); }
     DirectionsView of_tips(typename Space::Directions& directions) const {
         return group_.has_tips() ? directions.view() : DirectionsView{};

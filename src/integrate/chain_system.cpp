@@ -246,10 +246,17 @@ void ChainSystem::finish_openmm() {
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
     for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->update_configuration(joint_states_[i]);
-    forces_and_matrices(nullptr);
+    bool const at_once = !project && !openmm_ && joint_.empty();
+    if (at_once)
+        for (auto const& group : absolute_) group->set_simple_forces();
+    else
+        forces_and_matrices(nullptr);
     for (auto const& group : absolute_) {
         if (project) group->observe(0.0);
-        group->evaluate();
+        if (at_once)
+            group->evaluate_at_once();
+        else
+            group->evaluate();
     }
     for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->solve(joint_states_[i], joint_rates_[i]);
 }

@@ -148,15 +148,41 @@ std::vector<StateArray> RigidDynamics::observed_state() const {
     return {to_array<3>("velocity", observed_velocity_.view()), to_array<3>("omega", observed_omega_.view())};
 }
 
-void RigidDynamics::evaluate() {
+void RigidDynamics::set_momenta_and_biases() {
     set_outboard_points(position_, orientation_);
     executor_.for_each(group_.size, [&](std::int64_t k) {
         Vec3 const w = observed_omega_[k];
         momentum_.set(k, torque_[k] - cross(w, as_symmetric(group_.inertia[k]) * w));
     });
     set_velocity_biases();
-    solver_->solve({momentum_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)},
-                   {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
+}
+LoadsView RigidDynamics::loads() {
+    return {momentum_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)};
+}
+AccelerationsView RigidDynamics::found() {
+    return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)};
+}
+void RigidDynamics::evaluate() {
+    set_momenta_and_biases();
+    solver_->solve(loads(), found());
+}
+void RigidDynamics::evaluate_at_once() {
+    set_momenta_and_biases();
+    solver_->assemble_and_solve(configuration(), loads_at_once(), found());
+}
+std::vector<double> RigidDynamics::time_at_once(int chained, int repeat) {
+    AccelerationsView out = found();
+    out.joint_force = {};
+    return solver_->time_evaluations(configuration(), loads_at_once(), out, chained, repeat);
+}
+/// The solver adds what follows from angular velocities.
+LoadsView RigidDynamics::loads_at_once() {
+    LoadsView l = loads();
+    if (group_.linked) return l;
+    l.torque = torque_.view();
+    l.gyroscopic = true;
+    l.bias = {};
+    return l;
 }
 
 BodyResults RigidDynamics::results() const {

@@ -32,6 +32,8 @@ class RigidDynamics : public AbsoluteDynamics {
     void set_state(std::vector<StateArray> const&) override;
     std::vector<StateArray> observed_state() const override;
     void evaluate() override;
+    void evaluate_at_once() override;
+    std::vector<double> time_at_once(int chained, int repeat) override;
     BodyResults results() const override;
     double residual() override;
 
@@ -83,6 +85,10 @@ class RigidDynamics : public AbsoluteDynamics {
     CarriedBeadForces carried_;
 
   private:
+    void set_momenta_and_biases();
+    LoadsView loads();
+    LoadsView loads_at_once();
+    AccelerationsView found();
     struct HandleAcceleration {
         Vec3 value;
         double terms;

@@ -15,7 +15,7 @@ TEST(Partition, EveryBodyHasOneRankAndUnitsStayWhole) {
     for (auto const& lengths : scenes)
         for (int const ranks : {1, 2, 3, 5, 6, 16})
             for (bool const pairwise : {false, true}) {
-                Partition const p(lengths, 1, pairwise, ranks);
+                Partition const p(lengths, pairwise, ranks);
                 ASSERT_EQ(p.first_of_rank.front(), 0);
                 ASSERT_EQ(p.first_of_rank.back(), p.bodies());
                 for (int rank = 0; rank < ranks; ++rank) {
@@ -33,7 +33,7 @@ TEST(Partition, EveryBodyHasOneRankAndUnitsStayWhole) {
 }
 
 TEST(Partition, SharesAreEqualWithinAUnit) {
-    Partition const p({1000000}, 3, false, 6);
+    Partition const p({1000000}, false, 6);
     std::int64_t const unit = p.trees[0].first_body_of_unit(1);
     for (int rank = 0; rank < 6; ++rank)
         EXPECT_NEAR(static_cast<double>(p.first_of_rank[rank + 1] - p.first_of_rank[rank]), 1e6 / 6, static_cast<double>(unit));
@@ -43,7 +43,7 @@ TEST(Partition, SharesAreEqualWithinAUnit) {
 TEST(Schedule, EveryJointIsEliminatedOnce) {
     for (auto const& lengths : scenes)
         for (int const ranks : {1, 2, 3, 6}) {
-            Partition const p(lengths, 1, false, ranks);
+            Partition const p(lengths, false, ranks);
             std::multiset<std::int64_t> eliminated;  // scene-wide body index of the joint
             std::set<std::int64_t> at_top;
             for (int rank = 0; rank < ranks; ++rank) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "chain/chain_group.hpp"
-#include "cuda/owners.hpp"
+#include "cuda/device_field.cuh"
 
 namespace catena::cuda {
 
@@ -24,6 +24,7 @@ class DeviceModel {
   public:
     explicit DeviceModel(ChainGroup const& group)
         : size_(group.size),
+          is_first_(group.is_first),
           is_last_(group.is_last),
           restricted_(group.restricted_of_joint),
           jointed_tip_(group.jointed_tip),
@@ -37,14 +38,14 @@ class DeviceModel {
           screw_(group.screw) {}
 
     GroupView view() const {
-        return {size_,      is_last_.data(), jointed_tip_.data(), tip_screw_.data(), inverse_mass_.view(), inverse_inertia_.view(),
+        return {size_,      is_first_.data(), is_last_.data(), jointed_tip_.data(), tip_screw_.data(), inverse_mass_.view(), inverse_inertia_.view(),
                 r1_.view(), r2_.view(),      axes1_.view(),       axes2_.view(),     screw_.view()};
     }
     std::uint8_t const* restricted() const { return restricted_.data(); }
 
   private:
     std::int64_t size_;
-    Buffer<std::uint8_t> is_last_, restricted_;
+    Buffer<std::uint8_t> is_first_, is_last_, restricted_;
     Buffer<std::int32_t> jointed_tip_;
     Buffer<Vec3> tip_screw_;
     FixedField<1> inverse_mass_;
