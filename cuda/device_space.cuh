@@ -36,6 +36,17 @@ __global__ void over(Item const* items, std::int64_t count, Action action) {
     if (std::int64_t const i = thread(); i < count) action(items[i]);
 }
 
+constexpr int most_in_one_block = 256;
+/// Levels that fit into one block each, one after the other: offset[l] to offset[l + 1], from level `first` on in steps of `step`.
+template <class Item, class Action>
+__global__ void small_levels(Item const* items, std::int64_t const* offset, int first, int count, int step, Action action) {
+    for (int l = 0; l < count; ++l) {
+        std::int64_t const begin = offset[first + l * step], end = offset[first + l * step + 1];
+        if (begin + threadIdx.x < end) action(items[begin + threadIdx.x]);
+        __syncthreads();
+    }
+}
+
 /// Threads of a block that climbs a tree: so many find registers.
 constexpr int threads_for(int directions) { return directions <= 3 ? 256 : 128; }
 template <class Sweep>
@@ -216,6 +227,29 @@ class DeviceSpace {
     template <int D>
     using Fixed = FixedField<D>;
     using Model = DeviceModel;
+    template <class T>
+    class Levels {
+      public:
+        explicit Levels(std::vector<std::vector<T>> const& levels) : offset_{0} {
+            std::vector<T> all;
+            for (std::vector<T> const& level : levels) {
+                all.insert(all.end(), level.begin(), level.end());
+                offset_.push_back(std::ssize(all));
+            }
+            items_ = Buffer<T>(all);
+            device_offset_ = Buffer<std::int64_t>(offset_);
+        }
+        int count() const { return static_cast<int>(offset_.size()) - 1; }
+        std::int64_t size(int level) const { return offset_[level + 1] - offset_[level]; }
+        T const* begin(int level) const { return items_.data() + offset_[level]; }
+        T const* items() const { return items_.data(); }
+        std::int64_t const* offset() const { return device_offset_.data(); }
+
+      private:
+        std::vector<std::int64_t> offset_;
+        Buffer<T> items_;
+        Buffer<std::int64_t> device_offset_;
+    };
     template <class T, dca::Order order>
     class Records {
       public:
@@ -267,6 +301,14 @@ class DeviceSpace {
     template <class T, class Action>
     void over(Buffer<T> const& items, Action const& action) const {
         over(items.data(), static_cast<std::int64_t>(items.size()), action);
+    }
+    template <class T, class Action>
+    void climb(Levels<T> const& levels, Action const& action) const {
+        for (int l = 0; l < levels.count();) l += some_levels(levels, l, 1, action);
+    }
+    template <class T, class Action>
+    void descend(Levels<T> const& levels, Action const& action) const {
+        for (int l = levels.count() - 1; l >= 0;) l -= some_levels(levels, l, -1, action);
     }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
@@ -407,6 +449,23 @@ class DeviceSpace {
         if (count == 0) return;
         kernels::over<<<blocks(count), kernels::threads, 0, stream()>>>(items, count, action);
         started();
+    }
+    /// Level `first`, or as many from there on (in steps of `step`) as fit into one block each. Returns how many.
+    template <class T, class Action>
+    int some_levels(Levels<T> const& levels, int first, int step, Action const& action) const {
+        int count = 0;
+        std::int64_t widest = 0;
+        for (int l = first; l >= 0 && l < levels.count() && levels.size(l) <= kernels::most_in_one_block; l += step, ++count)
+            widest = std::max(widest, levels.size(l));
+        if (count > 0 && widest == 0) return count;  // a rank may have none of a level's items
+        if (count < 2) {
+            over(levels.begin(first), levels.size(first), action);
+            return 1;
+        }
+        auto const width = static_cast<unsigned>((widest + 31) / 32 * 32);
+        kernels::small_levels<<<1, width, 0, stream()>>>(levels.items(), levels.offset(), first, count, step, action);
+        started();
+        return count;
     }
     /// A kernel whose threads keep a segment each in shared memory.
     template <class... Parameters, class Sweep, class... Arguments>

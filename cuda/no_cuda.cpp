@@ -1,4 +1,5 @@
 #include "cuda/bead_dynamics.hpp"
+#include "cuda/joint_dynamics.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
 
@@ -15,6 +16,9 @@ std::string choose_device(Communicator const&) { return why_not(); }
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&) { throw ComputationError(why_not()); }
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
+    throw ComputationError(why_not());
+}
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
     throw ComputationError(why_not());
 }
 

@@ -219,7 +219,7 @@ void fill(ChainGroup& group, Scene const& scene) {
         }
         for (DrivenJoint const& driven : spec.bodies.driven)
             if (driven.body >= piece.body && driven.body < piece.body + piece.count)
-                group.drives.push_back({piece.local + driven.body - piece.body, driven.course});
+                group.drives.push_back({piece.local + driven.body - piece.body, driven.course[0], driven.course[1]});
         if (piece.ends && spec.tip == Tip::jointed) add_tip(group, spec, piece.local + piece.count - 1);
     }
 }

@@ -30,7 +30,7 @@ struct LocalTip {
 /// A joint that follows a prescribed course, on this rank.
 struct LocalDrive {
     std::int64_t body = 0;  // local: the joint's outboard body
-    std::array<Course, 2> course;
+    Course first, second;   // universal: both
 };
 
 /// Two bodies meet at a joint in its meeting frame M: the joint frame J, but for a universal joint, where it is J turned about the

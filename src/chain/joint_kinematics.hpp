@@ -1,79 +1,219 @@
-// Forward kinematics of chains in joint coordinates. A joint's motion (rotation, translation, angular and linear velocity)
-// composes associatively along the chain, so the way along it is a scan over the canonical units.
+// Forward kinematics of chains in joint coordinates, in any Space.
 #pragma once
 
 #include <memory>
 #include <vector>
 
-#include "chain/chain_group.hpp"
-#include "dca/executor.hpp"
+#include "chain/joint_scan.hpp"
+#include "dca/host_space.hpp"
 
 namespace catena {
 
-/// State of body chains in joint coordinates (rules of BodyArrays).
-struct JointState {
-    Field<4> q;
-    Field<3> qd;
-    std::vector<Vec3> base_position, base_velocity;  // one a piece; counts where the piece starts on a free base: origin of body 1, W
-    double time = 0;
+/// State of body chains in joint coordinates (StateView).
+template <class Space>
+struct JointCoordinates {
+    typename Space::template FieldOf<4> q;
+    typename Space::template FieldOf<3> qd, base_position, base_velocity;
+
+    JointCoordinates() = default;
+    explicit JointCoordinates(ChainGroup const& group)
+        : q(group.size), qd(group.size), base_position(std::ssize(group.pieces)), base_velocity(std::ssize(group.pieces)) {}
+    StateView view() { return {q.view(), qd.view(), base_position.view(), base_velocity.view()}; }
 };
+using JointState = JointCoordinates<HostSpace>;
+/// At the scene's start, time 0.
 JointState make_joint_state(ChainGroup const&, Scene const&);
-/// Sets q and qd of driven joints to their courses' at the state's time.
-void follow_courses(ChainGroup const&, JointState&);
 
-/// The motion of a frame B against a frame A.
-struct Motion {
-    Quat rotation;     // Q_AB
-    Vec3 omega;        // of B against A, B
-    Vec3 translation;  // of B's origin from A's, A
-    Vec3 velocity;     // of B's origin against A, B
-};
-/// Motion of C against A from those of B against A and C against B. Without `positions` translation and velocity stay zero.
-template <bool positions>
-Motion compose(Motion const& ab, Motion const& bc);
-/// The coordinates' rates as a relative motion of joint k: angular and linear velocity of the outboard side against the inboard one, M.
-struct JointRate {
-    Vec3 angular, linear;
-};
-JointRate joint_rate(ChainGroup const&, JointState const&, std::int64_t k);
+/// What MotionView shows.
+template <class Space>
+struct MotionFields {
+    typename Space::template FieldOf<4> joint_turn, orientation;
+    typename Space::template FieldOf<3> omega, origin, velocity, r2;
+    typename Space::template FieldOf<9> axes2;
 
-/// What a pass over the chain fills. Poses and velocities are left out where nobody asks for them.
-struct BodyMotion {
-    Field<4> joint_turn;   // quaternion of B in the meeting frame M of its inboard joint
-    Field<4> orientation;  // of B in W
-    Field<3> omega;        // of B, B
-    Field<3> origin;       // of B, W
-    Field<3> velocity;     // of B's origin, B
-    // Where the meeting frames of outboard joints move in their inboard body (else empty): as ConfigurationView.
-    Field<3> r2;
-    Field<9> axes2;
-};
-BodyMotion make_body_motion(ChainGroup const&);
-
-class JointKinematics {
-  public:
-    JointKinematics(ChainGroup const&, Executor const&, Communicator const&);
-    /// Collective where a chain is shared by ranks. `with_positions` fills origin and velocity as well.
-    void evaluate(JointState const&, bool with_positions, BodyMotion& out) const;
+    MotionFields() = default;
+    MotionFields(ChainGroup const& group, Space const& space)
+        : joint_turn(group.size), orientation(group.size), omega(group.size), origin(group.size), velocity(group.size) {
+        if (!group.moving_meeting()) return;
+        r2 = typename Space::template FieldOf<3>(group.size);
+        axes2 = typename Space::template FieldOf<9>(group.size);
+        space.edit(r2, [&](View<3> view) { copy(group.r2.view(), view); });
+        space.edit(axes2, [&](View<9> view) { copy(group.axes2.view(), view); });
+    }
+    MotionView view() {
+        return {joint_turn.view(), orientation.view(), omega.view(), origin.view(), velocity.view(), r2.view(), axes2.view()};
+    }
 
   private:
-    Motion joint_motion(JointState const&, std::size_t piece, std::int64_t k) const;
-    void keep_in_plane(std::int64_t k, Motion&) const;
+    template <int D>
+    static void copy(ConstView<D> from, View<D> to) {
+        for (std::int64_t k = 0; k < from.size; ++k) to.store(k, from.load(k));
+    }
+};
+using BodyMotion = MotionFields<HostSpace>;
+
+/// First bodies of the group's pieces; of every body the slot of its run; where wholes of shared chains' own units come from.
+std::vector<std::int64_t> first_bodies(ChainGroup const&);
+std::vector<std::int32_t> run_slots(ChainGroup const&);
+std::vector<dca::TopCopy> own_shared_units(ChainGroup const&);
+
+template <class Space>
+class JointKinematics {
+    template <int D>
+    using FieldOf = typename Space::template FieldOf<D>;
+
+  public:
+    /// The group and the communicator must outlive it.
+    JointKinematics(ChainGroup const& group, Space const& space, Communicator const& communicator)
+        : group_(group),
+          space_(space),
+          communicator_(communicator),
+          first_body_(first_bodies(group)),
+          slot_of_body_(run_slots(group)),
+          own_shared_(own_shared_units(group)),
+          joint_(group.joint),
+          is_first_(group.is_first),
+          is_last_(group.is_last),
+          piece_(first_body_),
+          drive_(group.drives),
+          r1_(group.r1),
+          axes1_(group.axes1),
+          joint_rotation_(group.joint_rotation),
+          joint_translation_(group.joint_translation),
+          first_axis_(group.first_axis),
+          screw_(group.screw),
+          runs_(group.schedule.runs),
+          levels_(group.schedule.levels),
+          top_levels_(group.schedule.top_levels),
+          roots_(group.schedule.roots),
+          top_roots_(group.schedule.top_roots),
+          from_top_(own_shared_),
+          slot_(slot_of_body_),
+          shared_unit_(group.schedule.shared),
+          rotation_(group.size),
+          omega_(group.size),
+          translation_(group.size),
+          velocity_(group.size),
+          next_meeting_(group.moving_meeting() ? 1 : 0),
+          shared_(std::ssize(group.schedule.shared)),
+          whole_(static_cast<std::size_t>(group.schedule.slots)),
+          before_(static_cast<std::size_t>(group.schedule.slots)) {
+        begin_at_ground();
+    }
+
+    JointsView joints() const {
+        return {group_.size,
+                joint_.data(),
+                is_first_.data(),
+                is_last_.data(),
+                group_.planar,
+                group_.has_screws,
+                r1_.view(),
+                axes1_.view(),
+                joint_rotation_.view(),
+                joint_translation_.view(),
+                first_axis_.view(),
+                screw_.view(),
+                piece_.data(),
+                std::ssize(first_body_),
+                drive_.data(),
+                std::ssize(group_.drives)};
+    }
+    JointScan scan(StateView const& state, MotionView const& motion) {
+        return {joints(),         state,        motion,        rotation_.view(), omega_.view(),        translation_.view(),
+                velocity_.view(), slot_.data(), whole_.data(), before_.data(),   next_meeting_.view(), shared_.view()};
+    }
+
+    /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and velocity as well.
+    void evaluate(StateView const& state, bool with_positions, MotionView const& motion) {
+        with_positions ? evaluate<true>(scan(state, motion)) : evaluate<false>(scan(state, motion));
+    }
+    /// Up and down the tree, between set_relative() and set_motion() of every body. Collective where a chain is shared by ranks.
     template <bool positions>
-    void evaluate(JointState const&, BodyMotion& out) const;
+    void sweep(JointScan const& s) {
+        space_.over(runs_, [s] CATENA_LAMBDA(dca::Run const& run) { s.template follow<positions>(run); });
+        space_.climb(levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); });
+        if (!group_.schedule.shared.empty()) sweep_shared<positions>(s);
+        space_.descend(levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); });
+        if (group_.moving_meeting()) exchange_meeting(s);
+    }
+
+    // Not private: nvcc takes lambdas for kernels from public members alone.
     template <bool positions>
-    Motion unit_motion(JointState const&, LocalUnit const&) const;
+    void evaluate(JointScan const& s) {
+        space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_relative<positions>(k); });
+        sweep<positions>(s);
+        space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
+    }
     template <bool positions>
-    std::vector<Motion> starts_of_units(JointState const&) const;
-    template <bool positions>
-    void gather_shared(std::vector<Motion> const& own, std::vector<Motion>& starts) const;
-    void set_meetings(JointState const&, BodyMotion& out) const;
+    void sweep_shared(JointScan const& s) {
+        dca::SharedUnit const* const unit = shared_unit_.data();
+        std::int64_t const units = std::ssize(group_.schedule.shared);
+        space_.for_each(units, [s, unit] CATENA_LAMBDA(std::int64_t i) { s.show_unit(i, unit[i]); });
+        gather_shared();
+        space_.for_each(units, [s, unit] CATENA_LAMBDA(std::int64_t i) { s.take_unit(i, unit[i]); });
+        space_.climb(top_levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); });
+        space_.descend(top_levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); });
+        space_.over(from_top_, [s] CATENA_LAMBDA(dca::TopCopy const& copy) { s.before[copy.to] = s.before[copy.from]; });
+    }
+    /// Joint k's from body k - 1, across the ranks.
+    void exchange_meeting(JointScan const& s) {
+        if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
+        space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
+        Vector<double, 12> const send = space_.get(ConstView<12>(next_meeting_.view()), 0);
+        Vector<double, 12> receive = send;
+        communicator_.exchange(std::as_bytes(std::span(send.data)), group_.neighbour_inboard,
+                               std::as_writable_bytes(std::span(receive.data)), group_.neighbour_outboard);
+        space_.put(next_meeting_.view(), 1, receive);
+    }
+    void begin_at_ground() {
+        Motion* const before = before_.data();
+        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before[root.slot] = Motion::none(); });
+        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before[root.slot] = Motion::none(); });
+    }
+
+  private:
+    /// One collective: the units of chains that several ranks share, to all ranks.
+    void gather_shared() {
+        View<13> const units = space_.pull(shared_, shared_mirror_);
+        std::vector<Vector<double, 13>> own, all(group_.schedule.shared.size());
+        std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            dca::SharedUnit const& unit = group_.schedule.shared[i];
+            bytes[unit.owner] += sizeof(all[i]);
+            if (unit.source >= 0) own.push_back(units.load(static_cast<std::int64_t>(i)));
+        }
+        communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
+        for (std::size_t i = 0; i < all.size(); ++i) units.store(static_cast<std::int64_t>(i), all[i]);
+        space_.push(shared_, shared_mirror_);
+    }
 
     ChainGroup const& group_;
-    Executor const& executor_;
+    Space space_;
     Communicator const& communicator_;
-    std::vector<LocalUnit> units_;
-    bool composites_needed_ = false;  // a local chain has more than one unit
+    std::vector<std::int64_t> first_body_;
+    std::vector<std::int32_t> slot_of_body_;
+    std::vector<dca::TopCopy> own_shared_;
+    typename Space::template List<JointType> joint_;
+    typename Space::template List<std::uint8_t> is_first_, is_last_;
+    typename Space::template List<std::int64_t> piece_;
+    typename Space::template List<LocalDrive> drive_;
+    typename Space::template Fixed<3> r1_;
+    typename Space::template Fixed<9> axes1_;
+    typename Space::template Fixed<4> joint_rotation_;
+    typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
+    typename Space::template List<dca::Run> runs_;
+    typename Space::template Levels<dca::Merge> levels_, top_levels_;
+    typename Space::template List<dca::Root> roots_, top_roots_;
+    typename Space::template List<dca::TopCopy> from_top_;
+    typename Space::template List<std::int32_t> slot_;
+    typename Space::template List<dca::SharedUnit> shared_unit_;
+    FieldOf<4> rotation_;
+    FieldOf<3> omega_, translation_, velocity_;
+    FieldOf<12> next_meeting_;
+    FieldOf<13> shared_;
+    typename Space::template Mirror<13> shared_mirror_;
+    typename Space::template Array<Motion> whole_, before_;
 };
 
 }  // namespace catena

@@ -49,6 +49,9 @@ class HostSpace : public HostAccess {
       private:
         ChainGroup const& group_;
     };
+    /// Lists of items level by level: those of a level are independent, the next level's need them.
+    template <class T>
+    using Levels = std::span<std::vector<T> const>;
     /// `count` records, zero at first.
     template <class T, dca::Order order>
     class Records {
@@ -80,6 +83,14 @@ class HostSpace : public HostAccess {
     template <class T, class Action>
     void over(List<T> const& items, Action const& action) const {
         executor_->for_each(std::ssize(items), [&](std::int64_t i) { action(items[static_cast<std::size_t>(i)]); });
+    }
+    template <class T, class Action>
+    void climb(Levels<T> const& levels, Action const& action) const {
+        for (std::vector<T> const& level : levels) over(List<T>(level), action);
+    }
+    template <class T, class Action>
+    void descend(Levels<T> const& levels, Action const& action) const {
+        for (std::size_t l = levels.size(); l-- > 0;) over(List<T>(levels[l]), action);
     }
     /// A sweep (tree_sweeps.hpp) from the leaves to the roots, and from the roots to the leaves.
     template <class Sweep>

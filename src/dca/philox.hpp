@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "dca/elementary.hpp"
 #include "dca/linear.hpp"
 
 namespace catena {
@@ -23,49 +24,6 @@ CATENA_HD Philox4 philox(Philox4 counter, std::uint32_t key0, std::uint32_t key1
         key1 += 0xBB67AE85u;
     }
     return counter;
-}
-
-// The mathematical libraries of hosts and devices round differently; these round alike everywhere.
-
-/// Of u in (0, 1]: twice the series of atanh, of u scaled to within [sqrt(1/2), sqrt(2)).
-CATENA_HD double log_of_uniform(double u) {
-    int exponent = 0;
-    double m = std::frexp(u, &exponent);
-    if (m < 0.70710678118654752) {
-        m *= 2;
-        --exponent;
-    }
-    double const s = (m - 1) / (m + 1), z = s * s;
-    double series = 1.0 / 21;
-    CATENA_UNROLL
-    for (int odd = 19; odd > 0; odd -= 2) series = fused(series, z, 1.0 / odd);
-    double const e = exponent, ln2_high = 0x1.62e42fefa39efp-1, ln2_low = 0x1.abc9e3b39803fp-56;
-    return fused(e, ln2_high, fused(e, ln2_low, 2 * s * series));
-}
-
-struct CosSin {
-    double cos, sin;
-};
-/// Of 2 pi u, u in [0, 1]: Taylor's series within an eighth of a turn of the nearest quarter.
-CATENA_HD CosSin cos_sin_of_turns(double u) {
-    double const quarter = std::floor(4 * u + 0.5), x = (4 * u - quarter) * 1.57079632679489662, z = -x * x;
-    double c = 1, s = 1;
-    CATENA_UNROLL
-    for (int k = 18; k > 0; k -= 2) {
-        c = fused(c * z, 1.0 / ((k - 1) * k), 1.0);
-        s = fused(s * z, 1.0 / (k * (k + 1)), 1.0);
-    }
-    s *= x;
-    switch (static_cast<int>(quarter) & 3) {
-        case 0:
-            return {c, s};
-        case 1:
-            return {-s, c};
-        case 2:
-            return {-c, -s};
-        default:
-            return {s, -c};
-    }
 }
 
 /// What a draw is for; streams of different stages are independent.

@@ -1,6 +1,7 @@
 // Rotations as unit quaternions (w, x, y, z). Q_AB maps components in frame B to components in frame A.
 #pragma once
 
+#include "dca/elementary.hpp"
 #include "dca/linear.hpp"
 
 namespace catena {
@@ -39,36 +40,32 @@ template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q) {
     Real const s = Real(2) / squared_norm(q);
     Real const xs = q.x * s, ys = q.y * s, zs = q.z * s;
-    Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, xy = q.x * ys, xz = q.x * zs, yy = q.y * ys, yz = q.y * zs,
-               zz = q.z * zs;
-    return {{Real(1) - (yy + zz), xy - wz, xz + wy, xy + wz, Real(1) - (xx + zz), yz - wx, xz - wy, yz + wx, Real(1) - (xx + yy)}};
+    Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, yy = q.y * ys, zz = q.z * zs;
+    // Sums and differences of the same products, left to the compiler: gcc 12 contracts them where it vectorises, -ffp-contract=off or not.
+    return {{Real(1) - (yy + zz), fused(q.x, ys, -wz), fused(q.x, zs, wy), fused(q.x, ys, wz), Real(1) - (xx + zz), fused(q.y, zs, -wx),
+             fused(q.x, zs, -wy), fused(q.y, zs, wx), Real(1) - (xx + yy)}};
 }
 /// Rotation by `angle` about the unit vector `axis` (right-hand rule).
 template <class Real>
 CATENA_HD Quaternion<Real> from_axis_angle(Vector<Real, 3> const& axis, Real angle) {
-    using std::cos;
-    using std::sin;
-    Real const s = sin(Real(0.5) * angle);
-    return {cos(Real(0.5) * angle), s * axis[0], s * axis[1], s * axis[2]};
+    auto const [c, s] = cos_sin(Real(0.5) * angle);
+    return {c, s * axis[0], s * axis[1], s * axis[2]};
 }
 /// The rotation with rotation vector v (angle |v| about v), accurate for small |v|.
 template <class Real>
 CATENA_HD Quaternion<Real> from_rotation_vector(Vector<Real, 3> const& v) {
-    using std::cos;
-    using std::sin;
     Real const angle = norm(v);
-    Real const half = Real(0.5) * angle;
-    Real const s = angle > Real(1e-8) ? sin(half) / angle : Real(0.5);
-    return {cos(half), s * v[0], s * v[1], s * v[2]};
+    auto const half = cos_sin(Real(0.5) * angle);
+    Real const s = angle > Real(1e-8) ? half.sin / angle : Real(0.5);
+    return {half.cos, s * v[0], s * v[1], s * v[2]};
 }
 /// The rotation vector of q, of length at most pi.
 template <class Real>
 CATENA_HD Vector<Real, 3> rotation_vector(Quaternion<Real> q) {
-    using std::atan2;
     using std::sqrt;
     if (q.w < Real(0)) q = {-q.w, -q.x, -q.y, -q.z};
     Real const s = sqrt(fused(q.z, q.z, fused(q.y, q.y, q.x * q.x)));
-    Real const f = s > Real(1e-12) ? Real(2) * atan2(s, q.w) / s : Real(2) / q.w;
+    Real const f = s > Real(1e-12) ? Real(2) * angle_of(s, q.w) / s : Real(2) / q.w;
     return {{f * q.x, f * q.y, f * q.z}};
 }
 /// Unit quaternion of a rotation matrix (Shepperd's choice of the largest component).

@@ -60,8 +60,6 @@ class AbsoluteDynamics : public BeadHost {
     virtual void assemble_matrices() = 0;
     /// Sets the forces of gravity, wrenches and joint springs at the configuration updated last. Collective.
     virtual void set_simple_forces() = 0;
-    /// What others added to bead_forces() since set_simple_forces() counts from here on.
-    virtual void take_bead_forces() = 0;
 
     /// v <- P (v + h M^-1 f), P the projection on the joints' velocities at the current configuration. Collective.
     virtual void kick(double h) = 0;

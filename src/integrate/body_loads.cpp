@@ -1,7 +1,6 @@
 #include "integrate/body_loads.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace catena {
 namespace {
@@ -66,16 +65,6 @@ BodyLoads make_body_loads(ChainGroup const& group, Scene const& scene) {
             group, scene, [](BodyArrays const& b, std::int64_t i) { return b.wrench.empty() ? Vec3::zero() : b.wrench[i].second; });
     }
     return loads;
-}
-
-Vec3 spherical_spring_torque(Vec3 const& stiffness, Quat const& rest, Quat const& turn) {
-    Vec3 const theta = rotation_vector(conjugate(rest) * turn);
-    Vec3 const k_theta{{stiffness[0] * theta[0], stiffness[1] * theta[1], stiffness[2] * theta[2]}};
-    double const angle = norm(theta);
-    // (1 - (angle/2) cot(angle/2)) / angle^2, 1/12 for small angles
-    double const c = angle > 1e-3 ? (1.0 - 0.5 * angle / std::tan(0.5 * angle)) / (angle * angle) : 1.0 / 12.0 + angle * angle / 720.0;
-    Vec3 const t1 = cross(theta, k_theta), t2 = cross(theta, t1);
-    return -1.0 * (k_theta - 0.5 * t1 + c * t2);
 }
 
 double spherical_spring_energy(Vec3 const& stiffness, Quat const& rest, Quat const& turn) {

@@ -57,6 +57,8 @@ class BeadHost {
     virtual ConstView<3> bead_positions() = 0;
     /// For others to add to, W; absent where there are none.
     virtual View<3> bead_forces() = 0;
+    /// What was added there since the forces were set counts from here on.
+    virtual void take_bead_forces() = 0;
 };
 
 }  // namespace catena

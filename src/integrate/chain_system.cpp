@@ -5,6 +5,7 @@
 
 #include "chain/gather.hpp"
 #include "cuda/bead_dynamics.hpp"
+#include "cuda/joint_dynamics.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
 
@@ -58,6 +59,10 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
             absolute_.push_back(cuda::make_bead_dynamics(*group, scene, communicator));
             continue;
         }
+        if (!group->beads && !group->linked && axes == Axes::joint && backend_ == Backend::cuda) {
+            joint_.push_back(cuda::make_joint_dynamics(*group, scene, communicator));
+            continue;
+        }
         auto solver =
             backend_ == Backend::cuda ? cuda::make_tree_solver(*group, communicator) : make_tree_solver(*group, *executor_, communicator);
         if (group->beads) {
@@ -67,9 +72,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
         } else if (axes == Axes::world) {
             absolute_.push_back(make_spherical_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         } else {
-            joint_.push_back(std::make_unique<JointDynamics>(*group, scene, *executor_, communicator, std::move(solver)));
-            joint_states_.push_back(make_joint_state(*group, scene));
-            joint_rates_.push_back(joint_.back()->make_rates());
+            joint_.push_back(make_joint_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         }
     }
     if (scene.forces.openmm) make_openmm();
@@ -190,6 +193,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     double const simple = seconds_now();
     if (openmm_) finish_openmm();
     for (auto const& group : absolute_) group->take_bead_forces();
+    for (auto const& group : joint_) group->take_bead_forces();
     double const finished = seconds_now();
     note("matrix sweep", "catena", begun, assembled);
     note("simple forces", "catena", assembled, simple);
@@ -202,24 +206,25 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     note("forces", "openmm", ran.begin, ran.end);
 }
 
-void ChainSystem::evaluate(std::vector<JointState> const& states, std::vector<JointRates>& rates) {
+void ChainSystem::solve_joint_groups() {
     double const start = seconds_now();
-    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->update_configuration(states[i]);
+    for (auto const& group : joint_) group->update_configuration();
     double const moved = seconds_now();
     if (openmm_) openmm_->begin(own_bead_positions());
     double const begun = seconds_now();
     for (auto const& group : joint_) group->assemble_matrices();
     double const assembled = seconds_now();
     if (openmm_) finish_openmm();
+    for (auto const& group : joint_) group->take_bead_forces();
     double const finished = seconds_now();
-    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->solve(states[i], rates[i]);
+    for (auto const& group : joint_) group->solve();
     seconds_["kinematics and loads"] += moved - start;
     seconds_["bias sweep"] += seconds_now() - finished;
     note_overlap(moved, begun, assembled, assembled, finished);
 }
 
 void ChainSystem::close_tips(int corrections) {
-    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->close_tips(joint_states_[i], corrections);
+    for (auto const& group : joint_) group->close_tips(corrections);
 }
 
 /// Positions are handed over from `start` to `begun`, matrices assembled until `assembled`, forces waited for from `waits` to `finished`.
@@ -245,7 +250,7 @@ void ChainSystem::finish_openmm() {
 
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
-    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->update_configuration(joint_states_[i]);
+    for (auto const& group : joint_) group->update_configuration();
     bool const at_once = !project && !openmm_ && joint_.empty();
     if (at_once)
         for (auto const& group : absolute_) group->set_simple_forces();
@@ -258,7 +263,10 @@ void ChainSystem::evaluate(bool project) {
         else
             group->evaluate();
     }
-    for (std::size_t i = 0; i < joint_.size(); ++i) joint_[i]->solve(joint_states_[i], joint_rates_[i]);
+    for (auto const& group : joint_) {
+        group->solve();
+        group->set_rates();
+    }
 }
 
 double ChainSystem::residual() {

@@ -68,9 +68,8 @@ class ChainSystem {
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;
     std::vector<JointDynamics*> joint() const;
-    std::vector<JointState>& joint_states() { return joint_states_; }
-    /// Rates of the groups in joint coordinates at these states, one a group; OpenMM computes while matrices are assembled. Collective.
-    void evaluate(std::vector<JointState> const& states, std::vector<JointRates>& rates);
+    /// Accelerations of the groups in joint coordinates at their states; OpenMM computes while matrices are assembled. Collective.
+    void solve_joint_groups();
     /// JointDynamics::close_tips of every group. Collective.
     void close_tips(int corrections = JointDynamics::usual_corrections);
     OpenMmForce* openmm() const { return openmm_.get(); }
@@ -88,9 +87,9 @@ class ChainSystem {
     /// Everything a checkpoint needs, in scene order on rank 0; and back, on every rank.
     std::map<std::string, std::vector<double>> state();
     void set_state(std::map<std::string, std::vector<double>> const&);
-    /// The same for accelerations of joint group i that an integrator carries from step to step.
-    void collect_rates(std::size_t i, JointRates const&, std::map<std::string, std::vector<double>>& arrays) const;
-    void distribute_rates(std::size_t i, std::map<std::string, std::vector<double>> const& arrays, JointRates&) const;
+    /// The same for accelerations of a joint group that an integrator carries from step to step.
+    void collect_rates(ChainGroup const&, JointRates const&, std::map<std::string, std::vector<double>>& arrays) const;
+    JointRates own_rates(ChainGroup const&, std::map<std::string, std::vector<double>> const& arrays) const;
 
   private:
     void make_openmm();
@@ -114,8 +113,6 @@ class ChainSystem {
     std::unique_ptr<Executor> executor_;
     std::vector<std::unique_ptr<ChainGroup>> groups_;
     std::vector<std::unique_ptr<JointDynamics>> joint_;
-    std::vector<JointState> joint_states_;
-    std::vector<JointRates> joint_rates_;
     std::vector<std::unique_ptr<AbsoluteDynamics>> absolute_;
     std::vector<BeadHost*> bead_hosts_;  // groups that are beads or carry some
     BeadSystem bead_system_;

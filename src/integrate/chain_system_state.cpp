@@ -21,12 +21,18 @@ std::vector<Vec3> triples(std::vector<double> const& values) {
     return out;
 }
 
-/// What counts where a piece starts, as one entry a body.
-std::vector<Vec3> at_starts(ChainGroup const& group, std::vector<Vec3> const& of_piece) {
+/// What counts where a piece starts, as one entry a body, and back.
+std::vector<double> at_starts(ChainGroup const& group, Field<3> const& of_piece) {
     std::vector<Vec3> of_body(static_cast<std::size_t>(group.size), Vec3::zero());
     for (std::size_t p = 0; p < group.pieces.size(); ++p)
-        if (group.pieces[p].starts) of_body[static_cast<std::size_t>(group.pieces[p].local)] = of_piece[p];
-    return of_body;
+        if (group.pieces[p].starts) of_body[static_cast<std::size_t>(group.pieces[p].local)] = of_piece[static_cast<std::int64_t>(p)];
+    return flat(of_body);
+}
+Field<3> of_starts(ChainGroup const& group, std::vector<Vec3> const& of_body) {
+    Field<3> of_piece(std::ssize(group.pieces));
+    for (std::size_t p = 0; p < group.pieces.size(); ++p)
+        of_piece.set(static_cast<std::int64_t>(p), of_body[static_cast<std::size_t>(group.pieces[p].local)]);
+    return of_piece;
 }
 
 }  // namespace
@@ -43,9 +49,9 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
         gather_to_scene(communicator_, group->group(), 4, array_named(state, "orientation").values, orientation);
         gather_to_scene(communicator_, group->group(), 3, array_named(observed, "omega").values, omega);
     }
-    for (std::size_t i = 0; i < joint_.size(); ++i) {
-        ChainGroup const& group = joint_[i]->group();
-        BodyMotion const& motion = joint_[i]->motion(joint_states_[i]);
+    for (auto const& dynamics : joint_) {
+        ChainGroup const& group = dynamics->group();
+        BodyMotion const motion = dynamics->motion();
         std::vector<Vec3> x, v;
         for (std::int64_t k = 0; k < group.size; ++k) {
             Vector<double, 4> const q = motion.orientation[k];
@@ -72,8 +78,7 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
         gather_to_scene(communicator_, group, 1, e.springs, springs);
     };
     for (auto const& group : absolute_) add(group->group(), group->potential());
-    for (std::size_t i = 0; i < joint_.size(); ++i)
-        add(joint_[i]->group(), joint_[i]->potential(joint_states_[i], joint_[i]->motion(joint_states_[i])));
+    for (auto const& group : joint_) add(group->group(), group->potential());
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
     for (double const e : gravity) terms[0].value += e;
     for (double const e : springs) terms[1].value += e;
@@ -154,8 +159,9 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
     for (std::size_t i = 0; i < joint_.size(); ++i) {
         ChainGroup const& group = joint_[i]->group();
         add(group, found[absolute_.size() + i]);
-        gather_to_scene(communicator_, group, 3, to_array<3>("", std::as_const(joint_rates_[i]).qdd.view()).values, joint);
-        gather_to_scene(communicator_, group, 3, flat(at_starts(group, joint_rates_[i].base_acceleration)), base);
+        JointRates const rates = joint_[i]->rates();
+        gather_to_scene(communicator_, group, 3, to_array<3>("", rates.qdd.view()).values, joint);
+        gather_to_scene(communicator_, group, 3, at_starts(group, rates.base_acceleration), base);
     }
     return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces(found), tip_forces(found)};
 }
@@ -180,29 +186,27 @@ std::map<std::string, std::vector<double>> ChainSystem::state() {
     std::map<std::string, std::vector<double>> arrays;
     for (auto const& group : absolute_)
         for (StateArray const& a : group->state()) add_part(group->group(), a.values, a.width, a.name, arrays);
-    for (std::size_t i = 0; i < joint_.size(); ++i) {
-        ChainGroup const& group = joint_[i]->group();
-        JointState const& s = joint_states_[i];
+    for (auto const& dynamics : joint_) {
+        ChainGroup const& group = dynamics->group();
+        JointState const s = dynamics->state();
         add_part(group, to_array<4>("", s.q.view()).values, 4, "q", arrays);
         add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", arrays);
-        add_part(group, flat(at_starts(group, s.base_position)), 3, "base_position", arrays);
-        add_part(group, flat(at_starts(group, s.base_velocity)), 3, "base_velocity", arrays);
+        add_part(group, at_starts(group, s.base_position), 3, "base_position", arrays);
+        add_part(group, at_starts(group, s.base_velocity), 3, "base_velocity", arrays);
     }
     return arrays;
 }
 
-void ChainSystem::collect_rates(std::size_t i, JointRates const& rates, std::map<std::string, std::vector<double>>& arrays) const {
-    ChainGroup const& group = joint_[i]->group();
+void ChainSystem::collect_rates(ChainGroup const& group, JointRates const& rates,
+                                std::map<std::string, std::vector<double>>& arrays) const {
     add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", arrays);
-    add_part(group, flat(at_starts(group, rates.base_acceleration)), 3, "base_acceleration", arrays);
+    add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", arrays);
 }
 
-void ChainSystem::distribute_rates(std::size_t i, std::map<std::string, std::vector<double>> const& arrays, JointRates& rates) const {
-    ChainGroup const& group = joint_[i]->group();
+JointRates ChainSystem::own_rates(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays) const {
+    JointRates rates{Field<3>(group.size), of_starts(group, triples(own_part(group, arrays, "base_acceleration", 3)))};
     from_array<3>({"qdd", 3, own_part(group, arrays, "qdd", 3)}, rates.qdd.view());
-    std::vector<Vec3> const base = triples(own_part(group, arrays, "base_acceleration", 3));
-    for (std::size_t p = 0; p < group.pieces.size(); ++p)
-        rates.base_acceleration[p] = base[static_cast<std::size_t>(group.pieces[p].local)];
+    return rates;
 }
 
 void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& arrays) {
@@ -211,16 +215,14 @@ void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& ar
         for (StateArray& a : state) a.values = own_part(group->group(), arrays, a.name, a.width);
         group->set_state(state);
     }
-    for (std::size_t i = 0; i < joint_.size(); ++i) {
-        ChainGroup const& group = joint_[i]->group();
-        from_array<4>({"q", 4, own_part(group, arrays, "q", 4)}, joint_states_[i].q.view());
-        from_array<3>({"qd", 3, own_part(group, arrays, "qd", 3)}, joint_states_[i].qd.view());
-        std::vector<Vec3> const x = triples(own_part(group, arrays, "base_position", 3));
-        std::vector<Vec3> const v = triples(own_part(group, arrays, "base_velocity", 3));
-        for (std::size_t p = 0; p < group.pieces.size(); ++p) {
-            joint_states_[i].base_position[p] = x[static_cast<std::size_t>(group.pieces[p].local)];
-            joint_states_[i].base_velocity[p] = v[static_cast<std::size_t>(group.pieces[p].local)];
-        }
+    for (auto const& dynamics : joint_) {
+        ChainGroup const& group = dynamics->group();
+        JointState s(group);
+        from_array<4>({"q", 4, own_part(group, arrays, "q", 4)}, s.q.view());
+        from_array<3>({"qd", 3, own_part(group, arrays, "qd", 3)}, s.qd.view());
+        s.base_position = of_starts(group, triples(own_part(group, arrays, "base_position", 3)));
+        s.base_velocity = of_starts(group, triples(own_part(group, arrays, "base_velocity", 3)));
+        dynamics->set_state(s);
     }
 }
 

@@ -1,89 +1,70 @@
-// Forward dynamics of body chains in joint coordinates: state -> accelerations, by one matrix and one bias sweep.
+// Forward dynamics of body chains in joint coordinates: state -> accelerations, by one matrix and one bias sweep. The state is within,
+// wherever that is.
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "chain/joint_kinematics.hpp"
 #include "dca/solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
-#include "integrate/body_loads.hpp"
-#include "integrate/jointed_tips.hpp"
 
 namespace catena {
 
-/// Time derivatives of JointState's velocities.
+/// Time derivatives of JointState's velocities (RatesView), on the host.
 struct JointRates {
-    Field<3> qdd;                         // second derivatives of q; spherical, free: derivative of the components of qd, B
-    std::vector<Vec3> base_acceleration;  // one a piece: of a free base's origin, W
+    Field<3> qdd, base_acceleration;
 };
 
-class JointDynamics final : public BeadHost {
+class JointDynamics : public BeadHost {
   public:
-    JointDynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
+    /// Of bodies and free bases, on the host.
+    virtual JointState state() const = 0;
+    virtual void set_state(JointState const&) = 0;
+    double time() const { return time_; }
+    void set_time(double time) { time_ = time; }
 
-    JointRates make_rates() const;
-    /// Kinematics, matrices and rates: the three below. Collective.
-    void evaluate(JointState const&, JointRates&);
-    /// What a state alone decides, and where carried beads are. Clears their forces. Collective.
-    void update_configuration(JointState const&);
+    /// What the state alone decides, and where carried beads are. Clears their forces. Collective.
+    virtual void update_configuration() = 0;
     /// At the configuration updated last. Needs no forces. Collective.
-    void assemble_matrices();
-    /// With the forces of now, at the state of the configuration updated last. Collective.
-    void solve(JointState const&, JointRates&);
-    ConstView<3> bead_positions() override;
-    View<3> bead_forces() override { return carried_.forces(); }
-    /// Only the kinematics of a state, positions included. Collective.
-    BodyMotion const& motion(JointState const&);
-    /// Of the state and solution evaluated last. Collective.
-    BodyResults results() const;
-    /// Largest local backward residual of the solution evaluated last: Newton-Euler of every body and the closing of every joint,
-    /// each relative to the sizes of its own terms (formulas, "Residuals"). Over all ranks; collective.
-    double residual();
-    PotentialEnergy potential(JointState const&, BodyMotion const&) const;
+    virtual void assemble_matrices() = 0;
+    /// Accelerations of bodies with the forces of now, at the configuration updated last. Collective.
+    virtual void solve() = 0;
+    /// Those of coordinates, after solve(); and as they were set last, on the host.
+    virtual void set_rates() = 0;
+    virtual JointRates rates() const = 0;
+
+    // Steps, stage by stage: each but the first half of Verlet's follows a solve().
+    /// Stage 0, 1, 2 or 3 of a Runge-Kutta step of length h.
+    virtual void runge_kutta(int stage, double h) = 0;
+    /// The accelerations that velocity Verlet carries from step to step: those solved for last; others.
+    virtual void carry_rates() = 0;
+    virtual void carry_rates(JointRates const&) = 0;
+    virtual JointRates carried_rates() const = 0;
+    /// Positions and a first guess of velocities after h, and then the velocities.
+    virtual void verlet_move(double h) = 0;
+    virtual void verlet_finish(double h) = 0;
+
+    /// Motion at the present state, positions included, on the host. Collective.
+    virtual BodyMotion motion() = 0;
+    /// Of the solution evaluated last. Collective.
+    virtual BodyResults results() = 0;
+    /// Largest local backward residual of the solution evaluated last (JointSolution). Over all ranks; collective.
+    virtual double residual() = 0;
+    /// At the present state. Collective.
+    virtual PotentialEnergy potential() = 0;
     /// Corrects positions by so many Newton steps and velocities by one, each by the least in the metric of the masses, so that jointed
     /// tips close again; nothing happens where there are none. Collective.
     static constexpr int usual_corrections = 2;
-    void close_tips(JointState&, int corrections = usual_corrections);
-    /// Largest opening of a jointed tip over the chains' reach, over all ranks. Collective.
-    double closure_error(JointState const&);
-    ChainSolver const& solver() const { return *solver_; }
-    ChainGroup const& group() const override { return group_; }
+    virtual void close_tips(int corrections = usual_corrections) = 0;
+    /// Largest opening of a jointed tip over the chains' reach, over all ranks; NaN where the state is not finite. Collective.
+    virtual double closure_error() = 0;
+    virtual ChainSolver const& solver() const = 0;
 
-  private:
-    void joint_torques(JointState const&);
-    void loads(JointState const&);
-    Vec3 joint_velocity_term(JointState const&, std::int64_t k, Vec3& linear) const;
-    void add_joint_loads(std::int64_t k, Mat3 const& turn, Vec3& torque, Vec3& force) const;
-    void rates(JointState const&, JointRates&);
-    Vec3 rate_of_joint(JointState const&, std::int64_t k, Vec3 const& relative_alpha, double relative_slide) const;
-    void correct(JointState&, bool velocities);
-    void add_across_plane(BodyResults&) const;
-    Mat3 axes2(std::int64_t k) const { return as_matrix(group_.moving_meeting() ? motion_.axes2[k] : group_.axes2[k]); }
-    Vec3 r2(std::int64_t k) const { return group_.moving_meeting() ? motion_.r2[k] : group_.r2[k]; }
-    Screw<double> screw(std::int64_t k) const;
-    Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(motion_.orientation[k])); }
-    /// omega x J omega.
-    Vec3 gyroscopic_torque(std::int64_t k) const { return cross(motion_.omega[k], as_symmetric(group_.inertia[k]) * motion_.omega[k]); }
-    /// From outside the chain and from carried beads.
-    Wrench wrench(std::int64_t k) const;
-
-    ChainGroup const& group_;
-    Executor const& executor_;
-    Communicator const& communicator_;
-    std::unique_ptr<ChainSolver> solver_;
-    JointKinematics kinematics_;
-    BodyLoads given_;
-    BodyMotion motion_;
-    JointedTips tips_;
-    CarriedBeadForces carried_;
-    bool has_wrenches_, has_forces_, needs_positions_;
-    Field<4>
-        joint_load_;  // known load of joint k on body k: torque along the joint's axes and force along its last one; halo from outboard
-    Field<3> torque_, force_;
-    Field<3> alpha_, acceleration_;
-    Field<4> outboard_;  // of body k along the axes of its outboard joint: angular acceleration; that of handle 2 along the last axis
-    DirectionsField bias_, joint_force_, tip_bias_, tip_force_;
+  protected:
+    double time_ = 0;
 };
+
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                                                   std::unique_ptr<ChainSolver>);
 
 }  // namespace catena

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
 #include "integrate/chain_system.hpp"
 
@@ -12,13 +11,13 @@ class JointIntegrator {
   public:
     virtual ~JointIntegrator() = default;
     /// One step of length h of all groups' states, whose time is their own. Collective.
-    virtual void step(std::vector<JointState>& states, double h) = 0;
+    virtual void step(double h) = 0;
     /// What the next step needs beside the states is made where it is not there yet. Collective.
-    virtual void prepare(std::vector<JointState> const&) {}
+    virtual void prepare() {}
     virtual int evaluations_a_step() const = 0;
-    /// That, one a group, for checkpoints; null: nothing.
-    virtual std::vector<JointRates>* carried() { return nullptr; }
-    /// `carried` was set from outside.
+    /// Whether that is the groups' carried rates.
+    virtual bool carries_rates() const { return false; }
+    /// These were set from outside.
     virtual void restored() {}
 };
 

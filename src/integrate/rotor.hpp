@@ -20,7 +20,7 @@ struct RotorState {
 
 CATENA_HD void turn_about(int axis, double h, Vec3 const& moments, Quat& q, Vec3& momentum) {
     double const angle = h * momentum[axis] / moments[axis];
-    double const c = cos(angle), s = sin(angle);
+    auto const [c, s] = cos_sin(angle);
     int const i = (axis + 1) % 3, j = (axis + 2) % 3;
     double const li = momentum[i], lj = momentum[j];
     momentum[i] = fused(c, li, s * lj);

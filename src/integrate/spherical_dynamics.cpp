@@ -80,8 +80,10 @@ class SphericalDynamics final : public RigidDynamics {
 
   private:
     void start_from_joint_coordinates(Scene const& scene) {
-        BodyMotion motion = make_body_motion(group_);
-        JointKinematics(group_, executor_, communicator_).evaluate(make_joint_state(group_, scene), true, motion);
+        HostSpace const host(executor_);
+        JointState start = make_joint_state(group_, scene);
+        BodyMotion motion(group_, host);
+        JointKinematics(group_, host, communicator_).evaluate(start.view(), true, motion.view());
         for (std::int64_t k = 0; k < group_.size; ++k) {
             Mat3 const r = turn(motion.orientation, k);
             orientation_.set(k, motion.orientation[k]);

@@ -19,28 +19,23 @@ class JointStepper final : public Stepper {
           integrator_(d.integrator == Integrator::rk4 ? make_runge_kutta4(system) : make_velocity_verlet(system)) {
         system.close_tips();
     }
-    void prepare(StepTimeline*) override { integrator_->prepare(system_.joint_states()); }
+    void prepare(StepTimeline*) override { integrator_->prepare(); }
     /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at the step's end.
     void observe(bool joint_forces) override {
         if (joint_forces || system_.openmm()) system_.evaluate();
     }
     void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();
-        for (JointState& state : system_.joint_states()) state.time = static_cast<double>(n) * h_;
-        integrator_->step(system_.joint_states(), h_);
+        for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(n) * h_);
+        integrator_->step(h_);
         system_.close_tips(corrections_);
         if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
     /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is finite.
     double constraint_error() override {
         double worst = 0;
-        for (std::size_t i = 0; i < system_.joint().size(); ++i) {
-            JointState const& state = system_.joint_states()[i];
-            for (std::int64_t k = 0; k < state.q.size(); ++k)
-                worst = larger(worst, 0.0 * (dot(state.q[k], state.q[k]) + dot(state.qd[k], state.qd[k])));
-            worst = larger(worst, system_.joint()[i]->closure_error(state));
-        }
-        return system_.communicator().max(worst);
+        for (JointDynamics* const group : system_.joint()) worst = larger(worst, group->closure_error());
+        return worst;
     }
     /// One more correction of jointed tips.
     bool add_sweep() override {
@@ -50,15 +45,15 @@ class JointStepper final : public Stepper {
     }
     void save(Checkpoint& c) const override {
         c.integers["corrections_of_tips"] = corrections_;
-        std::vector<JointRates>* const carried = integrator_->carried();
-        for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.collect_rates(i, (*carried)[i], c.arrays);
+        if (!integrator_->carries_rates()) return;
+        for (JointDynamics const* const group : system_.joint()) system_.collect_rates(group->group(), group->carried_rates(), c.arrays);
     }
     void restore(Checkpoint const& c) override {
-        for (JointState& state : system_.joint_states()) state.time = static_cast<double>(c.step) * h_;
+        for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(c.step) * h_);
         if (auto const kept = c.integers.find("corrections_of_tips"); kept != c.integers.end())
             corrections_ = static_cast<int>(kept->second);
-        std::vector<JointRates>* const carried = integrator_->carried();
-        for (std::size_t i = 0; carried && i < carried->size(); ++i) system_.distribute_rates(i, c.arrays, (*carried)[i]);
+        if (!integrator_->carries_rates()) return;
+        for (JointDynamics* const group : system_.joint()) group->carry_rates(system_.own_rates(group->group(), c.arrays));
         integrator_->restored();
     }
     json describe() const override {

@@ -22,16 +22,16 @@ Pose joint_motion(JointType type, Vec3 const& axis, Vec3 const& first_axis, doub
 /// Pose in W of body k + 1, given that of body k (k = 0: ignored).
 Pose next_pose(BodyArrays const& bodies, std::size_t k, Pose const& inboard);
 
-inline double value_at(Course const& c, double t) {
-    return c.offset + c.rate * t + c.amplitude * std::sin(6.283185307179586476925 * c.frequency * t + c.phase);
+CATENA_HD double value_at(Course const& c, double t) {
+    return c.offset + c.rate * t + c.amplitude * cos_sin(6.283185307179586476925 * c.frequency * t + c.phase).sin;
 }
-inline double rate_at(Course const& c, double t) {
+CATENA_HD double rate_at(Course const& c, double t) {
     double const omega = 6.283185307179586476925 * c.frequency;
-    return c.rate + c.amplitude * omega * std::cos(omega * t + c.phase);
+    return c.rate + c.amplitude * omega * cos_sin(omega * t + c.phase).cos;
 }
-inline double acceleration_at(Course const& c, double t) {
+CATENA_HD double acceleration_at(Course const& c, double t) {
     double const omega = 6.283185307179586476925 * c.frequency;
-    return -c.amplitude * omega * omega * std::sin(omega * t + c.phase);
+    return -c.amplitude * omega * omega * cos_sin(omega * t + c.phase).sin;
 }
 
 }  // namespace catena::scene

@@ -16,7 +16,7 @@ namespace catena {
 
 enum class JointType : std::uint8_t { free, link, spherical, revolute, universal, weld, prismatic, helical };
 /// Whether the outboard body moves along the joint's axis.
-inline bool slides(JointType type) { return type == JointType::prismatic || type == JointType::helical; }
+CATENA_HD bool slides(JointType type) { return type == JointType::prismatic || type == JointType::helical; }
 enum class Base { free, fixed };
 enum class Tip { free, jointed };
 enum class StartVelocities { given, zero, thermal };

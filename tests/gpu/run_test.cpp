@@ -25,6 +25,29 @@ TEST_P(GpuRun, EndsInTheBitsOfTheHost) {
 auto const name_of_scene = [](auto const& scene) { return scene.param.name; };
 INSTANTIATE_TEST_SUITE_P(Integrators, GpuRun, ::testing::ValuesIn(run_scenes), name_of_scene);
 
+/// Chains in joint coordinates that ranks share, with all that acts on them.
+RunScene joint_chains(char const* name, char const* joint, char const* more, char const* integrator) {
+    auto const chain = [&](std::string const& head, int bodies) {
+        return "{" + head + ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 3}}}";
+    };
+    return {name, "chains: [" + chain("name: a, base: free", 130) + ", " + chain(std::string("name: b, base: fixed") + more, 40) +
+                      "]\nforces: {gravity: [0, 1, -2], drag: {linear: 0.1, angular: 0.1}}\ndynamics: {integrator: " + integrator +
+                      ", step: 0.0005, steps: 40}\noutput: {every: 20, checkpoint_every: 20, joint_forces: true}\n"};
+}
+char const* const held = ", tip: {joint: {type: spherical}}";
+INSTANTIATE_TEST_SUITE_P(SharedChains, GpuRun,
+                         ::testing::Values(joint_chains("rk4_planar", "planar", "", "rk4"),
+                                           joint_chains("rk4_spherical_held", "spherical", held, "rk4"),
+                                           joint_chains("rk4_universal_held", "universal", held, "rk4"),
+                                           joint_chains("rk4_helical_held", "helical", held, "rk4"),
+                                           joint_chains("rk4_mixed_held", "mixed", held, "rk4"),
+                                           joint_chains("verlet_planar", "planar", "", "velocity-verlet"),
+                                           joint_chains("verlet_spherical_held", "spherical", held, "velocity-verlet"),
+                                           joint_chains("verlet_universal_held", "universal", held, "velocity-verlet"),
+                                           joint_chains("verlet_helical_held", "helical", held, "velocity-verlet"),
+                                           joint_chains("verlet_mixed_held", "mixed", held, "velocity-verlet")),
+                         name_of_scene);
+
 /// A long chain that ranks share, and so many short ones that the last rank holds one unit of it: levels of its tree are empty there.
 RunScene long_and_short(char const* name, int beads, int beads_of_short) {
     auto const chain = [](std::string const& head, int n) {

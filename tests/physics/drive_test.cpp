@@ -35,9 +35,9 @@ class Driven {
         double const before = energy();
         double work = power();
         for (int i = 1; i <= steps_; ++i) {
-            system_.joint_states()[0].time = (i - 1) * step_;
-            integrator_->step(system_.joint_states(), step_);
-            system_.joint_states()[0].time = i * step_;
+            system_.joint().front()->set_time((i - 1) * step_);
+            integrator_->step(step_);
+            system_.joint().front()->set_time(i * step_);
             work += (i == steps_ ? 1 : i % 2 == 1 ? 4 : 2) * power();
         }
         return {work * step_ / 3, energy() - before};

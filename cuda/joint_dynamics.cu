@@ -1,0 +1,14 @@
+#include "cuda/joint_dynamics.hpp"
+
+#include "cuda/device_solver.cuh"
+#include "integrate/joint_dynamics_in.hpp"
+
+namespace catena::cuda {
+
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
+    DeviceSpace const space;
+    return std::make_unique<JointDynamicsIn<DeviceSpace>>(group, scene, space, communicator,
+                                                          make_device_solver(group, space, communicator));
+}
+
+}  // namespace catena::cuda

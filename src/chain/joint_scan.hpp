@@ -1,0 +1,131 @@
+// The scan over the canonical tree that gives every body its motion against the ground, item by item, host and device.
+//
+// Bodies against the body before their run; runs and pairs of segments as wholes, up the tree; what lies before each segment, down the
+// tree; bodies against the ground. Motions are those of a segment's last body.
+#pragma once
+
+#include "chain/joint_motion.hpp"
+#include "dca/tree.hpp"
+
+namespace catena {
+
+struct JointScan {
+    JointsView joints;
+    StateView state;
+    MotionView motion;
+    View<4> rotation;  // of body k against its inboard body, then against the body before its run
+    View<3> omega, translation, velocity;
+    std::int32_t const* slot = nullptr;  // of the run of body k
+    Motion* whole = nullptr;             // by slot: against the body before the segment
+    Motion* before = nullptr;            // by slot: of the body before the segment, against the ground
+    View<12> next_meeting;               // {point, axes}: entry 1 of the joint after this rank's last body
+    View<13> shared;                     // wholes of shared chains' units, on their way between ranks
+
+    template <bool positions>
+    CATENA_HD Motion load(std::int64_t k) const {
+        Motion m{as_quaternion(rotation.load(k)), omega.load(k), Vec3::zero(), Vec3::zero()};
+        if constexpr (positions) {
+            m.translation = translation.load(k);
+            m.velocity = velocity.load(k);
+        }
+        return m;
+    }
+    template <bool positions>
+    CATENA_HD void store(std::int64_t k, Motion const& m) const {
+        rotation.store(k, as_vector(m.rotation));
+        omega.store(k, m.omega);
+        if constexpr (positions) {
+            translation.store(k, m.translation);
+            velocity.store(k, m.velocity);
+        }
+    }
+    template <bool positions>
+    CATENA_HD void set_relative(std::int64_t k) const {
+        Quat const turn = joints.turn_of(state, k);
+        motion.joint_turn.store(k, as_vector(turn));
+        store<positions>(k, joints.motion(state, k, turn));
+    }
+    /// A few bodies at a time, so that their loads are under way together.
+    template <bool positions>
+    CATENA_HD void follow(dca::Run const& run) const {
+        constexpr int few = 4;
+        std::int64_t const end = run.body + run.count;
+        std::int64_t k = run.body + 1;
+        Motion m = load<positions>(run.body);
+        for (; k + few <= end; k += few) {
+            Motion next[few];
+            Vec3 normal[few];
+        CATENA_UNROLL
+            for (int i = 0; i < few; ++i) {
+                next[i] = load<positions>(k + i);
+                normal[i] = joints.normal(k + i);
+            }
+            CATENA_UNROLL
+            for (int i = 0; i < few; ++i) m = go_on<positions>(m, next[i], normal[i], k + i);
+        }
+        for (; k < end; ++k) m = go_on<positions>(m, load<positions>(k), joints.normal(k), k);
+        m.rotation = normalized(m.rotation);
+        whole[run.slot] = m;
+    }
+    template <bool positions>
+    CATENA_HD Motion go_on(Motion const& before_it, Motion const& next, Vec3 const& normal, std::int64_t k) const {
+        Motion m = compose<positions>(before_it, next);
+        m.omega = joints.kept_in_plane(normal, m.omega);
+        store<positions>(k, m);
+        return m;
+    }
+    template <bool positions>
+    CATENA_HD void join(dca::Merge const& m) const {
+        whole[m.slot] = compose<positions>(whole[m.inboard], whole[m.outboard]);
+    }
+    template <bool positions>
+    CATENA_HD void part(dca::Merge const& m) const {
+        Motion const start = before[m.slot];
+        before[m.inboard] = start;
+        before[m.outboard] = compose<positions>(start, whole[m.inboard]);
+    }
+    template <bool positions>
+    CATENA_HD void set_motion(std::int64_t k) const {
+        Motion const m = compose<positions>(before[slot[k]], load<positions>(k));
+        motion.orientation.store(k, as_vector(normalized(m.rotation)));
+        motion.omega.store(k, joints.kept_in_plane(joints.normal(k), m.omega));
+        if constexpr (positions) {
+            motion.origin.store(k, m.translation);
+            motion.velocity.store(k, m.velocity);
+        }
+        if (motion.axes2.origin && !joints.is_last[k]) set_meeting(k);
+    }
+
+    CATENA_HD void show_unit(std::int64_t i, dca::SharedUnit const& unit) const {
+        if (unit.source < 0) return;
+        Motion const m = whole[unit.source];
+        Quat const q = m.rotation;
+        Vec3 const w = m.omega, x = m.translation, v = m.velocity;
+        shared.store(i, Vector<double, 13>{{q.w, q.x, q.y, q.z, w[0], w[1], w[2], x[0], x[1], x[2], v[0], v[1], v[2]}});
+    }
+    CATENA_HD void take_unit(std::int64_t i, dca::SharedUnit const& unit) const {
+        Vector<double, 13> const n = shared.load(i);
+        whole[unit.slot] = {{n[0], n[1], n[2], n[3]}, {{n[4], n[5], n[6]}}, {{n[7], n[8], n[9]}}, {{n[10], n[11], n[12]}}};
+    }
+    CATENA_HD void show_first_meeting() const {
+        Meeting const m = joints.meeting(state, 0);
+        Vector<double, 12> numbers;
+        CATENA_UNROLL
+        for (int i = 0; i < 12; ++i) numbers[i] = i < 3 ? m.point[i] : m.axes.data[i - 3];
+        next_meeting.store(0, numbers);
+    }
+    CATENA_HD void set_meeting(std::int64_t inboard_body) const {
+        if (inboard_body + 1 < joints.size) return put_meeting(inboard_body, joints.meeting(state, inboard_body + 1));
+        Vector<double, 12> const n = next_meeting.load(1);
+        put_meeting(inboard_body, {{{n[0], n[1], n[2]}}, {{n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]}}});
+    }
+    CATENA_HD void put_meeting(std::int64_t inboard_body, Meeting const& m) const {
+        motion.r2.store(inboard_body, m.point + joints.r1.load(inboard_body));
+        Vector<double, 9> axes;
+        CATENA_UNROLL
+        for (int i = 0; i < 9; ++i) axes[i] = m.axes.data[i];
+        motion.axes2.store(inboard_body, axes);
+    }
+};
+
+}  // namespace catena

@@ -1,0 +1,281 @@
+// Dynamics of one body of chains in joint coordinates, and what a step does to its coordinates, for every Space.
+#pragma once
+
+#include "chain/joint_scan.hpp"
+#include "integrate/body_loads.hpp"
+#include "integrate/carried_beads.hpp"
+#include "integrate/jointed_tips.hpp"
+
+namespace catena {
+
+/// Time derivatives of StateView's velocities.
+struct RatesView {
+    View<3> qdd;                // second derivatives of q; spherical, free: derivative of the components of qd, B
+    View<3> base_acceleration;  // one a piece: of a free base's origin, W
+};
+
+struct JointChains {
+    JointScan scan;
+    BodyLoadsView given;
+    double time = 0;
+    int directions = 6;
+    bool has_wrenches = false, has_forces = false;
+    ConstView<1> mass;
+    ConstView<6> inertia;
+    ConstView<3> fixed_r2;
+    ConstView<9> fixed_axes2;
+    // Beads that bodies carry; absent where none does.
+    std::int64_t const* bead_offset = nullptr;
+    Vec3 const* bead_place = nullptr;
+    View<3> bead_position, bead_force;
+    // What a solution needs and finds.
+    View<4> joint_load;  // known load of joint k on body k: torque along the joint's axes and force along its last one
+    View<3> torque, force, alpha, acceleration;
+    DirectionsView bias;
+    View<4> outboard_end;  // entry -1: outboard_end_of() of the body before this rank's first
+
+    CATENA_HD JointsView const& joints() const { return scan.joints; }
+    CATENA_HD Mat3 turn(std::int64_t k) const { return to_matrix(as_quaternion(scan.motion.joint_turn.load(k))); }
+    CATENA_HD Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(scan.motion.orientation.load(k))); }
+    CATENA_HD Vec3 omega(std::int64_t k) const { return scan.motion.omega.load(k); }
+    CATENA_HD Vec3 r1(std::int64_t k) const { return joints().r1.load(k); }
+    CATENA_HD Mat3 axes2(std::int64_t k) const {
+        return as_matrix(scan.motion.axes2.origin ? scan.motion.axes2.load(k) : fixed_axes2.load(k));
+    }
+    CATENA_HD Vec3 r2(std::int64_t k) const { return scan.motion.r2.origin ? scan.motion.r2.load(k) : fixed_r2.load(k); }
+
+    // Configuration.
+
+    template <bool positions>
+    CATENA_HD void set_relative(std::int64_t k) const {
+        scan.set_relative<positions>(k);
+        if (given.joint_loads) set_joint_load(k);
+    }
+    /// With the loads, but where these wait for forces from outside.
+    template <bool positions>
+    CATENA_HD void set_motion(std::int64_t k) const {
+        scan.set_motion<positions>(k);
+        if (!bead_offset) return set_loads(k);
+        Mat3 const axes = orientation(k);
+        Vec3 const centre = scan.motion.origin.load(k) - axes * r1(k);
+        for (std::int64_t i = bead_offset[k]; i < bead_offset[k + 1]; ++i) {
+            bead_position.store(i, centre + axes * bead_place[i]);
+            bead_force.store(i, Vec3::zero());
+        }
+    }
+
+    // Loads.
+
+    /// Along the joint's free directions: given, spring and damper.
+    CATENA_HD void set_joint_load(std::int64_t k) const {
+        if (joints().drives > 0 && joints().drive_of(k)) return joint_load.store(k, Vector<double, 4>::zero());
+        Vec3 along = given.torque.load(k);
+        Vec3 const qd = scan.state.qd.load(k);
+        Vector<double, 4> const q = scan.state.q.load(k);
+        if (given.springs) {
+            Vec3 const stiffness = given.stiffness.load(k);
+            Vector<double, 4> const rest = given.rest.load(k);
+            if (joints().joint[k] == JointType::spherical)
+                along = along + spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
+            else
+                for (int i = 0; i < 2; ++i) along[i] -= stiffness[i] * (q[i] - rest[i]);
+        }
+        if (given.dampers) {
+            Vec3 const damping = given.damping.load(k);
+            for (int i = 0; i < 3; ++i) along[i] -= damping[i] * qd[i];
+        }
+        joint_load.store(k, load_along_axes(k, along));
+    }
+    /// On the outboard body, from the moments along the coordinates: torque along the joint's axes (universal: within the plane of its
+    /// axes) and force along the last one.
+    CATENA_HD Vector<double, 4> load_along_axes(std::int64_t k, Vec3 const& along) const {
+        Mat3 const axes = joints().axes(k);
+        switch (joints().joint[k]) {
+            case JointType::spherical: {
+                Vec3 const t = transposed_times(axes, turn(k) * along);
+                return {{t[0], t[1], t[2], 0}};
+            }
+            case JointType::universal: {
+                Vec3 const first = joints().first_axis.load(k), second = axes.column(2);
+                double const g = dot(first, second), x = (along[0] - g * along[1]) / (1 - g * g), y = along[1] - g * x;
+                Vec3 const t = transposed_times(axes, plus_scaled(x * first, y, second));
+                return {{t[0], t[1], t[2], 0}};
+            }
+            case JointType::free:
+            case JointType::link:
+            case JointType::weld:
+                return Vector<double, 4>::zero();
+            default:
+                Vec3 const s = joints().screw_of(k);
+                return {{0, 0, s[0] / s[2] * along[0], s[1] / s[2] * along[0]}};
+        }
+    }
+    /// Adds what the joints at both ends of body k do along their free directions; B.
+    CATENA_HD void add_joint_loads(std::int64_t k, Mat3 const& inboard_turn, Vec3& moment, Vec3& push) const {
+        Vector<double, 4> const in = joint_load.load(k);
+        Mat3 const e1 = transposed_times(inboard_turn, joints().axes(k));
+        moment = moment + e1 * Vec3{{in[0], in[1], in[2]}};
+        if (in[3] != 0) {
+            Vec3 const f = in[3] * e1.column(2);
+            push = push + f;
+            moment = moment + cross(r1(k), f);
+        }
+        if (joints().is_last[k]) return;
+        Vector<double, 4> const out = joint_load.load(k + 1);
+        Mat3 const e2 = axes2(k);
+        moment = moment - e2 * Vec3{{out[0], out[1], out[2]}};
+        if (out[3] != 0) {
+            Vec3 const f = out[3] * e2.column(2);
+            push = push - f;
+            moment = moment - cross(r2(k), f);
+        }
+    }
+    /// From outside the chain and from carried beads.
+    CATENA_HD Wrench wrench(std::int64_t k) const {
+        Wrench w{Vec3::zero(), Vec3::zero()};
+        if (bead_offset) {
+            Mat3 const axes = orientation(k);
+            for (std::int64_t i = bead_offset[k]; i < bead_offset[k + 1]; ++i) {
+                Vec3 const f = bead_force.load(i);
+                w.force = w.force + f;
+                w.torque = w.torque + cross(axes * bead_place[i], f);
+            }
+        }
+        if (given.wrenches) w = {w.torque + given.wrench_torque.load(k), w.force + given.wrench_force.load(k)};
+        return w;
+    }
+    /// omega x J omega.
+    CATENA_HD Vec3 gyroscopic_torque(std::int64_t k) const { return cross(omega(k), as_symmetric(inertia.load(k)) * omega(k)); }
+
+    /// The velocity-dependent part c of joint k's relative acceleration (formulas, "Joint bias"), with what a drive prescribes; M.
+    CATENA_HD Vec3 joint_velocity_term(std::int64_t k, Vec3& linear) const {
+        Vec3 const w = turn(k) * omega(k);
+        JointRate const rate = joints().rate(scan.state, k);
+        Vec3 angular = cross(w, rate.angular);  // the outboard body's w does as well as the inboard one's
+        linear = 2.0 * cross(w - rate.angular, rate.linear);
+        bool const universal = joints().joint[k] == JointType::universal;
+        Mat3 const axes = joints().axes(k);
+        if (universal) {
+            Vec3 const qd = scan.state.qd.load(k);
+            angular = plus_scaled(angular, qd[0] * qd[1], cross(joints().first_axis.load(k), axes.column(2)));
+        }
+        LocalDrive const* const drive = joints().drives > 0 ? joints().drive_of(k) : nullptr;
+        if (!drive) return angular;
+        double const first = scene::acceleration_at(drive->first, time), second = scene::acceleration_at(drive->second, time);
+        if (universal) return angular + first * joints().first_axis.load(k) + second * axes.column(2);
+        Vec3 const s = joints().screw_of(k);
+        linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));
+        return plus_scaled(angular, s[0] * s[2] * first, axes.column(2));
+    }
+
+    CATENA_HD void set_loads(std::int64_t k) const {
+        Vec3 const w = omega(k);
+        Mat3 const to_meeting = turn(k), axes1 = joints().axes(k);
+        // In a plane the gyroscopic torque is across it, and large: only its rounding would count.
+        Vec3 moment = joints().planar ? Vec3::zero() : -gyroscopic_torque(k), push = Vec3::zero();
+        if (given.joint_loads) add_joint_loads(k, to_meeting, moment, push);
+        if (has_wrenches) {
+            Wrench const outside = wrench(k);
+            Mat3 const axes = orientation(k);
+            moment = moment + transposed_times(axes, outside.torque);
+            push = push + transposed_times(axes, outside.force);
+        }
+        if (given.dragged) {
+            Vector<double, 2> const drag = given.drag.load(k);
+            push = plus_scaled(push, -drag[0], scan.motion.velocity.load(k) - cross(w, r1(k)));
+            moment = plus_scaled(moment, -drag[1], w);
+        }
+        torque.store(k, moment);
+        if (joints().planar && has_forces) {  // nothing moves across the plane
+            Vec3 const axis = axes1.column(2);
+            push = plus_scaled(push, -dot(axis, push), axis);
+        }
+        if (has_forces) force.store(k, push);
+        set_bias(k, to_meeting, axes1);
+    }
+    CATENA_HD void set_bias(std::int64_t k, Mat3 const& to_meeting, Mat3 const& axes1) const {
+        Vec3 linear = Vec3::zero(), angular = Vec3::zero();  // -c along the joint's axes
+        JointType const type = joints().joint[k];
+        if (type != JointType::free && type != JointType::spherical && type != JointType::weld && !joints().planar) {
+            angular = -transposed_times(axes1, joint_velocity_term(k, linear));
+            linear = -transposed_times(axes1, linear);
+        }
+        if (joints().is_first[k] && type != JointType::free)  // ground accelerates by -g
+            linear = linear + transposed_times(axes1, to_meeting * transposed_times(orientation(k), given.gravity));
+        Screw<double> const s = joints().direction_of_screw(k);
+        store_first(
+            bias, k, directions,
+            {{linear[0], linear[1], s.c * linear[2] - s.s * angular[2], angular[0], angular[1], s.s * linear[2] + s.c * angular[2]}});
+    }
+
+    // Rates.
+
+    /// Of body k along the axes of its outboard joint: angular acceleration; that of handle 2 along the last axis.
+    CATENA_HD Vector<double, 4> outboard_end_of(std::int64_t k) const {
+        Mat3 const e2 = axes2(k);
+        Vec3 const turning = alpha.load(k), along = transposed_times(e2, turning);
+        double slide = 0;
+        if (joints().has_screws) {
+            Vec3 const w = omega(k), r = r2(k);
+            slide = dot(e2.column(2), acceleration.load(k) + cross(turning, r) + cross(w, cross(w, r)));
+        }
+        return {{along[0], along[1], along[2], slide}};
+    }
+    CATENA_HD Vector<double, 4> inboard_end_of(std::int64_t k) const {
+        if (joints().is_first[k]) return Vector<double, 4>::zero();
+        return k == 0 ? outboard_end.load(-1) : outboard_end_of(k - 1);
+    }
+    /// Second derivatives of joint k's coordinates. `relative_alpha`: outboard less inboard angular acceleration along the joint's axes.
+    /// `relative_slide`: the same of the meeting points along the last axis.
+    CATENA_HD Vec3 rate_of_joint(std::int64_t k, Vec3 const& relative_alpha, double relative_slide) const {
+        switch (joints().joint[k]) {
+            case JointType::universal: {
+                Mat3 const axes = joints().axes(k);
+                Vec3 linear;
+                Vec3 const relative = relative_alpha - transposed_times(axes, joint_velocity_term(k, linear));
+                Vec3 const first = transposed_times(axes, joints().first_axis.load(k));  // (0, y, z); the second axis is (0, 0, 1)
+                double const u1 = relative[1] / first[1];
+                return {{u1, relative[2] - first[2] * u1, 0}};
+            }
+            case JointType::weld:
+            case JointType::link:
+                return Vec3::zero();
+            default:
+                if (!joints().has_screws) return {{relative_alpha[2], 0, 0}};
+                Vec3 const s = joints().screw.load(k);
+                return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], 0, 0}};
+        }
+    }
+    /// Second derivatives of body k's coordinates.
+    CATENA_HD Vec3 rate(std::int64_t k) const {
+        if (LocalDrive const* const d = joints().drives > 0 ? joints().drive_of(k) : nullptr)
+            return {{scene::acceleration_at(d->first, time),
+                     joints().joint[k] == JointType::universal ? scene::acceleration_at(d->second, time) : 0.0, 0}};
+        Vec3 const turning = alpha.load(k);
+        if (joints().joint[k] == JointType::free) return turning;
+        Mat3 const axes1 = joints().axes(k), to_meeting = turn(k);
+        Vector<double, 4> const before = inboard_end_of(k);
+        Vec3 const inboard{{before[0], before[1], before[2]}};
+        if (joints().joint[k] == JointType::spherical)
+            return turning - transposed_times(to_meeting, axes1 * inboard) + cross(scan.state.qd.load(k), omega(k));
+        double slide = 0;
+        if (joints().has_screws) {
+            Vec3 const r = r1(k), w = omega(k), axis = axes1.column(2);  // the axis is the same in B
+            slide = dot(axis, acceleration.load(k) + cross(turning, r) + cross(w, cross(w, r))) - before[3];
+            if (joints().is_first[k]) slide += dot(axis, transposed_times(orientation(k), given.gravity));
+        }
+        return rate_of_joint(k, transposed_times(axes1, to_meeting * turning) - inboard, slide);
+    }
+    /// Of the origin of body k on a free base.
+    CATENA_HD Vec3 base_rate(std::int64_t k) const {
+        Vec3 const w = omega(k), r = r1(k);
+        return orientation(k) * (acceleration.load(k) + cross(alpha.load(k), r) + cross(w, cross(w, r))) + given.gravity;
+    }
+    CATENA_HD bool on_free_base(std::int64_t k) const { return joints().joint[k] == JointType::free; }
+    CATENA_HD void set_rates(std::int64_t k, RatesView const& out) const {
+        out.qdd.store(k, rate(k));
+        if (on_free_base(k)) out.base_acceleration.store(joints().piece_of(k), base_rate(k));
+    }
+};
+
+}  // namespace catena

@@ -1,0 +1,325 @@
+// JointDynamics in any Space: state, kinematics, loads and steps stay there.
+#pragma once
+
+#include <utility>
+
+#include "dca/host_space.hpp"
+#include "integrate/joint_dynamics.hpp"
+#include "integrate/joint_solution.hpp"
+#include "integrate/joint_steps.hpp"
+
+namespace catena {
+
+/// The jointed tips of the group where the scene starts. Collective.
+std::vector<JointedTip> tips_at_start(ChainGroup const&, Scene const&, Communicator const&);
+
+template <class Space>
+class JointDynamicsIn final : public JointDynamics {
+    template <int D>
+    using FieldOf = typename Space::template FieldOf<D>;
+    template <int D>
+    using Fixed = typename Space::template Fixed<D>;
+    template <class T>
+    using List = typename Space::template List<T>;
+
+  public:
+    /// `solver` takes views of the same space.
+    JointDynamicsIn(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
+                    std::unique_ptr<ChainSolver> solver)
+        : group_(group),
+          space_(space),
+          communicator_(communicator),
+          solver_(std::move(solver)),
+          given_(make_body_loads(group, scene)),
+          tip_(tips_at_start(group, scene, communicator)),
+          reach_(group.has_tips() ? reach_of(group, scene) : 1.0),
+          has_wrenches_(given_.wrenches || group.carried_beads() > 0),
+          has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
+          needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
+          kinematics_(group, space, communicator),
+          loads_(given_),
+          tips_(tip_),
+          bead_offset_(group.bead_offset),
+          bead_place_(group.bead_place),
+          mass_(group.mass),
+          inertia_(group.inertia),
+          r2_(group.r2),
+          axes2_(group.axes2),
+          state_(group),
+          start_(group),
+          sum_(group),
+          motion_(group, space),
+          bead_position_(group.carried_beads()),
+          bead_force_(group.carried_beads()),
+          joint_load_(given_.joint_loads ? group.size : 0),
+          torque_(group.size),
+          force_(has_forces_ ? group.size : 0),
+          alpha_(group.size),
+          acceleration_(group.size),
+          qdd_(group.size),
+          carried_qdd_(group.size),
+          base_acceleration_(pieces()),
+          carried_base_acceleration_(pieces()),
+          outboard_end_(1),
+          zero_(group.has_tips() ? group.size : 0),
+          bias_(group.size + 1, group.directions),
+          joint_force_(group.size + 1, group.directions),
+          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_force_(group.has_tips() ? group.size : 0, group.directions) {
+        set_state(make_joint_state(group, scene));
+    }
+
+    JointState state() const override {
+        JointState s;
+        s.q = space_.read(state_.q);
+        s.qd = space_.read(state_.qd);
+        s.base_position = space_.read(state_.base_position);
+        s.base_velocity = space_.read(state_.base_velocity);
+        return s;
+    }
+    void set_state(JointState const& s) override {
+        fill(state_.q, s.q);
+        fill(state_.qd, s.qd);
+        fill(state_.base_position, s.base_position);
+        fill(state_.base_velocity, s.base_velocity);
+        relative_ = false;
+    }
+
+    void update_configuration() override { needs_positions_ ? update<true>() : update<false>(); }
+    void assemble_matrices() override {
+        MotionView const m = motion_.view();
+        solver_->assemble_matrices({{}, m.joint_turn, {}, m.r2, m.axes2});
+    }
+    void solve() override {
+        if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
+        solver_->solve({torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(tip_bias_)},
+                       {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(tip_force_)});
+        exchange_ends();
+    }
+    void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
+    JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
+
+    void runge_kutta(int stage, double h) override {
+        double const weight[4] = {h / 6, h / 3, h / 3, h / 6}, next[4] = {h / 2, h / 2, h, h};
+        if (stage == 0) start_time_ = time_;
+        RungeKuttaStage const s{stage == 0, stage == 3, weight[stage], next[stage], start_time_ + next[stage]};
+        needs_positions_ ? runge_kutta<true>(s) : runge_kutta<false>(s);
+        time_ = s.time;
+    }
+    void carry_rates() override { set_rates(carried()); }
+    void carry_rates(JointRates const& rates) override {
+        fill(carried_qdd_, rates.qdd);
+        fill(carried_base_acceleration_, rates.base_acceleration);
+    }
+    JointRates carried_rates() const override { return {space_.read(carried_qdd_), space_.read(carried_base_acceleration_)}; }
+    void verlet_move(double h) override {
+        needs_positions_ ? verlet_move<true>(h) : verlet_move<false>(h);
+        time_ += h;
+    }
+    void verlet_finish(double h) override {
+        space_.for_each(group_.size, [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.verlet_finish(k, h); });
+        relative_ = false;
+    }
+
+    BodyMotion motion() override {
+        move();
+        BodyMotion m;
+        m.joint_turn = space_.read(motion_.joint_turn);
+        m.orientation = space_.read(motion_.orientation);
+        m.omega = space_.read(motion_.omega);
+        m.origin = space_.read(motion_.origin);
+        m.velocity = space_.read(motion_.velocity);
+        m.r2 = space_.read(motion_.r2);
+        m.axes2 = space_.read(motion_.axes2);
+        return m;
+    }
+    BodyResults results() override {
+        return with_solution([&](JointSolution const& s) { return s.results(communicator_); });
+    }
+    double residual() override {
+        return with_solution([&](JointSolution const& s) { return s.residual(communicator_); });
+    }
+    PotentialEnergy potential() override { return potential_of(group_, given_, space_.read(state_.q), motion()); }
+
+    void close_tips(int corrections) override {
+        if (!group_.has_tips()) return;
+        for (int i = 0; i < corrections; ++i) correct(false);
+        correct(true);
+    }
+    double closure_error() override {
+        double worst = space_.largest(group_.size, [s = steps()] CATENA_LAMBDA(std::int64_t k) -> double { return s.trouble(k); });
+        if (group_.has_tips()) {
+            move();
+            worst =
+                larger(worst, space_.largest(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) -> double { return t.error(i); }));
+        }
+        return communicator_.max(worst);
+    }
+
+    View<3> bead_forces() override {
+        if (group_.carried_beads() == 0) return {};
+        forces_are_out_ = true;
+        return space_.pull(bead_force_, force_mirror_);
+    }
+    ConstView<3> bead_positions() override {
+        if (group_.carried_beads() == 0) return {};
+        return space_.pull(bead_position_, position_mirror_);
+    }
+    void take_bead_forces() override {
+        if (std::exchange(forces_are_out_, false)) space_.push(bead_force_, force_mirror_);
+    }
+    ChainSolver const& solver() const override { return *solver_; }
+    ChainGroup const& group() const override { return group_; }
+
+    // Not private: nvcc takes lambdas for kernels from public members alone.
+    template <bool positions>
+    void update() {
+        JointChains const c = chains();
+        if (!std::exchange(relative_, false))
+            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
+        if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
+        kinematics_.template sweep<positions>(c.scan);
+        space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k); });
+        if (!group_.has_tips()) return;
+        space_.for_each(tips(), [t = jointed_tips(), moving = group_.moving_meeting(), gravity = given_.gravity,
+                                 out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
+            if (moving) t.set_meeting(i);
+            t.set_acceleration_bias(i, gravity, out);
+        });
+    }
+    template <bool positions>
+    void runge_kutta(RungeKuttaStage const& stage) {
+        space_.for_each(group_.size, [s = steps(), stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
+        relative_ = true;
+    }
+    template <bool positions>
+    void verlet_move(double h) {
+        space_.for_each(group_.size, [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
+            s.template verlet_move<positions>(k, h, time);
+        });
+        relative_ = true;
+    }
+    void set_rates(RatesView const& out) {
+        space_.for_each(group_.size, [c = chains(), out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
+    }
+    /// The kinematics alone, positions included.
+    void move() {
+        relative_ = false;
+        kinematics_.evaluate(state_.view(), true, motion_.view());
+        if (group_.has_tips() && group_.moving_meeting())
+            space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.set_meeting(i); });
+    }
+    /// One Newton step: the solver with openings in the place of accelerations.
+    void correct(bool velocities) {
+        move();
+        assemble_matrices();
+        space_.for_each(tips(), [t = jointed_tips(), velocities, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
+            t.set_opening(i, velocities, out);
+        });
+        solver_->solve({{}, {}, {}, {}, tip_bias_.view()}, {alpha_.view(), acceleration_.view(), {}, {}});
+        JointSteps still = steps();
+        still.chains.scan.state.qd = zero_.view();
+        still.chains.scan.motion.omega = zero_.view();
+        still.chains.given.gravity = Vec3::zero();
+        exchange_ends(still.chains);
+        space_.for_each(group_.size,
+                        [still, state = state_.view(), velocities] CATENA_LAMBDA(std::int64_t k) { still.correct(k, state, velocities); });
+    }
+    void exchange_ends() { exchange_ends(chains()); }
+    void exchange_ends(JointChains const& c) {
+        if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
+        space_.for_each(1, [c, last = group_.size - 1] CATENA_LAMBDA(std::int64_t) { c.outboard_end.store(0, c.outboard_end_of(last)); });
+        Vector<double, 4> const send = space_.get(ConstView<4>(outboard_end_.view()), 0);
+        Vector<double, 4> receive = send;
+        communicator_.exchange(std::as_bytes(std::span(send.data)), group_.neighbour_outboard,
+                               std::as_writable_bytes(std::span(receive.data)), group_.neighbour_inboard);
+        space_.put(outboard_end_.view(), -1, receive);
+    }
+
+  private:
+    std::int64_t pieces() const { return std::ssize(group_.pieces); }
+    std::int64_t tips() const { return std::ssize(tip_); }
+    DirectionsView of_tips(typename Space::Directions& directions) const {
+        return group_.has_tips() ? directions.view() : DirectionsView{};
+    }
+    template <int D>
+    void fill(FieldOf<D>& field, Field<D> const& host) const {
+        space_.edit(field, [&](View<D> view) {
+            for (std::int64_t k = 0; k < host.size(); ++k) view.store(k, host[k]);
+        });
+    }
+    JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view()}; }
+    RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
+    JointChains chains() {
+        JointChains c;
+        c.scan = kinematics_.scan(state_.view(), motion_.view());
+        c.given = loads_.view();
+        c.time = time_;
+        c.directions = group_.directions;
+        c.has_wrenches = has_wrenches_;
+        c.has_forces = has_forces_;
+        c.mass = mass_.view();
+        c.inertia = inertia_.view();
+        c.fixed_r2 = r2_.view();
+        c.fixed_axes2 = axes2_.view();
+        c.bead_offset = group_.carried_in_scene ? bead_offset_.data() : nullptr;
+        c.bead_place = bead_place_.data();
+        c.bead_position = bead_position_.view();
+        c.bead_force = bead_force_.view();
+        c.joint_load = joint_load_.view();
+        c.torque = torque_.view();
+        c.force = force_.view();
+        c.alpha = alpha_.view();
+        c.acceleration = acceleration_.view();
+        c.bias = bias_.view();
+        c.outboard_end = outboard_end_.view();
+        return c;
+    }
+    JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
+    template <class Use>
+    auto with_solution(Use const& use) const {
+        auto const &joint_turn = space_.read(motion_.joint_turn), &orientation = space_.read(motion_.orientation);
+        auto const &omega = space_.read(motion_.omega), &velocity = space_.read(motion_.velocity), &r2 = space_.read(motion_.r2);
+        auto const& axes2 = space_.read(motion_.axes2);
+        auto const &torque = space_.read(torque_), &force = space_.read(force_), &alpha = space_.read(alpha_),
+                   &acceleration = space_.read(acceleration_), &bead_force = space_.read(bead_force_);
+        auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
+                   &tip_force = space_.read(tip_force_);
+        return use(JointSolution{group_, given_, joint_turn.view(), orientation.view(), omega.view(), velocity.view(), r2.view(),
+                                 axes2.view(), torque.view(), has_forces_ ? force.view() : ConstView<3>{}, alpha.view(),
+                                 acceleration.view(), group_.carried_beads() > 0 ? bead_force.view() : ConstView<3>{}, bias.view(),
+                                 joint_force.view(), tip_bias.view(), tip_force.view()});
+    }
+
+    ChainGroup const& group_;
+    Space space_;
+    Communicator const& communicator_;
+    std::unique_ptr<ChainSolver> solver_;
+    BodyLoads given_;
+    std::vector<JointedTip> tip_;
+    double reach_;
+    bool has_wrenches_, has_forces_, needs_positions_;
+    bool relative_ = false;  // the state's motions joint by joint are known
+    double start_time_ = 0;
+    JointKinematics<Space> kinematics_;
+    BodyLoadsIn<Space> loads_;
+    List<JointedTip> tips_;
+    List<std::int64_t> bead_offset_;
+    List<Vec3> bead_place_;
+    Fixed<1> mass_;
+    Fixed<6> inertia_;
+    Fixed<3> r2_;
+    Fixed<9> axes2_;
+    JointCoordinates<Space> state_, start_, sum_;
+    MotionFields<Space> motion_;
+    FieldOf<3> bead_position_, bead_force_;
+    FieldOf<4> joint_load_;
+    FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
+    FieldOf<4> outboard_end_;
+    FieldOf<3> zero_;
+    typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    typename Space::template Mirror<3> position_mirror_, force_mirror_;
+    bool forces_are_out_ = false;
+};
+
+}  // namespace catena

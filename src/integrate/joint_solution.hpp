@@ -1,0 +1,52 @@
+// What an evaluation in joint coordinates found, on the host.
+#pragma once
+
+#include "integrate/absolute_dynamics.hpp"
+#include "integrate/joint_chains.hpp"
+
+namespace catena {
+
+struct JointSolution {
+    ChainGroup const& group;
+    BodyLoads const& given;
+    ConstView<4> joint_turn, turn;            // MotionView::joint_turn, orientation
+    ConstView<3> omega, velocity, moving_r2;  // MotionView
+    ConstView<9> moving_axes2;
+    ConstView<3> torque, force, alpha, acceleration;  // force: absent where no body has any
+    ConstView<3> bead_force;                          // on carried beads
+    ConstDirectionsView bias, joint_force, tip_bias, tip_force;
+
+    /// Collective.
+    BodyResults results(Communicator const&) const;
+    /// Largest local backward residual: Newton-Euler of every body and the closing of every joint, each relative to the sizes of its
+    /// own terms (formulas, "Residuals"). Over all ranks; collective.
+    double residual(Communicator const&) const;
+
+  private:
+    void add_across_plane(Communicator const&, BodyResults&) const;
+    Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(turn.load(k))); }
+    Mat3 axes2(std::int64_t k) const { return as_matrix(group.moving_meeting() ? moving_axes2.load(k) : group.axes2[k]); }
+    Vec3 r2(std::int64_t k) const { return group.moving_meeting() ? moving_r2.load(k) : group.r2[k]; }
+    /// The inboard joint's, in the body.
+    Mat3 axes1(std::int64_t k) const { return transposed_times(to_matrix(as_quaternion(joint_turn.load(k))), as_matrix(group.axes1[k])); }
+    Screw<double> screw(std::int64_t k) const;
+    Screw<double> outboard_screw(std::int64_t k) const;
+    Vec3 gyroscopic_torque(std::int64_t k) const { return cross(omega.load(k), as_symmetric(group.inertia[k]) * omega.load(k)); }
+    Vec3 outside_force(std::int64_t k) const;
+    struct Terms;
+    struct Pair {
+        Vec3 force, torque;
+    };
+    /// Along a joint's axes.
+    Pair along_axes(ConstDirectionsView forces, std::int64_t at, Screw<double> const&) const;
+    Pair outboard_pair(std::int64_t k) const;
+    Terms terms(std::int64_t k) const;
+    Vector<double, 8> handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const;
+    double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, ConstDirectionsView biases, std::int64_t at,
+                   Screw<double> const&, int restricted, double size) const;
+};
+
+/// Of bodies at `motion`, positions included.
+PotentialEnergy potential_of(ChainGroup const&, BodyLoads const&, Field<4> const& q, BodyMotion const& motion);
+
+}  // namespace catena

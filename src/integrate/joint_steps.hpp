@@ -1,0 +1,136 @@
+// What steps and corrections do to the coordinates of one body, for every Space. A body on a free base takes the base along.
+#pragma once
+
+#include "integrate/joint_chains.hpp"
+
+namespace catena {
+
+/// One of the four: the sum grows by `weight` times the rates, the state goes to the start plus `next` times the rates, or at the end to
+/// the sum.
+struct RungeKuttaStage {
+    bool first = false, last = false;
+    double weight = 0, next = 0, time = 0;  // time: of the state that comes out
+};
+
+struct JointSteps {
+    JointChains chains;
+    StateView start, sum;
+    RatesView carried;  // accelerations that velocity Verlet carries from step to step
+
+    CATENA_HD static Vector<double, 4> rate_of_quaternion(Quat const& q, Vec3 const& omega) {
+        Quat const r = q * Quat{0, omega[0], omega[1], omega[2]};
+        return {{0.5 * r.w, 0.5 * r.x, 0.5 * r.y, 0.5 * r.z}};
+    }
+
+    template <bool positions>
+    CATENA_HD void runge_kutta(std::int64_t k, RungeKuttaStage const& s) const {
+        StateView const& state = chains.scan.state;
+        JointsView const& joints = chains.joints();
+        Vec3 const qdd = chains.rate(k), qd = state.qd.load(k);
+        Vector<double, 4> const q = state.q.load(k);
+        Vector<double, 4> const rate =
+            joints.has_quaternion(k) ? rate_of_quaternion(as_quaternion(q), qd) : Vector<double, 4>{{qd[0], qd[1], 0, 0}};
+        Vector<double, 4> total = plus_scaled(s.first ? q : sum.q.load(k), s.weight, rate);
+        Vec3 const total_rate = plus_scaled(s.first ? qd : sum.qd.load(k), s.weight, qdd);
+        if (s.last) {
+            if (joints.has_quaternion(k)) total = as_vector(normalized(as_quaternion(total)));
+            state.q.store(k, total);
+            state.qd.store(k, total_rate);
+        } else {
+            sum.q.store(k, total);
+            sum.qd.store(k, total_rate);
+            state.q.store(k, plus_scaled(s.first ? q : start.q.load(k), s.next, rate));
+            state.qd.store(k, plus_scaled(s.first ? qd : start.qd.load(k), s.next, qdd));
+            if (s.first) {
+                start.q.store(k, q);
+                start.qd.store(k, qd);
+            }
+        }
+        if (chains.on_free_base(k)) runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
+        joints.follow_course(state, k, s.time);
+        chains.set_relative<positions>(k);
+    }
+    CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration, RungeKuttaStage const& s) const {
+        StateView const& state = chains.scan.state;
+        Vec3 const x = state.base_position.load(piece), v = state.base_velocity.load(piece);
+        Vec3 const total = plus_scaled(s.first ? x : sum.base_position.load(piece), s.weight, v);
+        Vec3 const total_rate = plus_scaled(s.first ? v : sum.base_velocity.load(piece), s.weight, acceleration);
+        if (s.last) {
+            state.base_position.store(piece, total);
+            state.base_velocity.store(piece, total_rate);
+            return;
+        }
+        sum.base_position.store(piece, total);
+        sum.base_velocity.store(piece, total_rate);
+        state.base_position.store(piece, plus_scaled(s.first ? x : start.base_position.load(piece), s.next, v));
+        state.base_velocity.store(piece, plus_scaled(s.first ? v : start.base_velocity.load(piece), s.next, acceleration));
+        if (s.first) {
+            start.base_position.store(piece, x);
+            start.base_velocity.store(piece, v);
+        }
+    }
+
+    /// Positions by h, velocities to the first guess at `time`.
+    template <bool positions>
+    CATENA_HD void verlet_move(std::int64_t k, double h, double time) const {
+        StateView const& state = chains.scan.state;
+        Vec3 const qd = state.qd.load(k), qdd = carried.qdd.load(k);
+        turn_by(k, plus_scaled(h * qd, 0.5 * h * h, qdd), true);
+        start.qd.store(k, qd);
+        state.qd.store(k, plus_scaled(qd, h, qdd));
+        if (chains.on_free_base(k)) {
+            std::int64_t const p = chains.joints().piece_of(k);
+            Vec3 const v = state.base_velocity.load(p), a = carried.base_acceleration.load(p);
+            state.base_position.store(p, state.base_position.load(p) + plus_scaled(h * v, 0.5 * h * h, a));
+            start.base_velocity.store(p, v);
+            state.base_velocity.store(p, plus_scaled(v, h, a));
+        }
+        chains.joints().follow_course(state, k, time);
+        chains.set_relative<positions>(k);
+    }
+    /// Velocities from the mean of the accelerations before and after the move.
+    CATENA_HD void verlet_finish(std::int64_t k, double h) const {
+        StateView const& state = chains.scan.state;
+        Vec3 const qdd = chains.rate(k);  // with the guess of qd
+        state.qd.store(k, plus_scaled(plus_scaled(start.qd.load(k), 0.5 * h, carried.qdd.load(k)), 0.5 * h, qdd));
+        carried.qdd.store(k, qdd);
+        if (chains.on_free_base(k)) {
+            std::int64_t const p = chains.joints().piece_of(k);
+            Vec3 const a = chains.base_rate(k), before = carried.base_acceleration.load(p);
+            state.base_velocity.store(p, plus_scaled(plus_scaled(start.base_velocity.load(p), 0.5 * h, before), 0.5 * h, a));
+            carried.base_acceleration.store(p, a);
+        }
+        chains.joints().follow_course(state, k, chains.time);
+    }
+
+    /// Coordinates of a correction that closes tips; those of accelerations without velocities and gravity, which `chains` must not
+    /// have.
+    CATENA_HD void correct(std::int64_t k, StateView const& state, bool velocities) const {
+        JointsView const& joints = chains.joints();
+        Vec3 const by = joints.drives > 0 && joints.drive_of(k) ? Vec3::zero() : chains.rate(k);
+        if (velocities)
+            state.qd.store(k, state.qd.load(k) + by);
+        else
+            turn_by(k, by, false);
+        if (!chains.on_free_base(k)) return;
+        std::int64_t const p = joints.piece_of(k);
+        View<3> const& base = velocities ? state.base_velocity : state.base_position;
+        base.store(p, base.load(p) + chains.base_rate(k));
+    }
+    /// `alone`: what is no coordinate becomes 0.
+    CATENA_HD void turn_by(std::int64_t k, Vec3 const& by, bool alone) const {
+        View<4> const& to = chains.scan.state.q;
+        Vector<double, 4> const q = to.load(k);
+        if (chains.joints().has_quaternion(k))
+            to.store(k, as_vector(normalized(as_quaternion(q) * from_rotation_vector(by))));
+        else
+            to.store(k, Vector<double, 4>{{q[0] + by[0], q[1] + by[1], alone ? 0.0 : q[2], alone ? 0.0 : q[3]}});
+    }
+    /// 0, or NaN where the state of body k is not finite.
+    CATENA_HD double trouble(std::int64_t k) const {
+        StateView const& state = chains.scan.state;
+        return 0.0 * (dot(state.q.load(k), state.q.load(k)) + dot(state.qd.load(k), state.qd.load(k)));
+    }
+};
+
+}  // namespace catena

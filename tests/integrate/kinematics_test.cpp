@@ -1,0 +1,103 @@
+// The scan along chains: the way from joint to joint, and the same bits on any number of ranks.
+#include <gtest/gtest.h>
+
+#include "chain/joint_kinematics.hpp"
+#include "tests/mpi/world.hpp"
+#include "tests/support/random_chain.hpp"
+
+namespace catena::test {
+namespace {
+
+class Moved {
+  public:
+    Moved(Scene const& scene, bool pairwise, Communicator const& communicator)
+        : groups_(make_groups(scene, Axes::joint, Handles::projected, pairwise, communicator)),
+          state_(make_joint_state(*groups_[0], scene)),
+          kinematics_(*groups_[0], HostSpace(*executor_), communicator),
+          motion_(*groups_[0], HostSpace(*executor_)) {
+        kinematics_.evaluate(state_.view(), true, motion_.view());
+    }
+    ChainGroup const& group() const { return *groups_[0]; }
+    JointsView joints() const { return kinematics_.joints(); }
+    StateView state() { return state_.view(); }
+    /// Everything about a body.
+    std::vector<double> of(std::int64_t k) const {
+        std::vector<double> all;
+        auto const add = [&](auto const& v) { all.insert(all.end(), std::begin(v.data), std::end(v.data)); };
+        add(motion_.joint_turn[k]);
+        add(motion_.orientation[k]);
+        add(motion_.omega[k]);
+        add(motion_.origin[k]);
+        add(motion_.velocity[k]);
+        if (group().moving_meeting() && !group().is_last[static_cast<std::size_t>(k)]) {
+            add(motion_.r2[k]);
+            add(motion_.axes2[k]);
+        }
+        return all;
+    }
+    Motion motion(std::int64_t k) const {
+        return {as_quaternion(motion_.orientation[k]), motion_.omega[k], motion_.origin[k], motion_.velocity[k]};
+    }
+    /// Without positions, the rest must be the same.
+    void expect_the_same_without_positions() {
+        MotionFields<HostSpace> bare(*groups_[0], HostSpace(*executor_));
+        kinematics_.evaluate(state_.view(), false, bare.view());
+        for (std::int64_t k = 0; k < group().size; ++k)
+            for (int i = 0; i < 3; ++i) EXPECT_EQ(bare.omega[k][i], motion_.omega[k][i]) << k;
+    }
+
+  private:
+    std::unique_ptr<Executor> executor_ = serial_executor();
+    std::vector<std::unique_ptr<ChainGroup>> groups_;
+    JointState state_;
+    JointKinematics<HostSpace> kinematics_;
+    BodyMotion motion_;
+};
+
+Scene two_chains(RandomJoints joints, std::size_t bodies, Base base) {
+    Scene scene;
+    scene.chains = {random_chain(bodies, {.bodies = bodies, .joints = joints, .base = base}),
+                    random_chain(bodies + 1, {.bodies = 13, .joints = joints, .base = base})};
+    return scene;
+}
+
+constexpr RandomJoints all_joints[] = {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::weld,
+                                       RandomJoints::helical,  RandomJoints::planar,    RandomJoints::any};
+
+TEST(Kinematics, GoesFromJointToJoint) {
+    auto const alone = serial_communicator();
+    for (RandomJoints const joints : all_joints)
+        for (std::size_t const bodies : {1, 2, 7, 8, 9, 16, 65, 513, 1031})
+            for (bool const pairwise : {false, true}) {
+                Moved moved(two_chains(joints, bodies, Base::free), pairwise, *alone);
+                Motion at = Motion::none();
+                double const eps = 1e-14 * static_cast<double>(bodies);
+                for (std::int64_t k = 0; k < moved.group().size; ++k) {
+                    if (moved.group().is_first[static_cast<std::size_t>(k)]) at = Motion::none();
+                    at = compose<true>(at, moved.joints().motion(moved.state(), k, moved.joints().turn_of(moved.state(), k)));
+                    at.rotation = normalized(at.rotation);
+                    Motion const found = moved.motion(k);
+                    EXPECT_NEAR(norm(as_vector(found.rotation) - as_vector(at.rotation)), 0, eps);
+                    EXPECT_NEAR(norm(found.omega - at.omega), 0, eps * (1 + norm(at.omega)));
+                    EXPECT_NEAR(norm(found.translation - at.translation), 0, eps * (1 + norm(at.translation)));
+                    EXPECT_NEAR(norm(found.velocity - at.velocity), 0, eps * (1 + norm(at.velocity) + norm(at.omega)));
+                    if (::testing::Test::HasFailure()) FAIL() << "body " << k << " of " << bodies;
+                }
+                moved.expect_the_same_without_positions();
+            }
+}
+
+TEST(Kinematics, HasTheSameBitsOnAnyNumberOfRanks) {
+    Communicator const& world = catena::testing::world();
+    auto const alone = serial_communicator();
+    for (RandomJoints const joints : all_joints)
+        for (std::size_t const bodies : {9, 65, 513, 1031}) {
+            Scene const scene = two_chains(joints, bodies, Base::free);
+            Moved const all(scene, false, *alone), part(scene, false, world);
+            for (std::int64_t k = 0; k < part.group().size; ++k)
+                ASSERT_EQ(part.of(k), all.of(part.group().scene_index(k) - all.group().scene_index(0))) << "body " << k << " of " << bodies;
+        }
+}
+
+}  // namespace
+}  // namespace catena::test
