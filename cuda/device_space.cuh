@@ -408,18 +408,24 @@ class DeviceSpace {
         wait();
     }
     template <int D>
-    using Mirror = Field<D>;
+    struct Mirror {
+        Field<D> field;
+        PinnedPages pages = {};  // of the field
+    };
     template <int D>
-    View<D> pull(DeviceField<D>& field, Field<D>& mirror) const {
-        if (mirror.size() != field.size()) mirror = Field<D>(field.size());
-        field.download(mirror.view(), stream());
+    View<D> pull(DeviceField<D>& field, Mirror<D>& mirror) const {
+        if (mirror.field.size() != field.size()) {
+            mirror.pages = PinnedPages();
+            mirror.field = Field<D>(field.size());
+            mirror.pages = PinnedPages(mirror.field.storage());
+        }
+        field.download(mirror.field.view(), stream());
         wait();
-        return mirror.view();
+        return mirror.field.view();
     }
     template <int D>
-    void push(DeviceField<D>& field, Field<D> const& mirror) const {
-        field.upload(mirror.view(), stream());
-        wait();
+    void push(DeviceField<D>& field, Mirror<D> const& mirror) const {
+        field.upload(mirror.field.view(), stream());
     }
 
     /// As one graph.
@@ -428,12 +434,14 @@ class DeviceSpace {
         Graph const graph(stream(), [&] {
             for (int i = 0; i < chained; ++i) action();
         });
+        Event start(Event::For::clock), end(Event::For::clock);
         std::vector<double> seconds;
         for (int r = -1; r < repeat; ++r) {  // the first one warms up
-            Moment const start(stream());
+            start.record(stream());
             graph.launch(stream());
-            Moment const end(stream());
-            if (double const s = end.seconds_since(start); r >= 0) seconds.push_back(s / chained);
+            end.record(stream());
+            end.wait();
+            if (r >= 0) seconds.push_back(end.seconds_since(start) / chained);
         }
         return seconds;
     }

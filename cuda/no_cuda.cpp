@@ -2,6 +2,7 @@
 #include "cuda/joint_dynamics.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
+#include "force/device_path.hpp"
 
 namespace catena::cuda {
 
@@ -21,5 +22,9 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene co
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
     throw ComputationError(why_not());
 }
+
+std::string const& why_no_device_path() { return why_not(); }
+int chosen_device() { throw ComputationError(why_not()); }
+std::unique_ptr<DevicePath> make_device_path(OpenMM::Context&, DevicePathPlan) { throw ComputationError(why_not()); }
 
 }  // namespace catena::cuda

@@ -33,21 +33,26 @@ class Stream {
     cudaStream_t stream_ = nullptr;
 };
 
-/// A moment in a stream's work.
-class Moment {
+/// A moment in a stream: for the clock, or to order streams, which is quicker without one.
+class Event {
   public:
-    explicit Moment(cudaStream_t stream) {
-        check(cudaEventCreate(&event_), "make an event");
-        check(cudaEventRecord(event_, stream), "note a moment");
+    enum class For { clock, order };
+    explicit Event(For use) {
+        check(cudaEventCreateWithFlags(&event_, use == For::clock ? cudaEventDefault : cudaEventDisableTiming), "make an event");
     }
-    ~Moment() { cudaEventDestroy(event_); }
-    Moment(Moment const&) = delete;
-    Moment& operator=(Moment const&) = delete;
-    /// Waits for this one.
-    double seconds_since(Moment const& start) const {
+    ~Event() {
+        if (event_) cudaEventDestroy(event_);
+    }
+    Event(Event const&) = delete;
+    Event& operator=(Event const&) = delete;
+    void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "mark a moment"); }
+    /// The stream goes on when the moment recorded last has come.
+    void hold(cudaStream_t stream) const { check(cudaStreamWaitEvent(stream, event_, 0), "order its work"); }
+    void wait() const { check(cudaEventSynchronize(event_), "finish its work"); }
+    /// Precondition: both are over, and for the clock.
+    double seconds_since(Event const& other) const {
         float milliseconds = 0;
-        check(cudaEventSynchronize(event_), "finish its work");
-        check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "tell the time");
+        check(cudaEventElapsedTime(&milliseconds, other.event_, event_), "say how long it took");
         return 1e-3 * static_cast<double>(milliseconds);
     }
 
@@ -75,6 +80,50 @@ class Graph {
 
   private:
     cudaGraphExec_t graph_ = nullptr;
+};
+
+/// Memory of the host that the device reaches too; not initialised.
+template <class T>
+class PinnedBuffer {
+  public:
+    explicit PinnedBuffer(std::size_t count) {
+        void* memory = nullptr;
+        check(cudaHostAlloc(&memory, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable), "find memory of the host");
+        data_ = static_cast<T*>(memory);
+    }
+    ~PinnedBuffer() { cudaFreeHost(data_); }
+    PinnedBuffer(PinnedBuffer const&) = delete;
+    PinnedBuffer& operator=(PinnedBuffer const&) = delete;
+    T* data() const { return data_; }
+
+  private:
+    T* data_ = nullptr;
+};
+
+/// Holds memory of the host in its place, so that copies to and from the device run by themselves. Small memory, which shares its pages,
+/// is left alone.
+class PinnedPages {
+  public:
+    PinnedPages() = default;
+    explicit PinnedPages(std::span<double> memory) {
+        constexpr std::size_t worth_it = 1 << 20;
+        if (memory.size_bytes() < worth_it) return;
+        if (cudaHostRegister(memory.data(), memory.size_bytes(), cudaHostRegisterDefault) == cudaSuccess)
+            memory_ = memory.data();
+        else
+            cudaGetLastError();  // copies take longer, that is all
+    }
+    ~PinnedPages() {
+        if (memory_) cudaHostUnregister(memory_);
+    }
+    PinnedPages(PinnedPages&& other) noexcept : memory_(std::exchange(other.memory_, nullptr)) {}
+    PinnedPages& operator=(PinnedPages&& other) noexcept {
+        std::swap(memory_, other.memory_);
+        return *this;
+    }
+
+  private:
+    double* memory_ = nullptr;
 };
 
 /// Memory of a device, ready for any stream when the constructor returns: zeros or the host's values.

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <type_traits>
 #include <vector>
 
@@ -44,6 +45,8 @@ class BasicField {
     explicit BasicField(std::int64_t size) : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_), Real(0)) {}
 
     std::int64_t size() const { return size_; }
+    /// All its memory, however it is laid out.
+    std::span<Real> storage() { return data_; }
     /// Without origin where there is nothing.
     FieldView<Real, D> view() { return data_.empty() ? FieldView<Real, D>{} : FieldView<Real, D>{data_.data() + halo, pitch_, size_}; }
     FieldView<Real const, D> view() const {

@@ -20,8 +20,10 @@ Outcome list() {
         "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor (--backend "
         "cuda: the GPU's)\n"
         "evaluation  the solver alone, with everything it reads and writes in place: many evaluations of random chains in absolute\n"
-        "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve"}}};
+        "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n"
+        "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
+        "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n";
+    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap"}}};
     return outcome;
 }
 
@@ -94,7 +96,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                     {"ranks", communicator.size()},
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
-        for (std::int64_t const bodies : request.sizes) {
+        for (std::int64_t const bodies : request.sizes.empty() ? std::vector<std::int64_t>{1000, 10000, 100000} : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request));
             bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
             Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
@@ -208,7 +210,9 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
 
 Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
     if (request.name == "list") return list();
-    return request.name == "evaluation" ? evaluation(communicator, request) : solve(communicator, request);
+    if (request.name == "evaluation") return evaluation(communicator, request);
+    if (request.name == "openmm") return bench_openmm(communicator, request);
+    return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);
 }
 
 }  // namespace catena::command

@@ -15,7 +15,7 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve"};
+constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap"};
 
 /// What the contract promises for later versions, by command.
 std::map<std::string, std::vector<std::string>> const later_options{
@@ -106,13 +106,21 @@ void add_commands(CLI::App& app, Words& words) {
 
     command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
     command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
-    command->add_option("--sizes", words.sizes, "bodies (default 1e3,1e4,1e5); the oracle is left out above 1e6")->type_name("N,...");
+    command
+        ->add_option("--sizes", words.sizes,
+                     "bodies (default of solve 1e3,1e4,1e5, its oracle left out above 1e6; openmm: 140,9940,99960,1000020, "
+                     "overlap: the last three, in whole chains of 140 beads)")
+        ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,
                      "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute)")
         ->type_name("J,...");
     add_repeat(*command, words, "21");
-    command->add_option("--backend", words.backends, "serial, segments, openmp, cuda (default: those of the processor in this build)")
+    command
+        ->add_option(
+            "--backend", words.backends,
+            "serial, segments, openmp, cuda (default: those of the processor in this build; openmm and overlap take one, cuda where "
+            "there is a GPU)")
         ->type_name("B,...");
     command->footer(
         "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json");
@@ -212,7 +220,6 @@ BenchRequest bench_request(Words const& words) {
         throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
     if (!words.sizes.empty()) {
-        request.sizes.clear();
         for (std::string const& size : comma_list("--sizes", words.sizes))
             request.sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
     }

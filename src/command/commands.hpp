@@ -25,5 +25,8 @@ Outcome report_scenes(std::vector<Scene> const&, Communicator const&, ReportRequ
 
 /// `solve`, or the list of benchmarks.
 Outcome run_bench(Communicator const&, BenchRequest const&);
+/// Catena's steps beside OpenMM's own; what overlap brings. One rank.
+Outcome bench_openmm(Communicator const&, BenchRequest const&);
+Outcome bench_overlap(Communicator const&, BenchRequest const&);
 
 }  // namespace catena::command

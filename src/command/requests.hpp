@@ -44,7 +44,7 @@ struct ReportRequest : CommonOptions {
 };
 struct BenchRequest : CommonOptions {
     std::string name;
-    std::vector<std::int64_t> sizes{1000, 10000, 100000};
+    std::vector<std::int64_t> sizes;  // empty: the benchmark's own
     std::vector<std::string> joints{"link", "spherical", "revolute"};
     std::vector<Backend> backends;  // empty: all of this build
     int repeat = 21;

@@ -37,8 +37,10 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
         text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces", 100 * number(*forces, "matrix_sweep_hidden")));
-        for (auto const& line : forces->at("description"))
-            if (line.get<std::string>().starts_with("warning:")) text.note(line.get<std::string>());
+        for (auto const& line : forces->at("description")) {
+            std::string const words = line.get<std::string>();
+            if (words.starts_with("warning:") || words.find("not device:") != std::string::npos) text.note(words);
+        }
     }
     if (!s.contains("constraints"))
         text.entry("constraint error", "none: joint coordinates cannot drift apart");

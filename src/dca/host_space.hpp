@@ -171,7 +171,7 @@ class HostSpace : public HostAccess {
     View<D> pull(Field<D>& field, Mirror<D>&) const {
         return field.view();
     }
-    /// What the host wrote there since. The mirror may change when it returns.
+    /// What the host wrote there since. The mirror must stay as it is until the next pull.
     template <int D>
     void push(Field<D>&, Mirror<D> const&) const {}
 

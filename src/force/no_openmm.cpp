@@ -2,6 +2,7 @@
 #include "error.hpp"
 #include "force/openmm_force.hpp"
 #include "force/openmm_import.hpp"
+#include "force/openmm_own.hpp"
 
 namespace catena {
 
@@ -11,12 +12,17 @@ char const* const remedy = "install OpenMM (pip install openmm, or Debian's libo
 
 }  // namespace
 
-std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads, Communicator const&) {
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, ChainsOnDevice const&) {
     throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
 }
 
 ImportedSystem import_openmm_system(std::string const&, std::string const&, std::string const& scene_file) {
     throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
+}
+
+std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, OwnLinks, OwnRun const&,
+                                           std::vector<Vec3> const&) {
+    throw built_without("OpenMM", beads.scene_file, remedy);
 }
 
 std::string openmm_version() { return "none"; }

@@ -37,6 +37,8 @@ class ForceContext {
     void set_positions(std::span<Vec3 const> all);
     /// Forces on particle i = 0 .. size - 1, kJ/mol/nm, W.
     std::vector<OpenMM::Vec3> forces();
+    Placement placement() const { return placement_; }
+    OpenMM::Context& context() { return *context_; }
     /// Energy of one force group, kJ/mol.
     double energy(int group);
 

@@ -25,15 +25,18 @@ std::string join(std::vector<std::string> const& words) { return fmt::format("{}
 
 class OpenMmForces final : public OpenMmForce {
   public:
-    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model);
+    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, ChainsOnDevice const& chains,
+                 OpenMmModel model);
 
     void begin(ConstView<3> positions) override;
     void finish(View<3> forces) override;
+    DevicePath* device_path() override { return device_.get(); }
+    void forces_again(View<3> forces) override;
     std::vector<EnergyTerm> energies() override;
     Interval last_evaluation() const override { return interval_; }
     std::vector<std::string> description() const override;
     std::string platform() const override { return platform_.name(); }
-    std::string path() const override { return path_.runs_on_worker() ? "host" : "inline"; }
+    std::string path() const override { return path_.name(); }
     std::int64_t largest_context() const override { return rank_.largest_context(); }
     std::int64_t rebuilds() const override { return rank_.rebuilds(); }
 
@@ -47,13 +50,14 @@ class OpenMmForces final : public OpenMmForce {
 
     Communicator const& communicator_;
     std::vector<std::int64_t> first_of_rank_, bytes_of_rank_;
-    bool replicate_;
+    bool replicate_, overlap_;
     OpenMmModel model_;
     OpenMmPlatform platform_;
     std::optional<Vec3> box_;  // where the forces are periodic
     std::vector<std::int64_t> by_rank_;
     RankForces rank_;
     PathChoice path_;
+    std::unique_ptr<DevicePath> device_;
     std::unique_ptr<ForceContext> energy_context_;  // every bead, on rank 0 of several
     std::vector<Vec3> own_, all_, ordered_, forces_;
     bool under_way_ = false, evaluated_ = false;
@@ -77,21 +81,45 @@ std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
     return model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
 }
 
-OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model)
+/// Why positions and forces cannot stay on a GPU; empty where they can.
+std::string why_no_device(OpenMmSpec const& spec, OpenMmPlatform const& platform, Communicator const& communicator,
+                          ChainsOnDevice const& chains) {
+    if (!chains.why_not.empty()) return chains.why_not;
+    if (platform.name() != "CUDA") return fmt::format("OpenMM's platform is {}", platform.name());
+    if (communicator.size() > 1) return "several ranks, whose beads feel each other";
+    if (spec.device >= 0 && spec.device != chains.device)
+        return fmt::format("forces.openmm.device is {} and the chains are on GPU {}", spec.device, chains.device);
+    return cuda::why_no_device_path();
+}
+
+OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, ChainsOnDevice const& chains,
+                           OpenMmModel model)
     : communicator_(communicator),
       first_of_rank_(beads.first_of_rank),
       replicate_(spec.replicate),
+      overlap_(spec.overlap),
       model_(std::move(model)),
-      platform_(choose_platform(spec, beads, communicator)),
+      platform_(choose_platform(spec, beads, communicator, chains.device)),
       box_(box_of(model_, beads)),
       by_rank_(beads.by_rank),
       rank_(model_, platform_, beads.beads_of(communicator.rank()), communicator.size() == 1 || spec.replicate, box_),
-      path_(spec.path, platform_.on_cpu(), beads.scene_file),
+      path_(spec.path, platform_.on_cpu() && spec.overlap, why_no_device(spec, platform_, communicator, chains), beads.scene_file),
       own_(static_cast<std::size_t>(own_count())),
       all_(static_cast<std::size_t>(beads.size())),
       forces_(own_.size()) {
     for (int r = 0; r < communicator.size(); ++r)
         bytes_of_rank_.push_back((first_of_rank_[r + 1] - first_of_rank_[r]) * static_cast<std::int64_t>(sizeof(Vec3)));
+    ForceContext* const whole = rank_.whole_context();
+    if (!path_.on_device() || whole == nullptr) return;
+    DevicePathPlan plan;
+    std::vector<int> particle_of_bead(model_.bead_of_particle.size());
+    for (std::size_t p = 0; p < particle_of_bead.size(); ++p)
+        particle_of_bead[static_cast<std::size_t>(model_.bead_of_particle[p])] = static_cast<int>(p);
+    for (std::int64_t const bead : beads.beads_of(0)) plan.particle.push_back(particle_of_bead[static_cast<std::size_t>(bead)]);
+    if (whole->placement() == Placement::wrapped) plan.box = box_;
+    plan.shifted = whole->placement() == Placement::shifted;
+    plan.overlap = spec.overlap;
+    device_ = cuda::make_device_path(whole->context(), std::move(plan));
 }
 
 void OpenMmForces::gather(ConstView<3> positions) {
@@ -129,6 +157,7 @@ void OpenMmForces::begin(ConstView<3> positions) {
     }
     if (!worker_) worker_ = std::make_unique<Worker>();
     worker_->post([this] { evaluate(); });
+    if (!overlap_) wait();
 }
 
 void OpenMmForces::wait() {
@@ -156,13 +185,13 @@ void OpenMmForces::compute_energies(std::vector<double>& values) {
         if (!energy_context_) energy_context_ = std::make_unique<ForceContext>(model_.system, model_.bead_of_particle, platform_, box_);
         context = energy_context_.get();
     }
-    context->set_positions(all_);
+    if (!device_) context->set_positions(all_);  // else they are there
     for (std::size_t i = 0; i < values.size(); ++i) values[i] = context->energy(static_cast<int>(i));
 }
 
 std::vector<EnergyTerm> OpenMmForces::energies() {
     wait();
-    if (!evaluated_) throw ComputationError("OpenMM's energies were asked for before it was given positions");
+    if (!evaluated_ && !device_) throw ComputationError("OpenMM's energies were asked for before it was given positions");
     std::vector<double> values(model_.terms.size());
     std::string failure;
     if (communicator_.rank() == 0) {
@@ -180,6 +209,15 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     std::vector<EnergyTerm> terms;
     for (std::size_t i = 0; i < values.size(); ++i) terms.push_back({model_.terms[i], values[i]});
     return terms;
+}
+
+void OpenMmForces::forces_again(View<3> forces) {
+    auto const again = rank_.whole_context()->forces();
+    std::vector<Vec3> of_bead(again.size());
+    for (std::size_t p = 0; p < again.size(); ++p)
+        of_bead[static_cast<std::size_t>(model_.bead_of_particle[p])] = {{again[p][0], again[p][1], again[p][2]}};
+    for (std::int64_t k = 0; k < own_count(); ++k)
+        forces.store(k, of_bead[static_cast<std::size_t>(by_rank_.empty() ? k : by_rank_[static_cast<std::size_t>(k)])]);
 }
 
 std::vector<std::string> OpenMmForces::description() const {
@@ -224,7 +262,8 @@ void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& wh
     }
 }
 
-std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
+std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                  ChainsOnDevice const& chains) {
     std::string const where = beads.scene_file + ": forces.openmm";
     if (beads.size() == 0)
         throw InputError("OpenMM has nothing to act on", where, "give the scene a chain of beads, or leave forces.openmm out");
@@ -234,7 +273,7 @@ std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& bead
     OpenMmModel model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
     if (communicator.size() > 1 && !spec.replicate) refuse_what_cannot_be_split(model, where, communicator.size());
     try {
-        return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model));
+        return std::make_unique<OpenMmForces>(spec, beads, communicator, chains, std::move(model));
     } catch (InputError const&) {
         throw;
     } catch (std::bad_alloc const&) {
@@ -264,11 +303,12 @@ void agree(Communicator const& communicator, std::string const& own) {
 
 }  // namespace
 
-std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                               ChainsOnDevice const& chains) {
     std::unique_ptr<OpenMmForce> force;
     std::string error;
     try {
-        force = make(spec, beads, communicator);
+        force = make(spec, beads, communicator, chains);
     } catch (InputError const& e) {
         error = e.what();
     }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "chain/field.hpp"
+#include "force/device_path.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 
@@ -44,9 +45,13 @@ struct EnergyTerm {
     double value;  // kJ/mol
 };
 
-/// When the force computation ran, in seconds of std::chrono::steady_clock.
-struct Interval {
-    double begin = 0, end = 0;
+/// Why chains are not on a GPU where the scene does not ask for one: that needs no words.
+inline constexpr char const* no_gpu_asked_for = "the backend is not cuda";
+
+/// Whether the chains' positions and forces are on a GPU.
+struct ChainsOnDevice {
+    std::string why_not;  // empty: they are
+    int device = -1;      // which the chains use; -1: none
 };
 
 class OpenMmForce {
@@ -55,6 +60,11 @@ class OpenMmForce {
     /// Starts the computation of the forces at `positions` (own beads in the order of BeadSystem::by_rank, nm, W, unwrapped). Collective.
     /// Returns at once on path `host`.
     virtual void begin(ConstView<3> positions) = 0;
+    /// The path on which positions and forces stay on the GPU: begun, marked and finished there, with all beads in the order of
+    /// BeadSystem::by_rank. nullptr: it is another path.
+    virtual DevicePath* device_path() = 0;
+    /// Path `device`: computes the forces at the positions given last once more, for the host.
+    virtual void forces_again(View<3> forces) = 0;
     /// Waits for it and adds the forces (kJ/mol/nm) to `forces` (own beads). Throws ComputationError if OpenMM failed, perhaps on this rank
     /// alone.
     virtual void finish(View<3> forces) = 0;
@@ -67,7 +77,7 @@ class OpenMmForce {
     /// (with the number of them).
     virtual std::vector<std::string> description() const = 0;
     virtual std::string platform() const = 0;
-    /// The path that runs: "host" or "inline".
+    /// The path that runs: "device", "host" or "inline".
     virtual std::string path() const = 0;
     /// Largest number of beads that this rank's Context has held, ghosts included, and how often it was built.
     virtual std::int64_t largest_context() const = 0;
@@ -76,7 +86,8 @@ class OpenMmForce {
 
 /// Throws InputError when the scene's terms cannot be had (unknown residue, missing platform, unreadable XML, a force that cannot be split
 /// over ranks, ...) and "built without OpenMM" where the build lacks it.
-std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const&, Communicator const&);
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const&, Communicator const&,
+                                               ChainsOnDevice const& = {no_gpu_asked_for, -1});
 
 /// "OpenMM 8.6.1" or "none".
 std::string openmm_version();

@@ -71,10 +71,14 @@ std::vector<std::string> const& load_openmm_plugins() {
     return failures;
 }
 
-OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator) {
+OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, int device) {
     auto const& failures = load_openmm_plugins();
     auto const present = platforms_present();
-    std::string const name = !spec.platform.empty() ? spec.platform : contains(present, "CPU") ? "CPU" : "Reference";
+    bool const on_gpu = device >= 0 && communicator.size() == 1;  // a Context with ghosts is made anew too often
+    std::string const name = !spec.platform.empty()                ? spec.platform
+                             : on_gpu && contains(present, "CUDA") ? "CUDA"
+                             : contains(present, "CPU")            ? "CPU"
+                                                                   : "Reference";
     if (!contains(present, name))
         throw InputError(fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
                          openmm_key(beads.scene_file, "platform"),
@@ -95,7 +99,8 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, 
         set("Threads", std::to_string(chosen.threads));
     } else if (!chosen.on_cpu()) {
         set("Precision", spec.precision.empty() ? "mixed" : spec.precision);
-        if (spec.device >= 0) set("DeviceIndex", std::to_string(spec.device));
+        int const gpu = spec.device >= 0 || name != "CUDA" ? spec.device : device;
+        if (gpu >= 0) set("DeviceIndex", std::to_string(gpu));
     }
     set("DeterministicForces", "true");
     return chosen;

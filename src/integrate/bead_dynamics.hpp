@@ -29,7 +29,7 @@ struct BeadSolution {
 };
 
 template <class Space>
-class BeadDynamics final : public AbsoluteDynamics {
+class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     using Field3 = typename Space::template FieldOf<3>;
 
   public:
@@ -90,6 +90,23 @@ class BeadDynamics final : public AbsoluteDynamics {
     void take_bead_forces() override {
         if (std::exchange(forces_are_out_, false)) space_.push(force_, force_mirror_);
     }
+
+    // Where the space is a GPU's.
+    DeviceBeads* on_device() override { return stream() ? this : nullptr; }
+    std::int64_t count() const override { return group_.size; }
+    void* stream() const override {
+        if constexpr (requires { space_.stream(); }) return space_.stream();
+        return nullptr;
+    }
+    void put_positions(DeviceParticles const& particles) override {
+        space_.for_each(group_.size,
+                        [particles, x = ConstView<3>(position_.view())] CATENA_LAMBDA(std::int64_t k) { particles.put(k, x.load(k)); });
+    }
+    void add_forces(DeviceParticles const& particles) override {
+        space_.for_each(group_.size,
+                        [particles, f = force_.view()] CATENA_LAMBDA(std::int64_t k) { f.store(k, f.load(k) + particles.force_on(k)); });
+    }
+    ConstView<3> host_positions() override { return bead_positions(); }
 
     void kick(double h) override { project(h, velocity_.view()); }
     void observe(double h) override { project(h, observed_.view()); }

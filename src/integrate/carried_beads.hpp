@@ -3,6 +3,7 @@
 
 #include "chain/chain_group.hpp"
 #include "dca/executor.hpp"
+#include "force/device_beads.hpp"
 
 namespace catena {
 
@@ -59,6 +60,8 @@ class BeadHost {
     virtual View<3> bead_forces() = 0;
     /// What was added there since the forces were set counts from here on.
     virtual void take_bead_forces() = 0;
+    /// The same where a GPU holds them; nullptr where it does not.
+    virtual DeviceBeads* on_device() { return nullptr; }
 };
 
 }  // namespace catena

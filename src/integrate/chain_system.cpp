@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "chain/gather.hpp"
 #include "cuda/bead_dynamics.hpp"
@@ -48,12 +49,13 @@ int choose_threads(Scene const& scene, Communicator const& communicator) {
 }
 
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
-    : scene_(scene), communicator_(communicator), backend_(choose_backend(scene, communicator)) {
+    : scene_(scene), communicator_(communicator), axes_(axes), backend_(choose_backend(scene, communicator)) {
     if (backend_ == Backend::cuda) refuse_cuda(communicator, cuda::choose_device(communicator));
     // What the GPU does not do runs on all the host's threads.
     bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda && openmp_is_built());
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
     groups_ = make_groups(scene, axes, scene.solver.handles, backend_ == Backend::serial, communicator);
+    if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {
         if (group->beads && backend_ == Backend::cuda) {
             absolute_.push_back(cuda::make_bead_dynamics(*group, scene, communicator));
@@ -75,7 +77,18 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
             joint_.push_back(make_joint_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         }
     }
-    if (scene.forces.openmm) make_openmm();
+    if (openmm_) find_bead_hosts();
+}
+
+ChainSystem::~ChainSystem() {
+    try {
+        make_current();
+    } catch (...) {  // then what it holds on the GPU goes with the context
+    }
+}
+
+void ChainSystem::make_current() {
+    if (openmm_ && openmm_->device_path()) openmm_->device_path()->make_current();
 }
 
 namespace {
@@ -144,9 +157,9 @@ void ChainSystem::order_beads_by_rank() {
     std::vector<std::int64_t> order;
     bead_system_.first_of_rank = {0};
     for (int rank = 0; rank < communicator_.size(); ++rank) {
-        for (BeadHost const* host : bead_hosts_)
-            for (dca::Piece const& piece : dca::pieces_of(host->group().partition, rank)) {
-                int const chain = host->group().chain[piece.chain];
+        for (ChainGroup const* group : bead_groups_)
+            for (dca::Piece const& piece : dca::pieces_of(group->partition, rank)) {
+                int const chain = group->chain[piece.chain];
                 for (std::int64_t i = bead_of(chain, piece.body); i < bead_of(chain, piece.body + piece.count); ++i) order.push_back(i);
             }
         bead_system_.first_of_rank.push_back(static_cast<std::int64_t>(order.size()));
@@ -154,12 +167,17 @@ void ChainSystem::order_beads_by_rank() {
     if (!std::is_sorted(order.begin(), order.end())) bead_system_.by_rank = std::move(order);
 }
 
+/// Groups in absolute coordinates come first.
+void ChainSystem::find_bead_groups() {
+    for (bool const absolute : {true, false})
+        for (auto const& group : groups_)
+            if (is_absolute(*group) == absolute && (group->beads || group->carried_in_scene)) bead_groups_.push_back(group.get());
+}
+
+/// Before anything of the chains is on a GPU: where OpenMM computes there, they live in its context.
 void ChainSystem::make_openmm() {
-    for (auto const& group : absolute_)
-        if (group->group().beads || group->group().carried_in_scene) bead_hosts_.push_back(group.get());
-    for (auto const& group : joint_)
-        if (group->group().carried_in_scene) bead_hosts_.push_back(group.get());
-    if (bead_hosts_.empty())
+    find_bead_groups();
+    if (bead_groups_.empty())
         throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
                          "add a bead chain, beads on bodies, or remove forces.openmm");
     describe_beads();
@@ -167,7 +185,24 @@ void ChainSystem::make_openmm() {
     std::int64_t const own = bead_system_.first_of_rank[communicator_.rank() + 1] - bead_system_.first_of_rank[communicator_.rank()];
     bead_position_ = Field<3>(own);
     openmm_force_ = Field<3>(own);
-    openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_);
+    ChainsOnDevice chains{no_gpu_asked_for, -1};
+    if (backend_ == Backend::cuda) {
+        bool const beads = std::all_of(bead_groups_.begin(), bead_groups_.end(), [](ChainGroup const* group) { return group->beads; });
+        chains = {beads ? "" : "some beads are carried by rigid bodies, whose state is the host's", cuda::chosen_device()};
+    }
+    openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_, chains);
+    make_current();
+}
+
+void ChainSystem::find_bead_hosts() {
+    std::vector<BeadHost*> hosts;
+    for (auto const& group : absolute_) hosts.push_back(group.get());
+    for (auto const& group : joint_) hosts.push_back(group.get());
+    std::copy_if(hosts.begin(), hosts.end(), std::back_inserter(bead_hosts_), [&](BeadHost const* host) {
+        return std::find(bead_groups_.begin(), bead_groups_.end(), &host->group()) != bead_groups_.end();
+    });
+    if (!openmm_->device_path()) return;
+    for (BeadHost* host : bead_hosts_) device_beads_.push_back(host->on_device());
 }
 
 ConstView<3> ChainSystem::own_bead_positions() {
@@ -184,10 +219,11 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     auto const note = [&](char const* name, char const* lane, double begin, double end) {
         if (timeline) timeline->phases.push_back({name, lane, begin - start, end - start});
     };
-    if (openmm_) openmm_->begin(own_bead_positions());
+    if (openmm_) begin_openmm(timeline != nullptr);
     double const begun = seconds_now();
     for (auto const& group : absolute_) group->assemble_matrices();
     for (auto const& group : joint_) group->assemble_matrices();
+    if (on_device()) openmm_->device_path()->mark(device_beads_);
     double const assembled = seconds_now();
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
@@ -195,9 +231,16 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     for (auto const& group : absolute_) group->take_bead_forces();
     for (auto const& group : joint_) group->take_bead_forces();
     double const finished = seconds_now();
-    note("matrix sweep", "catena", begun, assembled);
     note("simple forces", "catena", assembled, simple);
     seconds_["kinematics and loads"] += simple - assembled;
+    if (on_device()) {
+        if (!timeline) return;  // the next evaluation asks: the GPU need not be waited for
+        DevicePath::Clock const clock = read_device_clock();
+        note("matrix sweep", "catena", clock.chains.begin, clock.chains.end);
+        note("forces", "openmm", clock.openmm.begin, clock.openmm.end);
+        return;
+    }
+    note("matrix sweep", "catena", begun, assembled);
     note_overlap(start, begun, assembled, simple, finished);
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation();
@@ -210,7 +253,7 @@ void ChainSystem::solve_joint_groups() {
     double const start = seconds_now();
     for (auto const& group : joint_) group->update_configuration();
     double const moved = seconds_now();
-    if (openmm_) openmm_->begin(own_bead_positions());
+    if (openmm_) begin_openmm(false);
     double const begun = seconds_now();
     for (auto const& group : joint_) group->assemble_matrices();
     double const assembled = seconds_now();
@@ -238,7 +281,37 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
     seconds_["waiting for forces"] += (finished - waits) + (begun - start);
 }
 
+void ChainSystem::begin_openmm(bool timed) {
+    if (!on_device()) {
+        openmm_->begin(own_bead_positions());
+        return;
+    }
+    if (clock_is_due_) read_device_clock();
+    ++evaluations_since_clock_;
+    clock_is_due_ = timed || !timed_before_ || evaluations_since_clock_ >= evaluations_a_clock;
+    openmm_->device_path()->begin(device_beads_, clock_is_due_);
+    timed_before_ = true;
+}
+
+DevicePath::Clock ChainSystem::read_device_clock() {
+    clock_is_due_ = false;
+    double const weight = static_cast<double>(std::exchange(evaluations_since_clock_, 0));  // it stands for those before it
+    DevicePath::Clock const clock = openmm_->device_path()->clock();
+    auto const length = [weight](double begin, double end) { return weight * std::max(0.0, end - begin); };
+    double const matrices = length(clock.chains.begin, clock.chains.end);
+    matrix_seconds_ += matrices;
+    hidden_seconds_ += length(std::max(clock.chains.begin, clock.openmm.begin), std::min(clock.chains.end, clock.openmm.end));
+    seconds_["matrix sweep"] += matrices;
+    seconds_["forces"] += length(clock.openmm.begin, clock.openmm.end);
+    seconds_["waiting for forces"] += length(clock.chains.end, clock.openmm.end);
+    return clock;
+}
+
 void ChainSystem::finish_openmm() {
+    if (on_device()) {
+        openmm_->device_path()->finish(device_beads_);
+        return;
+    }
     for (std::int64_t k = 0; k < openmm_force_.size(); ++k) openmm_force_.set(k, Vec3::zero());
     openmm_->finish(openmm_force_.view());
     std::int64_t next = 0;

@@ -24,6 +24,10 @@ class ChainSystem {
     /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4, velocity-verlet) or world (rattle,
     /// g-baoab). Collective.
     ChainSystem(Scene const&, Axes axes, Communicator const&);
+    ~ChainSystem();
+    /// Where OpenMM computes on the chains' GPU, the system lives in OpenMM's context there, which construction makes that of the thread.
+    /// To be called before a system is used again after another was made or used.
+    void make_current();
 
     /// Kinematics, forces, matrices and biases at the present state: accelerations of every body. With OpenMM the matrix sweep runs
     /// while it computes. Collective.
@@ -73,6 +77,8 @@ class ChainSystem {
     /// JointDynamics::close_tips of every group. Collective.
     void close_tips(int corrections = JointDynamics::usual_corrections);
     OpenMmForce* openmm() const { return openmm_.get(); }
+    /// What OpenMM knows; empty without it.
+    BeadSystem const& beads() const { return bead_system_; }
     Executor const& executor() const { return *executor_; }
     Scene const& scene() const { return scene_; }
     Communicator const& communicator() const { return communicator_; }
@@ -92,15 +98,21 @@ class ChainSystem {
     JointRates own_rates(ChainGroup const&, std::map<std::string, std::vector<double>> const& arrays) const;
 
   private:
+    void find_bead_groups();
     void make_openmm();
+    void find_bead_hosts();
     void describe_beads();
     void order_beads_by_rank();
     std::vector<BodyResults> results() const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
     std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;
     ConstView<3> own_bead_positions();
+    bool on_device() const { return !device_beads_.empty(); }
+    void begin_openmm(bool timed);
+    DevicePath::Clock read_device_clock();
     void finish_openmm();
     void note_overlap(double start, double begun, double assembled, double waits, double finished);
+    bool is_absolute(ChainGroup const& group) const { return group.beads || group.linked || axes_ == Axes::world; }
     /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
     std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
                                  int width) const;
@@ -109,17 +121,24 @@ class ChainSystem {
                   std::map<std::string, std::vector<double>>& arrays) const;
     Scene const& scene_;
     Communicator const& communicator_;
+    Axes axes_;
     Backend backend_;
     std::unique_ptr<Executor> executor_;
     std::vector<std::unique_ptr<ChainGroup>> groups_;
+    std::vector<ChainGroup const*> bead_groups_;  // those that are beads or carry some, in the order of bead_hosts_
+    BeadSystem bead_system_;
+    std::unique_ptr<OpenMmForce> openmm_;  // before what lives in its GPU context
     std::vector<std::unique_ptr<JointDynamics>> joint_;
     std::vector<std::unique_ptr<AbsoluteDynamics>> absolute_;
-    std::vector<BeadHost*> bead_hosts_;  // groups that are beads or carry some
-    BeadSystem bead_system_;
-    std::unique_ptr<OpenMmForce> openmm_;
-    Field<3> bead_position_, openmm_force_;  // of the last evaluation, own beads, host after host
+    std::vector<BeadHost*> bead_hosts_;
+    std::vector<DeviceBeads*> device_beads_;  // of bead_hosts_, where OpenMM reaches them on a GPU
+    Field<3> bead_position_, openmm_force_;   // of the last evaluation, own beads, host after host
     std::map<std::string, double> seconds_;
     double matrix_seconds_ = 0, hidden_seconds_ = 0;
+    // On a GPU the clock is asked now and then: questions take time there.
+    static constexpr std::int64_t evaluations_a_clock = 8;
+    bool clock_is_due_ = false, timed_before_ = false;
+    std::int64_t evaluations_since_clock_ = 0;
 };
 
 }  // namespace catena

@@ -120,7 +120,13 @@ std::vector<Vec3> ChainSystem::bead_forces() const {
     for (int rank = 0; rank < communicator_.size(); ++rank)
         bytes.push_back((first[rank + 1] - first[rank]) * static_cast<std::int64_t>(sizeof(Vec3)));
     std::vector<Vec3> own, all(communicator_.rank() == 0 ? static_cast<std::size_t>(bead_system_.size()) : 0);
-    for (std::int64_t k = 0; k < openmm_force_.size(); ++k) own.push_back(openmm_force_[k]);
+    Field<3> again;
+    if (on_device()) {
+        again = Field<3>(openmm_force_.size());
+        openmm_->forces_again(again.view());
+    }
+    Field<3> const& force = on_device() ? again : openmm_force_;
+    for (std::int64_t k = 0; k < force.size(); ++k) own.push_back(force[k]);
     communicator_.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
     if (bead_system_.by_rank.empty()) return all;
     std::vector<Vec3> ordered(all.size());

@@ -146,11 +146,12 @@ struct OpenMmSpec {
     double ionic_strength = 0.15;  // mol/l
     std::optional<double> ph;      // charge of histidine: 1 / (1 + 10^(pH - 6)); not given: neutral
     double switch_width = 0;       // nm before each cutoff over which the pair terms are switched off; 0: cut as published
-    std::string platform;          // empty: CPU where present, else Reference
+    std::string platform;          // empty: CUDA with backend cuda where present, else CPU where present, else Reference
     std::string precision;         // GPU platforms
     int threads = 0;               // per rank; 0: cores / ranks
     int device = -1;
-    std::string path = "auto";  // auto | host (worker thread) | inline; device: not in this version
+    std::string path = "auto";  // auto | device (positions and forces stay on the GPU) | host (worker thread) | inline
+    bool overlap = true;        // the chains' own work goes on while forces are computed (paths device and host)
     bool replicate = false;
     std::vector<int> force_groups;  // empty: all
 };

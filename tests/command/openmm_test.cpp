@@ -1,6 +1,8 @@
 #include <cmath>
+#include <fstream>
 
 #include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
 
 namespace catena::test {
 namespace {
@@ -35,6 +37,47 @@ TEST(OpenMm, SolveGivesForcesAndAccelerationsThatBelongTogether) {
 
 TEST(OpenMm, AMissingPlatformIsRefused) {
     expect_refused(catena({"solve", input("alpha-synuclein.yaml"), "--set", "forces.openmm.platform=Quantum"}), 2, "Quantum");
+}
+
+TEST(OpenMm, APathOnAGpuIsRefusedWhereThereIsNone) {
+    expect_refused(catena({"check", input("alpha-synuclein.yaml"), "--set", "forces.openmm.path=device"}), 2,
+                   "positions and forces cannot stay on a GPU: the backend is not cuda");
+    expect_refused(catena({"check", input("alpha-synuclein.yaml"), "--set", "forces.openmm.path=remote"}), 2, "device");
+}
+
+TEST(OpenMm, TheRunSaysItsPathAndWhatWasHidden) {
+    TemporaryFolder const folder;
+    for (std::string const path : {"host", "inline"}) {
+        Ended const e = catena({"run", input("alpha-synuclein.yaml"), "--steps", "20", "--set", "forces.openmm.path=" + path, "--output",
+                                folder / path, "--json", folder / (path + ".json")});
+        EXPECT_EQ(e.status, 0) << e.err;
+        EXPECT_NE(e.out.find("platform CPU, path " + path), std::string::npos) << e.out;
+        EXPECT_NE(e.out.find("matrix sweep hidden"), std::string::npos) << e.out;
+    }
+    auto const hidden = [&](std::string const& path) {
+        return Json::parse(std::ifstream(folder / (path + ".json"))).at("forces").at("matrix_sweep_hidden").get<double>();
+    };
+    EXPECT_GE(hidden("host"), 0);  // a sweep over so short a chain may be over before the worker is awake
+    EXPECT_EQ(hidden("inline"), 0);
+    expect_good(catena({"run", input("alpha-synuclein.yaml"), "--steps", "20", "--set", "forces.openmm.path=host", "--set",
+                        "forces.openmm.overlap=false", "--output", folder / "off", "--json", folder / "off.json", "--quiet"}));
+    EXPECT_EQ(hidden("off"), 0);
+}
+
+TEST(OpenMm, BenchmarksSayWhatTheyCompare) {
+    Ended const e = catena({"bench", "openmm", "--sizes", "140", "--backend", "segments", "--repeat", "2", "--json", "-"});
+    expect_good(e);
+    Json const row = e.json().at("results").at(0);
+    EXPECT_EQ(row.at("beads"), 140);
+    EXPECT_EQ(row.at("valid"), true);
+    for (char const* const of : {"catena", "openmm_harmonic", "openmm_constrained"})
+        EXPECT_GT(row.at(of).at("seconds_per_step").at("median").get<double>(), 0) << of;
+    EXPECT_LT(row.at("openmm_constrained").at("link_error").get<double>(), 2e-5);  // OpenMM's own tolerance is 1e-5
+    EXPECT_GT(row.at("openmm_harmonic").at("link_error").get<double>(), 1e-4);
+    Ended const overlap = catena({"bench", "overlap", "--sizes", "140", "--backend", "segments", "--repeat", "2", "--json", "-"});
+    expect_good(overlap);
+    for (char const* const of : {"overlap_off", "overlap_on"})
+        EXPECT_GT(overlap.json().at("results").at(0).at("seconds_per_step").at(of).at("median").get<double>(), 0) << of;
 }
 
 }  // namespace

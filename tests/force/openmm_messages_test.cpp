@@ -47,7 +47,10 @@ TEST_F(Messages, Platform) {
     EXPECT_EQ(of(spec), "OpenMM knows no precision \"half\" (scene.yaml: forces.openmm.precision): take single, mixed or double");
     spec = on_reference();
     spec.path = "device";
-    EXPECT_EQ(of(spec), "not in this version: forces.openmm.path: device (scene.yaml)");
+    EXPECT_EQ(of(spec),
+              "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: forces.openmm.path): take auto, or one "
+              "rank, chains "
+              "of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
 }
 
 TEST_F(Messages, Builder) {

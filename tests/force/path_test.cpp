@@ -8,7 +8,7 @@ namespace {
 /// The path after trials with these seconds.
 PathChoice tried(double inline_seconds, double host_seconds) {
     auto const serial = serial_communicator();
-    PathChoice choice("auto", true, "scene.yaml");
+    PathChoice choice("auto", true, no_gpu_asked_for, "scene.yaml");
     for (int i = 0; i < 2 * PathChoice::trials; ++i) {
         choice.settle(*serial);
         EXPECT_EQ(choice.runs_on_worker(), i >= PathChoice::trials);
@@ -30,15 +30,31 @@ TEST(Path, TheFasterOneIsTaken) {
 }
 
 TEST(Path, WhatTheSceneSaysIsTaken) {
-    EXPECT_TRUE(PathChoice("host", true, "s").runs_on_worker());
-    EXPECT_FALSE(PathChoice("inline", true, "s").runs_on_worker());
-    EXPECT_TRUE(PathChoice("auto", false, "s").runs_on_worker());  // a GPU: the caller's core is free meanwhile
+    EXPECT_TRUE(PathChoice("host", true, "", "s").runs_on_worker());
+    EXPECT_FALSE(PathChoice("inline", true, "", "s").runs_on_worker());
+    EXPECT_TRUE(PathChoice("auto", false, "no GPU", "s").runs_on_worker());  // a GPU: the caller's core is free meanwhile
+}
+
+TEST(Path, AGpuIsTakenWhereItCanBe) {
+    for (char const* const asked : {"auto", "device"}) {
+        PathChoice const choice(asked, true, "", "s");
+        EXPECT_TRUE(choice.on_device());
+        EXPECT_FALSE(choice.runs_on_worker());
+        EXPECT_EQ(choice.name(), "device");
+        EXPECT_EQ(choice.text(), "device (positions and forces stay on the GPU)");
+    }
+    for (char const* const asked : {"host", "inline"}) EXPECT_EQ(PathChoice(asked, true, "", "s").name(), asked);
+    EXPECT_EQ(PathChoice("auto", false, "several ranks", "s").text(), "host (a worker thread); not device: several ranks");
+    EXPECT_EQ(PathChoice("auto", false, no_gpu_asked_for, "s").text(), "host (a worker thread)");
+    EXPECT_EQ(PathChoice("host", false, "several ranks", "s").text(), "host (a worker thread)");
 }
 
 TEST(Path, Messages) {
-    EXPECT_EQ(complaint([] { PathChoice("device", true, "s.yaml"); }), "not in this version: forces.openmm.path: device (s.yaml)");
-    EXPECT_EQ(complaint([] { PathChoice("remote", true, "s.yaml"); }),
-              "OpenMM's forces have no path \"remote\" (s.yaml: forces.openmm.path): take auto, host or inline");
+    EXPECT_EQ(complaint([] { PathChoice("device", true, "there is none", "s.yaml"); }),
+              "positions and forces cannot stay on a GPU: there is none (s.yaml: forces.openmm.path): take auto, or one rank, chains of "
+              "beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
+    EXPECT_EQ(complaint([] { PathChoice("remote", true, "", "s.yaml"); }),
+              "OpenMM's forces have no path \"remote\" (s.yaml: forces.openmm.path): take auto, device, host or inline");
 }
 
 }  // namespace

@@ -10,11 +10,14 @@ nvidia-smi -L
 mkdir -p "$build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCATENA_WITH_CUDA=ON >"$build.configure.log" 2>&1 || { cat "$build.configure.log"; exit 1; }
 targets=(gpu dca catena-cli)
-if cmake --build "$build" --target help | grep -q '^gpu_run:'; then
-    targets+=(gpu_run)
-else
-    echo "LEFT OUT: whole runs (the build has no HDF5)"
-fi
+for optional in "gpu_run whole runs (the build has no HDF5)" "gpu_openmm OpenMM on the GPU (the build has no headers of its CUDA platform: OPENMM_DIR)"; do
+    read -r target what <<<"$optional"
+    if cmake --build "$build" --target help | grep -q "^$target:"; then
+        targets+=("$target")
+    else
+        echo "LEFT OUT: $what"
+    fi
+done
 cmake --build "$build" --parallel "$(nproc)" --target "${targets[@]}"
 failed=0
 ctest --test-dir "$build" --output-on-failure --no-tests=error -R '^gpu|cuda' || failed=1

@@ -184,7 +184,7 @@ forces: {openmm: {builder: calvados2, map: {a: [0, 2]}}})y",
      "key `map` means nothing for a builder (s.yaml: forces.openmm.map, line 2): leave it out or give `system`"},
     {"openmm_path", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, path: remote}})y",
-     "`remote` is not a value of `path` (s.yaml: forces.openmm.path, line 2): use one of `auto`, `host`, `inline`"},
+     "`remote` is not a value of `path` (s.yaml: forces.openmm.path, line 2): use one of `auto`, `device`, `host`, `inline`"},
     {"openmm_in_si", R"y(units: si
 chains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]
 forces: {openmm: {builder: calvados2}})y",
@@ -259,9 +259,6 @@ forces: {springs: []})y",
     {"torques", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {torques: []})y",
      "not in this version: key `torques` (s.yaml: forces.torques, line 2)"},
-    {"device_path", R"y(chains: [{sequence: GGG, model: calvados2}]
-forces: {openmm: {builder: calvados2, path: device}})y",
-     "not in this version: `path: device` (s.yaml: forces.openmm.path, line 2)"},
     {"precision", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {precision: mixed})y",
      "not in this version: key `precision` (s.yaml: solver.precision, line 2)"},

@@ -19,7 +19,7 @@ box: {periodic: [60, 50, 40]}
 forces:
   gravity: [0, 1, 2]
   openmm: {builder: calvados2, temperature: 310, ionic_strength: 0.1, ph: 7.4, switch_width: 0.2, platform: CPU, precision: mixed, threads: 2, device: 1, path: inline,
-           replicate: true}
+           overlap: false, replicate: true}
 dynamics: {integrator: g-baoab, step: 0.01, steps: 1e4, temperature: 300, friction: 0.5, seed: 12345678901234567890, constraint_tolerance: 1e-9}
 solver: {backend: segments, handles: full, threads: 3, gpu_levels: "4,2"}
 output: {every: 10, checkpoint_every: 1000, observables: [energy, radius_of_gyration], joint_forces: true, velocities: true}
@@ -44,6 +44,7 @@ TEST(Scenes, every_section) {
     EXPECT_EQ(o.threads, 2);
     EXPECT_EQ(o.device, 1);
     EXPECT_EQ(o.path, "inline");
+    EXPECT_FALSE(o.overlap);
     EXPECT_TRUE(o.replicate);
     DynamicsSpec const& d = s.dynamics;
     EXPECT_TRUE(d.given);

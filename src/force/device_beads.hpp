@@ -1,0 +1,87 @@
+// Beads and OpenMM's particles on one GPU: what each side shows the other, so that neither positions nor forces pass through the host.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "chain/field.hpp"
+#include "dca/host_device.hpp"
+#include "dca/linear.hpp"
+
+namespace catena {
+
+/// Where a bead's particle stands in OpenMM's arrays, and the periodic cell that its coordinates are taken from: they change only when
+/// OpenMM puts its particles into a new order, because OpenMM takes a wrapped bead for one that has moved far.
+struct DeviceBead {
+    std::int32_t place = 0;
+    std::int32_t cell[3] = {0, 0, 0};
+};
+
+/// OpenMM's arrays. All addresses are the GPU's.
+struct DeviceParticles {
+    DeviceBead const* bead = nullptr;
+    /// x, y, z and a charge, a place after the other: in single precision (`correction`: what rounding took away; may be absent) or double.
+    float *position = nullptr, *correction = nullptr;
+    double* double_position = nullptr;
+    /// 2^-32 kJ/mol/nm: x of every place, then y, then z.
+    std::int64_t const* force = nullptr;
+    std::int64_t places = 0;
+    Vec3 origin = Vec3::zero(), box = Vec3::zero();
+    /// Becomes the index of a bead whose position or force is no number OpenMM can hold; -1: there was none.
+    std::int64_t* trouble = nullptr;
+    std::int64_t first = 0;  // index of bead 0 among all that trouble can name
+
+    /// The same for beads that follow others.
+    DeviceParticles from(std::int64_t bead_index) const {
+        DeviceParticles rest = *this;
+        rest.bead += bead_index;
+        rest.first += bead_index;
+        return rest;
+    }
+    CATENA_HD void put(std::int64_t k, Vec3 const& x) const {
+        DeviceBead const b = bead[k];
+        std::int64_t const at = 4 * static_cast<std::int64_t>(b.place);
+        for (int c = 0; c < 3; ++c) {
+            double y = x[c] - origin[c];
+            y -= box[c] * b.cell[c];
+            if (!(std::fabs(y) < far_away)) *trouble = first + k;
+            if (double_position) {
+                double_position[at + c] = y;
+                continue;
+            }
+            float const rounded = static_cast<float>(y);
+            position[at + c] = rounded;
+            if (correction) correction[at + c] = static_cast<float>(y - static_cast<double>(rounded));
+        }
+    }
+    /// kJ/mol/nm
+    CATENA_HD Vec3 force_on(std::int64_t k) const {
+        std::int64_t const at = bead[k].place;
+        Vec3 f;
+        for (int c = 0; c < 3; ++c) {
+            std::int64_t const fixed = force[at + c * places];
+            if (fixed > most || fixed < -most) *trouble = first + k;
+            f[c] = (1.0 / 4294967296.0) * static_cast<double>(fixed);
+        }
+        return f;
+    }
+
+    static constexpr double far_away = 1e30;                                // nm
+    static constexpr std::int64_t most = std::int64_t{0x7ffffffffffff000};  // of fixed-point numbers; what is none lies beyond
+};
+
+/// Beads of one group of chains, on a GPU.
+class DeviceBeads {
+  public:
+    virtual ~DeviceBeads() = default;
+    virtual std::int64_t count() const = 0;
+    /// cudaStream_t; what is asked for below runs there.
+    virtual void* stream() const = 0;
+    virtual void put_positions(DeviceParticles const&) = 0;
+    /// Adds to the forces since set_simple_forces().
+    virtual void add_forces(DeviceParticles const&) = 0;
+    /// On the host, W; waits for them.
+    virtual ConstView<3> host_positions() = 0;
+};
+
+}  // namespace catena

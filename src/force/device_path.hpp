@@ -1,0 +1,62 @@
+// OpenMM's forces on beads that stay on the GPU.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "force/device_beads.hpp"
+
+namespace OpenMM {
+class Context;
+}
+
+namespace catena {
+
+/// When something ran, in seconds of std::chrono::steady_clock.
+struct Interval {
+    double begin = 0, end = 0;
+};
+
+struct DevicePathPlan {
+    std::vector<int> particle;  // of each bead
+    std::optional<Vec3> box;    // particles may be moved by its edges, one by one
+    bool shifted = false;       // all particles may be moved by one vector
+    bool overlap = true;        // the chains' own work goes on while OpenMM computes
+};
+
+class DevicePath {
+  public:
+    virtual ~DevicePath() = default;
+    /// Makes the GPU context that OpenMM computes in that of this thread: what the chains keep on the GPU must be made there. Until the
+    /// object's end.
+    virtual void make_current() = 0;
+    /// Enqueues OpenMM's work at the beads' positions. `beads`: all of them, group after group, the same every time. `timed`: clock() will
+    /// be asked about it. Throws what OpenMM throws, and ComputationError where the beads of the evaluation before had no finite position
+    /// or force.
+    virtual void begin(std::span<DeviceBeads* const> beads, bool timed) = 0;
+    /// What the beads' streams were given since begin() may run side by side with OpenMM: here it ends, for the clock.
+    virtual void mark(std::span<DeviceBeads* const> beads) = 0;
+    /// Lets the beads' streams wait for OpenMM and add its forces.
+    virtual void finish(std::span<DeviceBeads* const> beads) = 0;
+    /// Of the last evaluation, which was timed: OpenMM's computation, and the chains' work from begin() to mark(). Waits for both.
+    struct Clock {
+        Interval openmm, chains;
+    };
+    virtual Clock clock() = 0;
+};
+
+namespace cuda {
+
+/// Empty where OpenMM's arrays can be reached on a GPU by this build and on this machine, else why not.
+std::string const& why_no_device_path();
+/// The GPU that choose_device chose.
+int chosen_device();
+/// `context`: of OpenMM's CUDA platform; must outlive it. Precondition: why_no_device_path() is empty.
+std::unique_ptr<DevicePath> make_device_path(OpenMM::Context& context, DevicePathPlan plan);
+
+}  // namespace cuda
+}  // namespace catena

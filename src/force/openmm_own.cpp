@@ -1,0 +1,82 @@
+#include "force/openmm_own.hpp"
+
+#include <OpenMM.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "force/openmm_model.hpp"
+#include "force/openmm_platform.hpp"
+
+namespace catena {
+namespace {
+
+double constexpr stiffness = 8033;  // kJ/mol/nm2, CALVADOS 2
+int constexpr no_force = 1 << 30;   // a group that holds none
+
+class Own final : public OpenMmOwn {
+  public:
+    Own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OwnLinks links, OwnRun const& run,
+        std::vector<Vec3> const& positions)
+        : links_(beads.links),
+          model_(calvados2_model(spec, beads)),
+          platform_(choose_platform(spec, beads, communicator, run.device)),
+          integrator_(run.temperature, run.friction, run.step) {
+        hold(links);
+        platform_.properties.erase("DeterministicForces");  // OpenMM as people run it
+        integrator_.setRandomNumberSeed(static_cast<int>(run.seed));
+        context_ = std::make_unique<OpenMM::Context>(*model_.system, integrator_, *platform_.platform, platform_.properties);
+        std::vector<OpenMM::Vec3> x;
+        for (Vec3 const& each : positions) x.emplace_back(each[0], each[1], each[2]);
+        context_->setPositions(x);
+        context_->setVelocitiesToTemperature(run.temperature, static_cast<int>(run.seed));
+    }
+    void step(int steps) override {
+        integrator_.step(steps);
+        context_->getState(OpenMM::State::Energy, false, no_force);  // its kinetic energy comes after the last step
+    }
+    double energy() override { return context_->getState(OpenMM::State::Energy).getPotentialEnergy(); }
+    double link_error() override {
+        OpenMM::State const state = context_->getState(OpenMM::State::Positions);
+        auto const& x = state.getPositions();
+        double worst = 0;
+        for (auto const& link : links_) {
+            OpenMM::Vec3 const d = x[static_cast<std::size_t>(link.outboard)] - x[static_cast<std::size_t>(link.inboard)];
+            double const error = std::abs(std::sqrt(d.dot(d)) - link.length) / link.length;
+            if (!(error <= worst)) worst = error;
+        }
+        return worst;
+    }
+    std::string platform() const override { return platform_.name(); }
+
+  private:
+    void hold(OwnLinks links) {
+        auto bonds = std::make_unique<OpenMM::HarmonicBondForce>();
+        for (auto const& link : links_) {
+            int const a = static_cast<int>(link.inboard), b = static_cast<int>(link.outboard);
+            if (links == OwnLinks::constraints)
+                model_.system->addConstraint(a, b, link.length);
+            else
+                bonds->addBond(a, b, link.length, stiffness);
+        }
+        if (links == OwnLinks::constraints) return;
+        bonds->setForceGroup(model_.system->getNumForces());
+        bonds->setUsesPeriodicBoundaryConditions(model_.system->usesPeriodicBoundaryConditions());
+        model_.system->addForce(bonds.release());
+    }
+
+    std::vector<BeadSystem::Link> links_;
+    OpenMmModel model_;
+    OpenMmPlatform platform_;
+    OpenMM::LangevinMiddleIntegrator integrator_;
+    std::unique_ptr<OpenMM::Context> context_;
+};
+
+}  // namespace
+
+std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                           OwnLinks links, OwnRun const& run, std::vector<Vec3> const& positions) {
+    return std::make_unique<Own>(spec, beads, communicator, links, run, positions);
+}
+
+}  // namespace catena

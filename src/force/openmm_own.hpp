@@ -1,0 +1,39 @@
+// OpenMM integrating a scene's beads by itself, to be timed beside Catena.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "force/openmm_force.hpp"
+
+namespace catena {
+
+/// What stands for the scene's links.
+enum class OwnLinks { bonds, constraints };
+
+struct OwnRun {
+    double step = 0.01, temperature = 300, friction = 0.01;  // ps, K, 1/ps
+    std::uint64_t seed = 1;
+    int device = -1;  // the GPU; -1: none, the platform is CPU unless the scene names one
+};
+
+class OpenMmOwn {
+  public:
+    virtual ~OpenMmOwn() = default;
+    /// Takes so many steps, and waits for them.
+    virtual void step(int steps) = 0;
+    /// kJ/mol, all forces and the bonds.
+    virtual double energy() = 0;
+    /// Largest deviation of a link from its length, relative.
+    virtual double link_error() = 0;
+    virtual std::string platform() const = 0;
+};
+
+/// LangevinMiddleIntegrator on the CALVADOS 2 model with bonds of 8033 kJ/mol/nm2 or rigid links, from `positions` (nm, W) with thermal
+/// velocities. Throws what OpenMM throws, and "built without OpenMM".
+std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const&, BeadSystem const&, Communicator const&, OwnLinks, OwnRun const&,
+                                           std::vector<Vec3> const& positions);
+
+}  // namespace catena

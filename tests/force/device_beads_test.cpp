@@ -1,0 +1,85 @@
+// What is written into OpenMM's arrays and read from them, on the host.
+#include "force/device_beads.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <vector>
+
+namespace catena::testing {
+namespace {
+
+struct Arrays {
+    std::vector<DeviceBead> bead{{2, {0, 0, 0}}, {0, {1, 0, -2}}, {1, {0, 0, 0}}};
+    std::vector<float> position = std::vector<float>(16, 7.0f), correction = std::vector<float>(16, 7.0f);
+    std::vector<double> double_position = std::vector<double>(16, 7.0);
+    std::vector<std::int64_t> force = std::vector<std::int64_t>(12, 0);
+    std::int64_t trouble = -1;
+    DeviceParticles single() {
+        DeviceParticles p;
+        p.bead = bead.data();
+        p.position = position.data();
+        p.force = force.data();
+        p.places = 4;
+        p.origin = {{1, 0, 0}};
+        p.box = {{10, 10, 10}};
+        p.trouble = &trouble;
+        return p;
+    }
+    DeviceParticles mixed() {
+        DeviceParticles p = single();
+        p.correction = correction.data();
+        return p;
+    }
+    DeviceParticles doubles() {
+        DeviceParticles p = single();
+        p.position = nullptr;
+        p.double_position = double_position.data();
+        return p;
+    }
+};
+
+TEST(DeviceBeads, PositionsGoToTheirPlacesAndCells) {
+    Arrays a;
+    a.mixed().put(1, {{12.1, 3, -17}});
+    EXPECT_EQ(a.position[0], static_cast<float>(12.1 - 1 - 10));
+    EXPECT_EQ(a.position[1], 3.0f);
+    EXPECT_EQ(a.position[2], 3.0f);
+    EXPECT_EQ(a.position[3], 7.0f);  // a charge
+    EXPECT_NEAR(static_cast<double>(a.position[0]) + static_cast<double>(a.correction[0]), 1.1, 1e-14);
+    a.single().put(0, {{2, 3, 4}});
+    EXPECT_EQ(a.position[8], 1.0f);
+    EXPECT_EQ(a.correction[8], 7.0f);
+    a.doubles().put(2, {{0.1, 0.2, 0.3}});
+    EXPECT_EQ(a.double_position[4], 0.1 - 1);
+    EXPECT_EQ(a.trouble, -1);
+}
+
+TEST(DeviceBeads, ForcesAreFixedPointNumbersOfTheirPlace) {
+    Arrays a;
+    a.force[1] = std::int64_t{3} << 31;
+    a.force[1 + 4] = -(std::int64_t{5} << 32);
+    a.force[1 + 8] = 1;
+    Vec3 const f = a.single().force_on(2);
+    EXPECT_EQ(f[0], 1.5);
+    EXPECT_EQ(f[1], -5);
+    EXPECT_EQ(f[2], 1.0 / 4294967296.0);
+    EXPECT_EQ(a.trouble, -1);
+}
+
+TEST(DeviceBeads, TroubleNamesTheBead) {
+    Arrays a;
+    a.single().put(1, {{0, std::numeric_limits<double>::quiet_NaN(), 0}});
+    EXPECT_EQ(a.trouble, 1);
+    a.single().put(2, {{0, 0, std::numeric_limits<double>::infinity()}});
+    EXPECT_EQ(a.trouble, 2);
+    a.force[2 + 8] = std::numeric_limits<std::int64_t>::min();  // what a GPU makes of a NaN
+    a.single().force_on(0);
+    EXPECT_EQ(a.trouble, 0);
+    DeviceParticles second = a.single().from(1);
+    second.put(0, {{0, -std::numeric_limits<double>::infinity(), 0}});
+    EXPECT_EQ(a.trouble, 1);
+}
+
+}  // namespace
+}  // namespace catena::testing
