@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "dca/solver.hpp"
+#include "dca/level_solver.hpp"
 
 namespace catena::cuda {
 
@@ -22,5 +22,8 @@ std::string choose_device(Communicator const&);
 /// The same tree and the same operations as make_tree_solver's, on the GPU chosen last, which must be current in every thread that
 /// calls the solver.
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&);
+
+/// A part of the pairwise tree's levels there (a dca::LevelPartMaker), under the same condition.
+std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&);
 
 }  // namespace catena::cuda

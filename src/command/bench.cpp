@@ -2,6 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include "command/commands.hpp"
+#include "command/figures.hpp"
 #include "command/generated.hpp"
 #include "command/text.hpp"
 #include "command/version.hpp"
@@ -22,10 +23,14 @@ Outcome list() {
         "evaluation  the solver alone, with everything it reads and writes in place: many evaluations of random chains in absolute\n"
         "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n"
         "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
-        "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap"}}};
+        "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n"
+        "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this machine, beside the chapter's numbers\n"
+        "            (--figure, --output)\n";
+    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures"}}};
     return outcome;
 }
+
+std::vector<std::int64_t> const usual_sizes{1000, 10000, 100000};
 
 /// The oracle's memory is many times the solver's.
 constexpr std::int64_t most_bodies_of_oracle = 1000000;
@@ -96,7 +101,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                     {"ranks", communicator.size()},
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
-        for (std::int64_t const bodies : request.sizes.empty() ? std::vector<std::int64_t>{1000, 10000, 100000} : request.sizes) {
+        for (std::int64_t const bodies : request.sizes.empty() ? usual_sizes : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request));
             bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
             Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
@@ -161,7 +166,7 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                     {"ranks", communicator.size()},
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
-        for (std::int64_t const bodies : request.sizes) {
+        for (std::int64_t const bodies : request.sizes.empty() ? usual_sizes : request.sizes) {
             if (joint != "link" && joint != "spherical")
                 throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
             Scene scene = random_scene(joint, bodies, overrides_of(request));
@@ -210,6 +215,7 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
 
 Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
     if (request.name == "list") return list();
+    if (request.name == "figures") return bench_figures(communicator, request);
     if (request.name == "evaluation") return evaluation(communicator, request);
     if (request.name == "openmm") return bench_openmm(communicator, request);
     return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);

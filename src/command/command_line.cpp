@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 
+#include "command/figures.hpp"
 #include "command/values.hpp"
 #include "command/version.hpp"
 #include "error.hpp"
@@ -15,7 +16,7 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap"};
+constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures"};
 
 /// What the contract promises for later versions, by command.
 std::map<std::string, std::vector<std::string>> const later_options{
@@ -26,12 +27,12 @@ std::map<std::string, std::vector<std::string>> const later_options{
     {"report", {"--suite", "--quick", "--precision"}},
     {"bench", {"--precision"}},
 };
-std::vector<std::string> const later_benches{"sweeps", "peers", "figures", "network"};
+std::vector<std::string> const later_benches{"sweeps", "peers", "network"};
 
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures;
     std::vector<std::string> scenes;
     bool overwrite = false;
 };
@@ -44,9 +45,15 @@ void add_common(CLI::App& command, Words& words) {
     command.add_option("--handles", c.handles, "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3)")
         ->type_name("KIND");
     command
-        .add_option("--threads", c.threads, "threads a rank of openmp, and of what cuda leaves to the host (0: its cores over its ranks)")
+        .add_option("--threads", c.threads,
+                    "threads a rank of openmp, and of what cuda and cuda-levels leave to the host (0: its cores over its ranks)")
         ->type_name("N");
-    command.add_option("--gpu-levels", c.gpu_levels, "levels of the tree on the GPU: auto (others: not in this version)")->type_name("K");
+    command
+        .add_option(
+            "--gpu-levels", c.gpu_levels,
+            "of cuda-levels: how many of the tree's lowest levels the GPU assembles and disassembles, 0 to all: K, or UP,DOWN; from 1 "
+            "on bodies too (auto: all)")
+        ->type_name("UP[,DOWN]");
     command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")
         ->type_name("FILE");
     command.add_flag("--quiet", c.quiet, "print nothing but errors");
@@ -56,7 +63,7 @@ void add_common(CLI::App& command, Words& words) {
 void add_backend(CLI::App& command, Words& words) {
     command
         .add_option("--backend", words.common.backend,
-                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (the last one: not in this version)")
+                    "auto (default) | serial | segments | openmp | cuda | cuda-levels (GPU and CPU together, see --gpu-levels)")
         ->type_name("NAME");
 }
 void add_scene(CLI::App& command, Words& words) { command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name(""); }
@@ -109,7 +116,7 @@ void add_commands(CLI::App& app, Words& words) {
     command
         ->add_option("--sizes", words.sizes,
                      "bodies (default of solve 1e3,1e4,1e5, its oracle left out above 1e6; openmm: 140,9940,99960,1000020, "
-                     "overlap: the last three, in whole chains of 140 beads)")
+                     "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to 2048)")
         ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,
@@ -119,11 +126,16 @@ void add_commands(CLI::App& app, Words& words) {
     command
         ->add_option(
             "--backend", words.backends,
-            "serial, segments, openmp, cuda (default: those of the processor in this build; openmm and overlap take one, cuda where "
+            "serial, segments, openmp, cuda, cuda-levels (default: those of the processor in this build; openmm and overlap take one, cuda where "
             "there is a GPU)")
         ->type_name("B,...");
+    command->add_option("--figure", words.figures, "of figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
+        ->type_name("F,...");
+    command->add_option("--output", words.output, "of figures: folder for figures.json and the pictures (default catena-figures)")
+        ->type_name("DIR");
     command->footer(
-        "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json");
+        "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json\n"
+        "  catena bench figures --figure 2.5,2.6 --output figures");
 
     for (CLI::App* each : app.get_subcommands({})) {
         if (each->get_name() != "bench") add_backend(*each, words);
@@ -174,7 +186,6 @@ CommonOptions checked(CommonOptions c) {
     if (!c.backend.empty()) backend_named("--backend", c.backend);
     if (!c.handles.empty()) known_value("--handles", c.handles, handle_names);
     if (!c.threads.empty()) c.threads = std::to_string(whole_number("--threads", c.threads, 0, 4096));
-    if (!c.gpu_levels.empty() && c.gpu_levels != "auto") throw not_in_this_version("--gpu-levels " + c.gpu_levels);
     known_value("--log-level", c.log_level, log_levels);
     return c;
 }
@@ -215,7 +226,7 @@ ReportRequest report_request(Words const& words) {
 BenchRequest bench_request(Words const& words) {
     BenchRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
-    if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list, or catena bench solve");
+    if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list");
     if (std::find(later_benches.begin(), later_benches.end(), words.name) != later_benches.end())
         throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
@@ -229,6 +240,10 @@ BenchRequest bench_request(Words const& words) {
         for (std::string const& backend : comma_list("--backend", words.backends))
             request.backends.push_back(backend_named("--backend", backend));
     request.repeat = repeat_of(words, request.repeat);
+    request.figures.assign(std::begin(figure_names), std::end(figure_names));
+    if (!words.figures.empty()) request.figures = comma_list("--figure", words.figures);
+    for (std::string const& figure : request.figures) known_value("--figure", figure, figure_names);
+    request.output = words.output;
     return request;
 }
 

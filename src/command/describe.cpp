@@ -34,6 +34,11 @@ char const* base_name(ChainSpec const& chain) { return chain.base == Base::free 
 
 }  // namespace
 
+Json gpu_levels_json(Scene const& scene) {
+    if (scene.solver.backend != Backend::cuda_levels) return nullptr;
+    return scene.solver.gpu_levels == "auto" ? "all" : scene.solver.gpu_levels;
+}
+
 std::string title_of(Scene const& scene) { return fmt::format("{} ({})", scene.title, scene.file); }
 
 Table chain_table(Scene const& scene) {

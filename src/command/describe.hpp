@@ -39,6 +39,9 @@ Directions directions_of(Scene const&);
 /// "5x5, projected on the restricted directions of revolute joints"
 std::string block_text(bool beads, int directions, Handles);
 
+/// solver.gpu_levels with cuda-levels ("all" for auto), else null.
+Json gpu_levels_json(Scene const&);
+
 /// Bytes a rank needs, by the sizes of the arrays. An estimate: the largest share, OpenMM not counted.
 struct Memory {
     double scene = 0, state = 0, solver = 0;

@@ -54,7 +54,7 @@ double scene_bytes(ChainSpec const& chain) {
 
 Memory memory_of(Scene const& scene, int ranks) {
     Directions const directions = directions_of(scene);
-    bool const pairwise = scene.solver.backend == Backend::serial;
+    bool const pairwise = scene.solver.pairwise();
     Memory m;
     for (ChainSpec const& chain : scene.chains) {
         bool const links = chain.is_beads() || chain.is_linked();

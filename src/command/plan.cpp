@@ -113,10 +113,10 @@ std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system)
     }
     if (full) lines.emplace_back("projection on the restricted directions: handles are full, as in the founding chapter");
     if (!scene.forces.openmm) lines.emplace_back("OpenMM: forces.openmm is not in the scene");
-    if (system.backend() != Backend::openmp && !(system.backend() == Backend::cuda && openmp_is_built()))
+    if (system.backend() != Backend::openmp && !(uses_gpu(system.backend()) && openmp_is_built()))
         lines.emplace_back("threads: this backend has one a rank");
     if (system.communicator().size() == 1) lines.emplace_back("messages: there is one rank");
-    if (system.backend() != Backend::cuda)
+    if (!uses_gpu(system.backend()))
         lines.emplace_back(
             "GPU: " + (cuda::why_not().empty() ? "there is " + cuda::device_name() + "; ask for it by --backend cuda" : cuda::why_not()));
     return lines;
@@ -187,12 +187,21 @@ Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
     Outcome outcome;
     Json& json = outcome.json;
     std::string const reason = backend_reason(scene, communicator);
-    json = {{"scene", scene.file},          {"backend", name_of(system.backend())},   {"backend_reason", reason},
-            {"ranks", communicator.size()}, {"threads", system.executor().threads()}, {"handles", name_of(scene.solver.handles)},
-            {"gpu_levels", nullptr},        {"tree_table", dca::tree_table_version},  {"groups", Json::array()}};
+    json = {{"scene", scene.file},
+            {"backend", name_of(system.backend())},
+            {"backend_reason", reason},
+            {"ranks", communicator.size()},
+            {"threads", system.executor().threads()},
+            {"handles", name_of(scene.solver.handles)},
+            {"gpu_levels", gpu_levels_json(scene)},
+            {"tree_table", dca::tree_table_version},
+            {"groups", Json::array()}};
     Text text;
     text.heading(title_of(scene));
     text.entry("backend", fmt::format("{} ({})", name_of(system.backend()), reason));
+    if (!json["gpu_levels"].is_null())
+        text.entry("levels on the GPU",
+                   json["gpu_levels"].get<std::string>() + " of the lowest (up,down); the others on the host's threads");
     text.entry("ranks", std::to_string(communicator.size()));
     text.entry("threads a rank", std::to_string(system.executor().threads()));
     for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);

@@ -47,6 +47,8 @@ struct BenchRequest : CommonOptions {
     std::vector<std::int64_t> sizes;  // empty: the benchmark's own
     std::vector<std::string> joints{"link", "spherical", "revolute"};
     std::vector<Backend> backends;  // empty: all of this build
+    std::vector<std::string> figures;
+    std::string output;  // folder, of figures
     int repeat = 21;
 };
 /// --help and --version.

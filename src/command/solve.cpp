@@ -112,7 +112,7 @@ Json summary_json(ChainSystem const& system, Timing const& timing) {
             {"backend", name_of(system.backend())},
             {"ranks", system.communicator().size()},
             {"threads", system.executor().threads()},
-            {"gpu_levels", nullptr},
+            {"gpu_levels", gpu_levels_json(scene)},
             {"handles", name_of(scene.solver.handles)},
             {"tree_table", dca::tree_table_version},
             {"seconds",

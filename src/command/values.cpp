@@ -51,7 +51,6 @@ Backend backend_named(std::string const& option, std::string const& text) {
     std::vector<std::string_view> names;
     for (Backend const backend : all) names.emplace_back(name_of(backend));
     known_value(option, text, names);
-    if (text == name_of(Backend::cuda_levels)) throw not_in_this_version(fmt::format("{} {} (use cuda)", option, text));
     return all[std::find(names.begin(), names.end(), text) - names.begin()];
 }
 

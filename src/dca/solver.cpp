@@ -1,9 +1,17 @@
+#include "dca/solver.hpp"
+
 #include <algorithm>
 
-#include "dca/solver.hpp"
+#include "dca/host_space.hpp"
 #include "error.hpp"
 
 namespace catena {
+
+std::vector<double> ChainSolver::time_evaluations(ConfigurationView const& configuration, LoadsView const& loads,
+                                                  AccelerationsView const& out, int chained, int repeat) {
+    auto const executor = serial_executor();
+    return HostSpace(*executor).time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
+}
 
 void add_tree(ChainGroup const& group, Communicator const& communicator, SolverReport& report) {
     report.directions = group.directions;

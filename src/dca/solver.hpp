@@ -101,6 +101,28 @@ struct AccelerationsView {
     DirectionsView tip_force;    // on the ground at the jointed tip of last body k; may be absent
 };
 
+/// Of a tree whose lowest levels are computed in one place and the others in another one (cuda-levels: GPU and CPU).
+struct SplitSeconds {
+    double lower_assembly = 0, upper_assembly = 0, lower_disassembly = 0, upper_disassembly = 0;  // leaves, top and exchange included
+    double upload = 0, download = 0;
+
+    double lower() const { return lower_assembly + lower_disassembly; }
+    double upper() const { return upper_assembly + upper_disassembly; }
+    double transfers() const { return upload + download; }
+    SplitSeconds& operator-=(SplitSeconds const& other) {
+        lower_assembly -= other.lower_assembly, upper_assembly -= other.upper_assembly;
+        lower_disassembly -= other.lower_disassembly, upper_disassembly -= other.upper_disassembly;
+        upload -= other.upload, download -= other.download;
+        return *this;
+    }
+    SplitSeconds& operator+=(SplitSeconds const& other) {
+        lower_assembly += other.lower_assembly, upper_assembly += other.upper_assembly;
+        lower_disassembly += other.lower_disassembly, upper_disassembly += other.upper_disassembly;
+        upload += other.upload, download += other.download;
+        return *this;
+    }
+};
+
 struct SolverReport {
     std::string backend, handles;
     int directions = 0, threads = 1, ranks = 1;
@@ -108,6 +130,7 @@ struct SolverReport {
     std::int64_t memory_bytes = 0;
     std::int64_t matrix_sweeps = 0, bias_sweeps = 0, evaluations = 0;  // of the latter each is both, matrices and biases together
     double matrix_seconds = 0, bias_seconds = 0, exchange_seconds = 0;
+    SplitSeconds split;
 };
 
 class ChainSolver {
@@ -119,11 +142,14 @@ class ChainSolver {
     /// The bias sweep and the disassembly with the matrices and the configuration given last; may be repeated. Collective.
     virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
     /// Both, where nothing is to be hidden: the matrices are not kept for solve(). Collective.
-    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) = 0;
+    virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+        assemble_matrices(configuration);
+        solve(loads, out);
+    }
     /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
     /// Collective.
     virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,
-                                                 int repeat) = 0;
+                                                 int repeat);
     /// Throws ComputationError when a joint's matrix has not been positive definite since the last call, on this rank.
     virtual void check() {}
     /// Until everything asked for so far is done.

@@ -14,7 +14,7 @@ namespace catena {
 namespace {
 
 /// Ends all ranks together, with the words of the first that has a reason. Collective.
-void refuse_cuda(Communicator const& communicator, std::string const& reason) {
+void refuse_cuda(Communicator const& communicator, std::string const& backend, std::string const& reason) {
     std::string own = reason, all(static_cast<std::size_t>(communicator.size()) * 200, ' ');
     own.resize(200, ' ');
     communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
@@ -24,17 +24,14 @@ void refuse_cuda(Communicator const& communicator, std::string const& reason) {
     std::string text = all.substr(found, 200 - found % 200);
     text.erase(text.find_last_not_of(' ') + 1);
     if (communicator.size() > 1) text += ", rank " + std::to_string(found / 200);
-    throw InputError(text, "solver.backend: cuda", "use auto, another backend, or a build with CUDA on a machine with a GPU");
+    throw InputError(text, "solver.backend: " + backend, "use auto, another backend, or a build with CUDA on a machine with a GPU");
 }
 
 }  // namespace
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (asked == Backend::cuda_levels)
-        throw not_in_this_version("solver.backend: " + std::string(name_of(asked)) + " (use serial, segments, openmp or cuda)");
-    if (scene.solver.gpu_levels != "auto") throw not_in_this_version("solver.gpu_levels: " + scene.solver.gpu_levels);
-    if (asked == Backend::cuda) refuse_cuda(communicator, cuda::why_not());
+    if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not());
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
@@ -50,11 +47,11 @@ int choose_threads(Scene const& scene, Communicator const& communicator) {
 
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
     : scene_(scene), communicator_(communicator), axes_(axes), backend_(choose_backend(scene, communicator)) {
-    if (backend_ == Backend::cuda) refuse_cuda(communicator, cuda::choose_device(communicator));
+    if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator));
     // What the GPU does not do runs on all the host's threads.
-    bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda && openmp_is_built());
+    bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
-    groups_ = make_groups(scene, axes, scene.solver.handles, backend_ == Backend::serial, communicator);
+    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator);
     if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {
         if (group->beads && backend_ == Backend::cuda) {
@@ -65,8 +62,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
             joint_.push_back(cuda::make_joint_dynamics(*group, scene, communicator));
             continue;
         }
-        auto solver =
-            backend_ == Backend::cuda ? cuda::make_tree_solver(*group, communicator) : make_tree_solver(*group, *executor_, communicator);
+        auto solver = make_solver(*group);
         if (group->beads) {
             absolute_.push_back(make_bead_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
         } else if (group->linked) {
@@ -89,6 +85,13 @@ ChainSystem::~ChainSystem() {
 
 void ChainSystem::make_current() {
     if (openmm_ && openmm_->device_path()) openmm_->device_path()->make_current();
+}
+
+std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) const {
+    if (backend_ == Backend::cuda) return cuda::make_tree_solver(group, communicator_);
+    if (backend_ == Backend::cuda_levels)
+        return dca::make_level_solver(group, communicator_, scene_.solver.levels_on_gpu(), cuda::make_levels, dca::host_levels(*executor_));
+    return make_tree_solver(group, *executor_, communicator_);
 }
 
 namespace {

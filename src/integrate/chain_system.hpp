@@ -13,8 +13,7 @@
 
 namespace catena {
 
-/// What `auto` becomes. Throws "not in this version" for backends of later versions, and where `cuda` is asked for and some rank has no
-/// GPU. Collective.
+/// What `auto` becomes. Throws where a GPU is asked for and some rank has none. Collective.
 Backend choose_backend(Scene const&, Communicator const&);
 /// Threads of this rank with openmp, and of what cuda leaves to the host: solver.threads, else the host's cores over its ranks.
 int choose_threads(Scene const&, Communicator const&);
@@ -99,6 +98,7 @@ class ChainSystem {
 
   private:
     void find_bead_groups();
+    std::unique_ptr<ChainSolver> make_solver(ChainGroup const&) const;
     void make_openmm();
     void find_bead_hosts();
     void describe_beads();

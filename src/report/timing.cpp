@@ -10,6 +10,7 @@ namespace {
 /// Sums over the solvers of a system, and the system's own clocks.
 struct Clocks {
     double matrix = 0, bias = 0, exchange = 0, forces = 0, waiting = 0, moment = 0;
+    SplitSeconds split;
     std::int64_t matrix_sweeps = 0, bias_sweeps = 0;
 };
 
@@ -19,6 +20,7 @@ Clocks read_clocks(ChainSystem const& system) {
         c.matrix += r.matrix_seconds;
         c.bias += r.bias_seconds;
         c.exchange += r.exchange_seconds;
+        c.split += r.split;
         c.matrix_sweeps = std::max(c.matrix_sweeps, r.matrix_sweeps);
         c.bias_sweeps = std::max(c.bias_sweeps, r.bias_sweeps);
     }
@@ -71,6 +73,11 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
     t.phases = {{"matrix sweep", median([](Clocks const& c) { return c.matrix; })},
                 {"bias sweep", median([](Clocks const& c) { return c.bias; })},
                 {"exchange of units", median([](Clocks const& c) { return c.exchange; })}};
+    if (system.backend() == Backend::cuda_levels)  // parts of the sweeps
+        for (auto const& [name, part] : {std::pair{"levels on the GPU", &SplitSeconds::lower},
+                                         {"levels on the host", &SplitSeconds::upper},
+                                         {"transfers", &SplitSeconds::transfers}})
+            t.phases.emplace_back(name, median([part](Clocks const& c) { return (c.split.*part)(); }));
     if (system.openmm()) {
         t.phases.emplace_back("forces", median([](Clocks const& c) { return c.forces; }));
         t.phases.emplace_back("waiting for forces", median([](Clocks const& c) { return c.waiting; }));

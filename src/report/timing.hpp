@@ -20,7 +20,8 @@ struct Timing {
     Spread matrix_sweep, bias_sweep;         // one sweep
     int matrix_sweeps = 0, bias_sweeps = 0;  // in one evaluation
     /// Of one evaluation, medians: "matrix sweep", "bias sweep", "exchange of units" (a part of the sweeps), "other" (kinematics, loads,
-    /// rates) and, with OpenMM, "forces" (side by side with the rest on path `host`) and "waiting for forces".
+    /// rates), with cuda-levels "levels on the GPU", "levels on the host", "transfers" (parts of the sweeps) and, with OpenMM, "forces"
+    /// (side by side with the rest on path `host`) and "waiting for forces".
     std::vector<std::pair<std::string, double>> phases;
 };
 

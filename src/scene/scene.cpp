@@ -81,6 +81,12 @@ Scene parse_scene(std::string const& text, std::string const& name, std::vector<
     throw InputError("the scene does not fit into memory", name, "make fewer bodies or copies");
 }
 
+GpuLevels SolverSpec::levels_on_gpu() const {
+    auto const number = [](std::string const& part) { return part == "auto" || part == "all" ? GpuLevels::all : std::stoi(part); };
+    std::size_t const comma = gpu_levels.find(',');
+    return {number(gpu_levels.substr(0, comma)), number(comma == std::string::npos ? gpu_levels : gpu_levels.substr(comma + 1))};
+}
+
 char const* name_of(JointType type) {
     switch (type) {
         case JointType::free:

@@ -178,13 +178,26 @@ struct DynamicsSpec {
 };
 
 enum class Backend { automatic, serial, segments, openmp, cuda, cuda_levels };
+inline bool uses_gpu(Backend backend) { return backend == Backend::cuda || backend == Backend::cuda_levels; }
 enum class Handles { projected, full };
+
+/// Of the backend cuda-levels: how many of the tree's lowest levels of merges the GPU assembles (`up`) and disassembles (`down`); from 1 on
+/// the bodies themselves are the GPU's too. Numbers beyond the tree's levels mean all of them.
+struct GpuLevels {
+    static constexpr int all = 1000;
+    int up = all, down = all;
+};
 
 struct SolverSpec {
     Backend backend = Backend::automatic;
     Handles handles = Handles::projected;
-    int threads = 0;  // 0: cores / ranks on this host
-    std::string gpu_levels = "auto";
+    int threads = 0;                  // 0: cores / ranks on this host
+    std::string gpu_levels = "auto";  // as GpuLevels: auto, all, "K", "UP,DOWN"
+
+    /// `auto`: all, in this version.
+    GpuLevels levels_on_gpu() const;
+    /// Whether the tree is the chapter's, of pairs from the leaves on.
+    bool pairwise() const { return backend == Backend::serial || backend == Backend::cuda_levels; }
 };
 
 struct OutputSpec {

@@ -90,14 +90,15 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
     return spec;
 }
 
+/// `auto`, `all`, or a number or `all` once or twice.
 bool is_level_count(std::string const& text) {
-    if (text == "auto" || text == "all") return true;
+    if (text == "auto") return true;
     std::size_t const comma = text.find(',');
-    auto const digits = [](std::string const& part) {
-        return !part.empty() && part.size() < 4 &&
-               std::all_of(part.begin(), part.end(), [](unsigned char c) { return c >= '0' && c <= '9'; });
+    auto const one = [](std::string const& part) {
+        return part == "all" || (!part.empty() && part.size() < 4 &&
+                                 std::all_of(part.begin(), part.end(), [](unsigned char c) { return c >= '0' && c <= '9'; }));
     };
-    return digits(text.substr(0, comma)) && (comma == std::string::npos || digits(text.substr(comma + 1)));
+    return one(text.substr(0, comma)) && (comma == std::string::npos || one(text.substr(comma + 1)));
 }
 
 }  // namespace

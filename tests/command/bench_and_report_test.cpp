@@ -13,6 +13,42 @@ TEST(Bench, ListNamesTheBenchmarks) {
     Ended const e = catena({"bench", "list"});
     expect_good(e);
     EXPECT_TRUE(e.out.starts_with("solve ")) << e.out;
+    EXPECT_NE(e.out.find("\nfigures "), std::string::npos) << e.out;
+}
+
+TEST(Bench, FiguresStandBesideTheChapters) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"bench", "figures", "--sizes", "2,8,16", "--repeat", "3", "--output", folder / "figures"});
+    expect_good(e);
+    EXPECT_TRUE(e.out.ends_with("VALID\n")) << e.out;
+    Json const json = Json::parse(std::ifstream(folder / "figures/figures.json"));
+    std::size_t const gpu = json.at("hardware").at("gpu").is_null() ? 0 : 5;
+    EXPECT_EQ(json.at("points").size() % (2 * 3), 0U);
+    EXPECT_GE(json.at("points").size(), 2 * 3 * (2 + gpu));  // serial and segments, and openmp where it is
+    for (Json const& point : json.at("points")) {
+        EXPECT_GT(point.at("solve").at("median").get<double>(), 0);
+        EXPECT_GT(point.at("full_step").at("median").get<double>(), 3 * point.at("solve").at("median").get<double>());
+        EXPECT_LE(point.at("residual").get<double>(), point.at("residual_bound").get<double>());
+        EXPECT_EQ(point.at("upload").is_null(), point.at("gpu_levels").is_null());
+    }
+    EXPECT_EQ(json.at("chapter").at("milliseconds").at("solve").at(0), Json({8, 0.1934, 0.1582, 1.033, 2.582, 2.585, 2.581}));
+    EXPECT_EQ(json.at("left_out").size() > 0, true);
+    for (char const* const picture : {"figure-2.3-full.svg", "figure-2.5-full.svg", "figure-2.6-projected.svg"})
+        EXPECT_TRUE(std::filesystem::exists(folder / (std::string("figures/") + picture))) << picture;
+    EXPECT_EQ(json.at("figure_2.3").at(0).at("levels").size(), 4U);
+}
+
+TEST(Bench, TheChaptersTableIsCounted) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"bench", "figures", "--figure", "table-2.1", "--output", folder / "figures", "--json", "-"});
+    expect_good(e);
+    Json const table = e.json().at("table_2.1");
+    for (Json const& row : table.at("levels")) {
+        EXPECT_EQ(row.at("kernel_operations"), row.at("chapter_kernel_operations"));
+        EXPECT_NEAR(row.at("percent").get<double>(), row.at("chapter_percent").get<double>(), 0.6);
+    }
+    EXPECT_EQ(table.at("operations").size(), 7U);
+    EXPECT_TRUE(e.json().at("points").empty());
 }
 
 TEST(Bench, SolveGivesEachFigureWithItsResidual) {

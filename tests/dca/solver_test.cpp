@@ -1,6 +1,7 @@
 // Every backend and handle kind against the oracles: one test body.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "dca/oracle/oracle.hpp"
@@ -20,13 +21,15 @@ struct Variant {
     Handles handles;
 };
 std::string name_of_variant(testing::TestParamInfo<Variant> const& info) {
-    return std::string(name_of(info.param.backend)) + "_" + name_of(info.param.handles);
+    std::string name = std::string(name_of(info.param.backend)) + "_" + name_of(info.param.handles);
+    std::replace(name.begin(), name.end(), '-', '_');
+    return name;
 }
 
 class Solver : public testing::TestWithParam<Variant> {
   protected:
     void SetUp() override {
-        if (GetParam().backend == Backend::cuda) need_gpu();
+        if (uses_gpu(GetParam().backend)) need_gpu();
         if (GetParam().backend != Backend::openmp) return;
         try {
             openmp_executor(2);
@@ -208,7 +211,8 @@ INSTANTIATE_TEST_SUITE_P(Backends, Solver,
                          testing::Values(Variant{Backend::serial, Handles::projected}, Variant{Backend::serial, Handles::full},
                                          Variant{Backend::segments, Handles::projected}, Variant{Backend::segments, Handles::full},
                                          Variant{Backend::openmp, Handles::projected}, Variant{Backend::openmp, Handles::full},
-                                         Variant{Backend::cuda, Handles::projected}, Variant{Backend::cuda, Handles::full}),
+                                         Variant{Backend::cuda, Handles::projected}, Variant{Backend::cuda, Handles::full},
+                                         Variant{Backend::cuda_levels, Handles::projected}, Variant{Backend::cuda_levels, Handles::full}),
                          name_of_variant);
 
 }  // namespace

@@ -22,6 +22,13 @@ TEST_P(GpuRun, EndsInTheBitsOfTheHost) {
     EXPECT_EQ(arrays("restarted"), arrays("host"));
 }
 
+TEST_P(GpuRun, LevelsEndInTheBitsOfThePairwiseTree) {
+    run(catena::testing::world(), "levels", 40, "", Backend::cuda_levels);
+    if (catena::testing::world().rank() != 0) return;
+    run(*serial_communicator(), "pairs", 40, "", Backend::serial);
+    EXPECT_EQ(arrays("levels"), arrays("pairs"));
+}
+
 auto const name_of_scene = [](auto const& scene) { return scene.param.name; };
 INSTANTIATE_TEST_SUITE_P(Integrators, GpuRun, ::testing::ValuesIn(run_scenes), name_of_scene);
 

@@ -1,0 +1,14 @@
+#include "cuda/device_levels.cuh"
+#include "cuda/solver.hpp"
+
+namespace catena::cuda {
+
+std::unique_ptr<dca::LevelPart> make_absolute_levels(ChainGroup const& group, dca::LevelWork const& work) {
+    return dca::with_absolute_leaf(group, MakeLevels{group, work});
+}
+
+std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const& group, dca::LevelWork const& work) {
+    return group.beads || group.axes == Axes::world ? make_absolute_levels(group, work) : make_joint_levels(group, work);
+}
+
+}  // namespace catena::cuda

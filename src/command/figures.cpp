@@ -1,0 +1,255 @@
+#include "command/figures.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <numeric>
+
+#include "command/text.hpp"
+#include "command/version.hpp"
+#include "io/output.hpp"
+#include "mpi/first_rank.hpp"
+#include "report/chapter_figures.hpp"
+#include "report/hardware.hpp"
+#include "report/operation_counts.hpp"
+
+namespace catena::command {
+namespace {
+
+constexpr double microseconds = 1e6, milliseconds = 1e3;
+
+std::string number(std::optional<double> const& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
+char const* verdict(bool valid) { return valid ? "VALID" : "INVALID"; }
+
+Json json_of(Operations const& o) {
+    return {{"additions", o.additions}, {"multiplications", o.multiplications}, {"fused", o.fused},
+            {"divisions", o.divisions}, {"square_roots", o.square_roots},       {"sum", o.sum()}};
+}
+Json json_of(HandleOperations const& h) {
+    return {
+        {"directions", h.directions},
+        {"assembly", {{"matrices", json_of(h.assembly_matrices)}, {"biases", json_of(h.assembly_biases)}}},
+        {"disassembly", json_of(h.disassembly)},
+        {"leaf",
+         {{"matrices", json_of(h.leaf_matrices)}, {"biases", json_of(h.leaf_biases)}, {"accelerations", json_of(h.leaf_accelerations)}}}};
+}
+Json json_of(std::optional<Spread> const& s) {
+    if (!s) return nullptr;
+    return {{"median", s->median}, {"min", s->min}, {"max", s->max}};
+}
+
+/// The lowest levels' share of the merges, and what a merge and a body cost.
+void add_table(Outcome& outcome) {
+    std::int64_t constexpr bodies = 2048;
+    std::vector<std::int64_t> const merges = merges_of_levels(bodies);
+    auto const all = std::accumulate(merges.begin(), merges.end(), std::int64_t{0});
+    Table levels({"levels", "kernel operations", "chapter", "% of a solve", "chapter"});
+    Json& json = outcome.json["table_2.1"] = {{"bodies", bodies}, {"levels", Json::array()}, {"operations", Json::array()}};
+    std::int64_t below = 0;
+    for (std::size_t l = 0; l < chapter_levels.size(); ++l) {
+        below += merges[l];
+        double const percent = 100.0 * static_cast<double>(below) / static_cast<double>(all);
+        ChapterLevel const& chapter = chapter_levels[l];
+        levels.add({chapter.level, std::to_string(below), std::to_string(chapter.operations), fmt::format("{:.1f}", percent),
+                    std::to_string(chapter.percent)});
+        json["levels"].push_back({{"levels", chapter.level},
+                                  {"kernel_operations", below},
+                                  {"chapter_kernel_operations", chapter.operations},
+                                  {"percent", percent},
+                                  {"chapter_percent", chapter.percent}});
+    }
+    outcome.text += fmt::format("Table 2.1: merges of the lowest levels, {} bodies\n", bodies) + levels.text();
+    Table operations({"joint", "directions", "assembly", "disassembly", "leaf", "full: directions", "assembly", "disassembly", "leaf",
+                      "assembly, full over projected"});
+    for (JointOperations const& joint : count_operations()) {
+        HandleOperations const &p = joint.projected, &f = joint.full;
+        operations.add({joint.joint, std::to_string(p.directions), std::to_string(p.assembly()), std::to_string(p.disassembly.sum()),
+                        std::to_string(p.leaf()), std::to_string(f.directions), std::to_string(f.assembly()),
+                        std::to_string(f.disassembly.sum()), std::to_string(f.leaf()),
+                        fmt::format("{:.3g}", static_cast<double>(f.assembly()) / static_cast<double>(p.assembly()))});
+        json["operations"].push_back({{"joint", joint.joint}, {"projected", json_of(p)}, {"full", json_of(f)}});
+    }
+    outcome.text += "Floating-point operations of one merge and one body (a fused one counts twice), projected handles, then full ones\n" +
+                    operations.text();
+}
+
+Json json_of(LevelSeconds const& s) { return {{"assembly", s.assembly}, {"disassembly", s.disassembly}}; }
+
+void add_levels(Outcome& outcome, LevelStudy const& study) {
+    Table table({"level", "merges", "one core", "threads", "GPU", "transfers", "cheapest", "one core", "threads", "GPU"}, {0, 6});
+    Json levels = Json::array();
+    for (LevelPoint const& p : study.levels) {
+        auto const us = [](double seconds) { return number(microseconds * seconds); };
+        auto const part = [&](std::optional<LevelSeconds> const& s, double LevelSeconds::* what) { return s ? us((*s).*what) : "-"; };
+        double const cpu = std::min(p.one_core.assembly, p.threads ? p.threads->assembly : p.one_core.assembly);
+        char const* const cheapest = !p.gpu ? "-" : p.gpu->assembly < cpu ? "GPU" : "CPU";
+        table.add({std::to_string(p.level), std::to_string(p.merges), us(p.one_core.assembly), part(p.threads, &LevelSeconds::assembly),
+                   part(p.gpu, &LevelSeconds::assembly), p.transfers ? us(*p.transfers) : "-", cheapest, us(p.one_core.disassembly),
+                   part(p.threads, &LevelSeconds::disassembly), part(p.gpu, &LevelSeconds::disassembly)});
+        levels.push_back({{"level", p.level},
+                          {"merges", p.merges},
+                          {"one_core", json_of(p.one_core)},
+                          {"threads", p.threads ? json_of(*p.threads) : Json(nullptr)},
+                          {"gpu", p.gpu ? json_of(*p.gpu) : Json(nullptr)},
+                          {"transfers_cut_above", p.transfers ? Json(*p.transfers) : Json(nullptr)}});
+    }
+    outcome.valid = outcome.valid && study.valid();
+    outcome.text += fmt::format(
+        "Figure 2.3: each level of the tree, {} bodies, {} handles, {} threads; microseconds: assembly, transfers of a tree cut above the "
+        "level, the cheapest place, disassembly. Level 1 includes the bodies. Residual {:.1e}, bound {:.1e}, {}\n",
+        study.bodies, name_of(study.handles), study.threads, study.residual, study.residual_bound, verdict(study.valid()));
+    outcome.text += table.text();
+    outcome.json["figure_2.3"].push_back({{"bodies", study.bodies},
+                                          {"handles", name_of(study.handles)},
+                                          {"threads", study.threads},
+                                          {"levels", levels},
+                                          {"residual", study.residual},
+                                          {"residual_bound", study.residual_bound},
+                                          {"valid", study.valid()}});
+}
+
+void add_points(Outcome& outcome, std::vector<FigurePoint> const& points) {
+    outcome.json["points"] = Json::array();
+    for (FigurePoint const& p : points) {
+        outcome.valid = outcome.valid && p.valid();
+        outcome.json["points"].push_back({{"bodies", p.bodies},
+                                          {"handles", name_of(p.handles)},
+                                          {"case", p.what.name},
+                                          {"backend", name_of(p.what.backend)},
+                                          {"gpu_levels", p.what.backend == Backend::cuda_levels ? Json(p.what.gpu_levels) : Json(nullptr)},
+                                          {"threads", p.threads},
+                                          {"repeat", p.step.count},
+                                          {"full_step", json_of(p.step)},
+                                          {"solve", json_of(p.solve)},
+                                          {"upload", json_of(p.upload)},
+                                          {"download", json_of(p.download)},
+                                          {"levels_on_gpu", json_of(p.lower)},
+                                          {"levels_on_host", json_of(p.upper)},
+                                          {"residual", p.residual},
+                                          {"residual_bound", p.residual_bound},
+                                          {"valid", p.valid()}});
+    }
+}
+
+/// A row a number of bodies: the cases measured, the worst of their residuals, and the chapter's row where it has one.
+void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points, FigureQuantity const& quantity, Handles handles) {
+    std::vector<std::string> names;
+    std::map<std::int64_t, std::map<std::string, FigurePoint const*>> rows;
+    for (FigurePoint const& p : points) {
+        if (p.handles != handles || !quantity_of(p, quantity.figure)) continue;
+        if (std::find(names.begin(), names.end(), p.what.name) == names.end()) names.push_back(p.what.name);
+        rows[p.bodies][p.what.name] = &p;
+    }
+    if (names.empty()) {
+        outcome.text += fmt::format("Figure {}: {}, {} handles: left out, no case here has transfers that are timed\n", quantity.figure,
+                                    quantity.title, name_of(handles));
+        return;
+    }
+    std::vector<std::string> header{"bodies"};
+    header.insert(header.end(), names.begin(), names.end());
+    header.insert(header.end(), {"residual/bound", ""});
+    for (std::string const& column : chapter_columns) header.push_back("ch. " + column);
+    Table table(header, {0, names.size() + 2});
+    auto const& chapter = chapter_figures().at(quantity.chapter);
+    for (auto const& [bodies, row] : rows) {
+        std::vector<std::string> cells{std::to_string(bodies)};
+        double worst = 0;
+        bool valid = true;
+        for (std::string const& name : names) {
+            FigurePoint const& p = *row.at(name);
+            cells.push_back(number(milliseconds * quantity_of(p, quantity.figure)->median));
+            worst = larger(worst, p.residual / p.residual_bound);
+            valid = valid && p.valid();
+        }
+        cells.insert(cells.end(), {fmt::format("{:.1e}", worst), verdict(valid)});
+        auto const found = chapter.find(bodies);
+        for (std::size_t i = 0; i < chapter_columns.size(); ++i) cells.push_back(found == chapter.end() ? "" : number(found->second[i]));
+        table.add(cells);
+    }
+    outcome.text +=
+        fmt::format("Figure {}: {}, {} handles; milliseconds\n", quantity.figure, quantity.title, name_of(handles)) + table.text();
+}
+
+void make_folder(Communicator const& communicator, std::string const& folder) {
+    on_first_rank(communicator, [&] {
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error || !std::filesystem::is_directory(folder, error))
+            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
+    });
+}
+
+}  // namespace
+
+Outcome bench_figures(Communicator const& communicator, BenchRequest const& request) {
+    std::string const folder = request.output.empty() ? "catena-figures" : request.output;
+    make_folder(communicator, folder);
+    auto const wanted = [&](std::string_view figure) {
+        return std::find(request.figures.begin(), request.figures.end(), figure) != request.figures.end();
+    };
+    std::vector<Handles> handles{Handles::full, Handles::projected};
+    if (!request.handles.empty()) handles = {request.handles == "full" ? Handles::full : Handles::projected};
+    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
+    std::vector<std::string> left_out;
+    std::vector<FigureCase> const cases = figure_cases(left_out);
+    if (cases.back().backend == Backend::cuda) left_out.emplace_back("cuda in figure 2.7: its transfers are not timed by themselves");
+
+    Figures figures;
+    std::vector<std::int64_t> const sizes =
+        request.sizes.empty() ? std::vector<std::int64_t>{2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048} : request.sizes;
+    std::int64_t const largest = *std::max_element(sizes.begin(), sizes.end());
+    if (wanted("2.3") && communicator.size() == 1)
+        for (Handles const kind : handles)
+            figures.levels.push_back(measure_levels(kind, largest, threads > 0 ? threads : cores_of_rank(communicator), request.repeat));
+    else if (wanted("2.3"))
+        left_out.emplace_back("figure 2.3: levels are timed on one rank");
+    if (wanted("2.5") || wanted("2.6") || wanted("2.7"))
+        for (Handles const kind : handles)
+            for (std::int64_t const bodies : sizes) {
+                auto const points = measure_steps(cases, kind, bodies, threads, request.repeat, communicator);
+                figures.points.insert(figures.points.end(), points.begin(), points.end());
+                spdlog::info("{} bodies, {} handles: measured", bodies, name_of(kind));
+            }
+
+    Outcome outcome;
+    outcome.json = {
+        {"bench", "figures"},
+        {"build", version_json()},
+        {"hardware", hardware_json()},
+        {"ranks", communicator.size()},
+        {"case",
+         "the chapter's pendulum at rest, one step of RK4 of 1e-4 s; medians, seconds; of a solve: both sweeps, transfers included"},
+        {"left_out", left_out}};
+    outcome.text =
+        fmt::format("medians of {}, cases in turn. {}, {}; {}, {}. ch.: the chapter, {}\n", request.repeat,
+                    counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set(), chapter_hardware);
+    if (wanted("table-2.1")) add_table(outcome);
+    for (LevelStudy const& study : figures.levels) add_levels(outcome, study);
+    add_points(outcome, figures.points);
+    for (FigureQuantity const& quantity : figure_quantities)
+        for (Handles const kind : handles)
+            if (wanted(quantity.figure)) add_quantity(outcome, figures.points, quantity, kind);
+    for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
+    Json chapter = Json::object();
+    for (auto const& [figure, rows] : chapter_figures())
+        for (auto const& [bodies, row] : rows) chapter[figure].push_back({bodies, row[0], row[1], row[2], row[3], row[4], row[5]});
+    outcome.json["chapter"] = {{"hardware", chapter_hardware},
+                               {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
+                               {"milliseconds", chapter}};
+    outcome.json["valid"] = outcome.valid;
+    outcome.complaint = "a residual above its bound: see the results";
+    on_first_rank(communicator, [&] {
+        write_text_file(folder + "/figures.json", json_text(outcome.json));
+        outcome.text += "wrote " + folder + "/figures.json";
+        for (auto const& [name, svg] : draw_figures(figures, request.figures)) {
+            write_text_file(fmt::format("{}/{}", folder, name), svg);
+            outcome.text += ", " + name;
+        }
+        outcome.text += fmt::format("\n{}\n", verdict(outcome.valid));
+    });
+    return outcome;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,38 @@
+// Which Leaf a group's bodies are: calls use(Of<Leaf>{}) and returns what it returns.
+#pragma once
+
+#include "dca/leaves.hpp"
+
+namespace catena::dca {
+
+template <class T>
+struct Of {
+    using type = T;
+};
+
+/// Beads, and bodies in absolute coordinates: on links or on spherical joints.
+template <class Use>
+auto with_absolute_leaf(ChainGroup const& group, Use const& use) {
+    if (group.beads) return group.directions == 1 ? use(Of<BeadLeaf<1>>{}) : use(Of<BeadLeaf<3>>{});
+    if (group.linked) return group.directions == 1 ? use(Of<BodyLeaf<1, LinkFrames<1>>>{}) : use(Of<BodyLeaf<3, LinkFrames<3>>>{});
+    return group.directions == 3 ? use(Of<BodyLeaf<3, GroundFrames<3>>>{}) : use(Of<BodyLeaf<6, GroundFrames<6>>>{});
+}
+
+/// Bodies in joint coordinates.
+template <class Use>
+auto with_joint_leaf(ChainGroup const& group, Use const& use) {
+    switch (group.directions) {
+        case 2:
+            return use(Of<BodyLeaf<2, MeetingFrames<2, false>>>{});
+        case 3:
+            return use(Of<BodyLeaf<3, MeetingFrames<3, false>>>{});
+        case 4:
+            return use(Of<BodyLeaf<4, MeetingFrames<4, false>>>{});
+        case 5:
+            return group.has_screws ? use(Of<BodyLeaf<5, MeetingFrames<5, true>>>{}) : use(Of<BodyLeaf<5, MeetingFrames<5, false>>>{});
+        default:
+            return group.has_screws ? use(Of<BodyLeaf<6, MeetingFrames<6, true>>>{}) : use(Of<BodyLeaf<6, MeetingFrames<6, false>>>{});
+    }
+}
+
+}  // namespace catena::dca

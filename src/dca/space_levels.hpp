@@ -1,0 +1,247 @@
+// A part of the tree's levels in any Space, level by level as the chapter has it: one loop (on a GPU: one kernel) a level.
+#pragma once
+
+#include <algorithm>
+
+#include "dca/host_space.hpp"
+#include "dca/level_solver.hpp"
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::dca {
+
+namespace loops {
+
+template <class Sweep>
+struct Climb {
+    Sweep sweep;
+    CATENA_HD void operator()(Run const& run) const { climb_run(sweep, run); }
+    CATENA_HD void operator()(Merge const& m) const { climb_merge(sweep, m); }
+    CATENA_HD void operator()(Root const& root) const { sweep.close(root); }
+};
+template <class Sweep>
+struct Descend {
+    Sweep sweep;
+    CATENA_HD void operator()(Run const& run) const { descend_run(sweep, run); }
+    CATENA_HD void operator()(Merge const& m) const { descend_merge(sweep, m, sweep.node(m.joint)); }
+};
+template <class T, Order order>
+struct Pack {
+    RecordsView<T, order> items;
+    std::int64_t const* places;
+    T* packed;
+    CATENA_HD void operator()(std::int64_t i) const { packed[i] = items.load(places[i]); }
+};
+template <class T, Order order>
+struct Unpack {
+    T const* packed;
+    std::int64_t const* places;
+    RecordsView<T, order> items;
+    CATENA_HD void operator()(std::int64_t i) const { items.store(places[i], packed[i]); }
+};
+
+}  // namespace loops
+
+/// How views and numbers of the host come to the host's own space: they are there.
+class HostCrossing {
+  public:
+    explicit HostCrossing(ChainGroup const&, HostSpace const&) {}
+    ConfigurationView take(ConfigurationView const& host) const { return host; }
+    LoadsView take(LoadsView const& host) const { return host; }
+    AccelerationsView wanted(AccelerationsView const& host) const { return host; }
+    void fetch(AccelerationsView const&) const {}
+    void download(std::vector<double> const& from, std::vector<double>& to) const { std::copy_n(from.begin(), to.size(), to.begin()); }
+    void upload(std::vector<double> const& from, std::vector<double>& to) const { std::copy(from.begin(), from.end(), to.begin()); }
+};
+
+/// `Crossing`: as HostCrossing, of the space.
+template <class Leaf, class Space, class Crossing>
+class SpaceLevels final : public LevelPart {
+    static constexpr int K = Leaf::K;
+    using Sweeps = TreeSweeps<Leaf>;
+    template <class T>
+    using List = typename Space::template List<T>;
+    template <class T>
+    using Array = typename Space::template Array<T>;
+    template <class T, Order order>
+    using Records = typename Space::template Records<T, order>;
+
+  public:
+    SpaceLevels(ChainGroup const& group, LevelWork const& work, Space const& space)
+        : schedule_(group.schedule),
+          work_(work),
+          space_(space),
+          crossing_(group, space),
+          model_(group),
+          leaves_up_(work.leaves_up ? schedule_.runs : none_.runs),
+          leaves_down_(work.leaves_down ? schedule_.runs : none_.runs),
+          up_(lists(schedule_.levels, work.first_up, work.end_up)),
+          down_(lists(schedule_.levels, work.first_down, work.end_down)),
+          top_(lists(schedule_.top_levels, 0, work.top ? schedule_.top_levels.size() : 0)),
+          roots_(work.top ? schedule_.roots : none_.roots),
+          top_roots_(work.top ? schedule_.top_roots : none_.roots),
+          top_copies_(work.top ? schedule_.top_copies : none_.top_copies),
+          matrices_(schedule_.slots),
+          biases_(schedule_.slots),
+          joints_(schedule_.joints),
+          offsets_(schedule_.joints),
+          forces_(schedule_.joints),
+          lost_(1),
+          sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
+                  joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
+        space_.put(lost_.data(), Lost{}.joint);
+    }
+
+    void set(ConfigurationView const& host) override {
+        if (work_.leaves()) sweeps_.leaf.set(crossing_.take(host));
+        space_.wait();
+    }
+    void set(LoadsView const& loads, AccelerationsView const& out) override {
+        if (work_.leaves()) loads_ = crossing_.take(loads);
+        host_out_ = out;
+        out_ = crossing_.wanted(out);
+        space_.wait();
+    }
+    void assemble_matrices() override {
+        space_.over(leaves_up_, loops::Climb<MatrixSweep<Leaf>>{{sweeps_}});
+        climb(up_, loops::Climb<MatrixSweep<Leaf>>{{sweeps_}});
+        space_.wait();
+    }
+    void close_matrices() override {
+        loops::Climb<MatrixSweep<Leaf>> const loop{{sweeps_}};
+        climb(top_, loop);
+        space_.over(roots_, loop);
+        space_.over(top_roots_, loop);
+        space_.wait();
+    }
+    void assemble_biases() override {
+        space_.over(leaves_up_, loops::Climb<BiasSweep<Leaf>>{biases()});
+        climb(up_, loops::Climb<BiasSweep<Leaf>>{biases()});
+        space_.wait();
+    }
+    void close_biases() override {
+        loops::Climb<BiasSweep<Leaf>> const loop{biases()};
+        climb(top_, loop);
+        space_.over(roots_, loop);
+        space_.over(top_roots_, loop);
+        descend(top_);
+        space_.over(top_copies_, CopyForces<Leaf>{sweeps_});
+        space_.wait();
+    }
+    void disassemble() override {
+        descend(down_);
+        space_.over(leaves_down_, loops::Descend<BiasSweep<Leaf>>{biases()});
+        space_.wait();
+    }
+    void fetch() override {
+        if (work_.leaves_down) crossing_.fetch(host_out_);
+        // Of the joint after this rank's last body: the top alone knows it.
+        if (work_.top && out_.joint_force) host_out_.joint_force.template store<K>(schedule_.bodies, sweeps_.forces.load(schedule_.halo));
+    }
+    std::int64_t first_indefinite() override {
+        unsigned long long const lost = space_.get(lost_.data());
+        if (lost == Lost{}.joint) return schedule_.joints;
+        space_.put(lost_.data(), Lost{}.joint);
+        return static_cast<std::int64_t>(lost);
+    }
+
+    int choose(std::vector<std::int64_t> const& places) override {
+        places_.push_back(std::make_unique<Places>(places));
+        return static_cast<int>(std::ssize(places_)) - 1;
+    }
+    void get(Items items, int list, std::vector<double>& numbers) override {
+        with(items, [&](auto records) { get(records, *places_[static_cast<std::size_t>(list)], numbers); });
+    }
+    void put(Items items, int list, std::vector<double> const& numbers) override {
+        with(items, [&](auto records) { put(records, *places_[static_cast<std::size_t>(list)], numbers); });
+    }
+    std::int64_t memory_bytes() const override { return Sweeps::bytes(schedule_); }
+    int threads() const override { return space_.threads(); }
+
+  private:
+    struct Empty {
+        std::vector<Run> runs;
+        std::vector<Root> roots;
+        std::vector<TopCopy> top_copies;
+    };
+    struct Places {
+        explicit Places(std::vector<std::int64_t> const& places_in) : host(places_in), list(host) {}
+        std::vector<std::int64_t> host;
+        List<std::int64_t> list;
+    };
+
+    BiasSweep<Leaf> biases() const { return {sweeps_, loads_, out_}; }
+    static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels, std::size_t first, std::size_t end) {
+        std::vector<List<Merge>> all;
+        for (std::size_t l = first; l < end; ++l) all.emplace_back(levels[l]);
+        return all;
+    }
+    template <class Action>
+    void climb(std::vector<List<Merge>> const& levels, Action const& action) const {
+        for (List<Merge> const& level : levels) space_.over(level, action);
+    }
+    void descend(std::vector<List<Merge>> const& levels) const {
+        for (std::size_t l = levels.size(); l-- > 0;) space_.over(levels[l], loops::Descend<BiasSweep<Leaf>>{biases()});
+    }
+
+    template <class Use>
+    void with(Items items, Use const& use) {
+        switch (items) {
+            case Items::matrices:
+                return use(matrices_.view());
+            case Items::biases:
+                return use(biases_.view());
+            case Items::joints:
+                return use(joints_.view());
+            case Items::offsets:
+                return use(offsets_.view());
+            case Items::forces:
+                return use(forces_.view());
+        }
+    }
+    /// Memory for the numbers of `count` items on their way.
+    template <class T>
+    T* parcel(std::size_t count) {
+        static_assert(sizeof(T) % sizeof(double) == 0);
+        std::size_t const numbers = count * (sizeof(T) / sizeof(double));
+        if (parcel_.size() < numbers) parcel_ = Array<double>(numbers);
+        return reinterpret_cast<T*>(parcel_.data());
+    }
+    template <class T, Order order>
+    void get(RecordsView<T, order> items, Places const& places, std::vector<double>& numbers) {
+        numbers.resize(places.host.size() * (sizeof(T) / sizeof(double)));
+        if (numbers.empty()) return;
+        space_.for_each(std::ssize(places.host), loops::Pack<T, order>{items, places.list.data(), parcel<T>(places.host.size())});
+        crossing_.download(parcel_, numbers);
+    }
+    template <class T, Order order>
+    void put(RecordsView<T, order> items, Places const& places, std::vector<double> const& numbers) {
+        if (numbers.empty()) return;
+        T* const packed = parcel<T>(places.host.size());
+        crossing_.upload(numbers, parcel_);
+        space_.for_each(std::ssize(places.host), loops::Unpack<T, order>{packed, places.list.data(), items});
+        space_.wait();
+    }
+
+    Schedule const& schedule_;
+    LevelWork work_;
+    Space space_;
+    Crossing crossing_;
+    typename Space::Model model_;
+    Empty none_;
+    List<Run> leaves_up_, leaves_down_;
+    std::vector<List<Merge>> up_, down_, top_;
+    List<Root> roots_, top_roots_;
+    List<TopCopy> top_copies_;
+    Records<SegmentMatrix<double, K>, Order::plain> matrices_;
+    Records<SegmentBias<double, K>, Order::plain> biases_;
+    Records<JointMatrix<double, K>, Order::by_body> joints_;
+    Records<Vector<double, K>, Order::by_body> offsets_, forces_;
+    Array<unsigned long long> lost_;
+    Array<double> parcel_;
+    std::vector<std::unique_ptr<Places>> places_;
+    Sweeps sweeps_;
+    LoadsView loads_;
+    AccelerationsView out_, host_out_;
+};
+
+}  // namespace catena::dca
