@@ -38,8 +38,18 @@ class DeviceModel {
           screw_(group.screw) {}
 
     GroupView view() const {
-        return {size_,      is_first_.data(), is_last_.data(), jointed_tip_.data(), tip_screw_.data(), inverse_mass_.view(), inverse_inertia_.view(),
-                r1_.view(), r2_.view(),      axes1_.view(),       axes2_.view(),     screw_.view()};
+        return {size_,
+                is_first_.data(),
+                is_last_.data(),
+                jointed_tip_.data(),
+                tip_screw_.data(),
+                inverse_mass_.view(),
+                inverse_inertia_.view(),
+                r1_.view(),
+                r2_.view(),
+                axes1_.view(),
+                axes2_.view(),
+                screw_.view()};
     }
     std::uint8_t const* restricted() const { return restricted_.data(); }
 

@@ -69,6 +69,16 @@ need_python() {
     cp "$file" "$stamp"
 }
 
+# The headers and library of OpenMM's CUDA platform beside build/venv's OpenMM, for path `device`; the CUDA libraries that it would bring
+# are the machine's own. Status 1 where PyPI cannot give them.
+need_openmm_cuda() {
+    local version
+    version=$("$python" -m pip show openmm 2>/dev/null | sed -n 's/^Version: //p')
+    [ -n "$version" ] || return 1
+    "$python" -m pip show openmm-cuda-13 2>/dev/null | grep -qx "Version: $version" && return 0
+    step openmm-cuda "$python" -m pip install -q --no-input --disable-pip-version-check --retries 2 --no-deps "openmm-cuda-13==$version"
+}
+
 # OpenMM, MDAnalysis, h5py and matplotlib from PyPI; where that cannot be reached, what Debian has of them.
 need_science() {
     need_python "$root/jobs/requirements.txt" && return 0

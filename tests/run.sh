@@ -104,6 +104,7 @@ need_packages test-packages "${build_packages[@]}" libhdf5-dev libgtest-dev ccac
 need_science
 tools=yes
 need_python "$root/tests/requirements.txt" || tools=no
+need_openmm_cuda || echo "   LEFT OUT: OpenMM on the GPU is not compiled (PyPI cannot be reached)"
 mpi_environment
 
 say "format"

@@ -240,7 +240,6 @@ void fill_restricted(ChainGroup& group, Scene const& scene) {
     for (std::size_t i = 0; i < s.top_chain_of_joint.size(); ++i)
         group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] =
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);
-    for (dca::TopCopy const& copy : s.top_copies) group.restricted_of_joint[copy.to] = 0;
 }
 
 void find_neighbours(ChainGroup& group, int rank) {

@@ -10,8 +10,8 @@ namespace catena {
 struct GroupView {
     std::int64_t size = 0;
     std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // of its chain
-    std::int32_t const* jointed_tip = nullptr;  // as ChainGroup::jointed_tip; null where no chain has one
-    Vec3 const* tip_screw = nullptr;            // of each jointed tip, as ChainGroup::screw
+    std::int32_t const* jointed_tip = nullptr;                   // as ChainGroup::jointed_tip; null where no chain has one
+    Vec3 const* tip_screw = nullptr;                             // of each jointed tip, as ChainGroup::screw
     ConstView<1> inverse_mass;
     ConstView<6> inverse_inertia;
     ConstView<3> r1, r2;

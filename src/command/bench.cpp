@@ -18,7 +18,8 @@ namespace {
 Outcome list() {
     Outcome outcome;
     outcome.text =
-        "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor (--backend "
+        "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor "
+        "(--backend "
         "cuda: the GPU's)\n"
         "evaluation  the solver alone, with everything it reads and writes in place: many evaluations of random chains in absolute\n"
         "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n"
@@ -29,8 +30,6 @@ Outcome list() {
     outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures"}}};
     return outcome;
 }
-
-std::vector<std::int64_t> const usual_sizes{1000, 10000, 100000};
 
 /// The oracle's memory is many times the solver's.
 constexpr std::int64_t most_bodies_of_oracle = 1000000;
@@ -101,7 +100,7 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                     {"ranks", communicator.size()},
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
-        for (std::int64_t const bodies : request.sizes.empty() ? usual_sizes : request.sizes) {
+        for (std::int64_t const bodies : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request));
             bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
             Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
@@ -166,7 +165,7 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                     {"ranks", communicator.size()},
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
-        for (std::int64_t const bodies : request.sizes.empty() ? usual_sizes : request.sizes) {
+        for (std::int64_t const bodies : request.sizes) {
             if (joint != "link" && joint != "spherical")
                 throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
             Scene scene = random_scene(joint, bodies, overrides_of(request));
@@ -184,21 +183,20 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                            fmt::format("{:.4g}", 1e6 * found.seconds.median), fmt::format("{:.3g}", 1e9 * found.seconds.median / n),
                            fmt::format("{:.0f}", rate), gpu ? fmt::format("{:.2f}", floor) : "-", fmt::format("{:.1e}", found.residual),
                            fmt::format("{:.1e}", found.bound), valid ? "VALID" : "INVALID"});
-                outcome.json["results"].push_back({{"joint", joint},
-                                                   {"bodies", bodies},
-                                                   {"backend", name_of(backend)},
-                                                   {"threads", found.threads},
-                                                   {"chained", chained_for(bodies)},
-                                                   {"repeat", found.seconds.count},
-                                                   {"microseconds",
-                                                    {{"median", 1e6 * found.seconds.median},
-                                                     {"min", 1e6 * found.seconds.min},
-                                                     {"max", 1e6 * found.seconds.max}}},
-                                                   {"gigabytes_per_second", rate},
-                                                   {"floor_over_time", gpu ? Json(floor) : Json(nullptr)},
-                                                   {"residual", found.residual},
-                                                   {"residual_bound", found.bound},
-                                                   {"valid", valid}});
+                outcome.json["results"].push_back(
+                    {{"joint", joint},
+                     {"bodies", bodies},
+                     {"backend", name_of(backend)},
+                     {"threads", found.threads},
+                     {"chained", chained_for(bodies)},
+                     {"repeat", found.seconds.count},
+                     {"microseconds",
+                      {{"median", 1e6 * found.seconds.median}, {"min", 1e6 * found.seconds.min}, {"max", 1e6 * found.seconds.max}}},
+                     {"gigabytes_per_second", rate},
+                     {"floor_over_time", gpu ? Json(floor) : Json(nullptr)},
+                     {"residual", found.residual},
+                     {"residual_bound", found.bound},
+                     {"valid", valid}});
             }
         }
     outcome.json["valid"] = outcome.valid;

@@ -124,10 +124,10 @@ void add_commands(CLI::App& app, Words& words) {
         ->type_name("J,...");
     add_repeat(*command, words, "21");
     command
-        ->add_option(
-            "--backend", words.backends,
-            "serial, segments, openmp, cuda, cuda-levels (default: those of the processor in this build; openmm and overlap take one, cuda where "
-            "there is a GPU)")
+        ->add_option("--backend", words.backends,
+                     "serial, segments, openmp, cuda, cuda-levels (default: those of the processor in this build; openmm and overlap take "
+                     "one, cuda where "
+                     "there is a GPU)")
         ->type_name("B,...");
     command->add_option("--figure", words.figures, "of figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
         ->type_name("F,...");
@@ -230,7 +230,10 @@ BenchRequest bench_request(Words const& words) {
     if (std::find(later_benches.begin(), later_benches.end(), words.name) != later_benches.end())
         throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
+    if (request.name == "solve" || request.name == "evaluation") request.sizes = {1000, 10000, 100000};
+    if (request.name == "figures") request.sizes = {2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048};
     if (!words.sizes.empty()) {
+        request.sizes.clear();
         for (std::string const& size : comma_list("--sizes", words.sizes))
             request.sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
     }

@@ -197,9 +197,7 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
     if (cases.back().backend == Backend::cuda) left_out.emplace_back("cuda in figure 2.7: its transfers are not timed by themselves");
 
     Figures figures;
-    std::vector<std::int64_t> const sizes =
-        request.sizes.empty() ? std::vector<std::int64_t>{2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048} : request.sizes;
-    std::int64_t const largest = *std::max_element(sizes.begin(), sizes.end());
+    std::int64_t const largest = *std::max_element(request.sizes.begin(), request.sizes.end());
     if (wanted("2.3") && communicator.size() == 1)
         for (Handles const kind : handles)
             figures.levels.push_back(measure_levels(kind, largest, threads > 0 ? threads : cores_of_rank(communicator), request.repeat));
@@ -207,7 +205,7 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
         left_out.emplace_back("figure 2.3: levels are timed on one rank");
     if (wanted("2.5") || wanted("2.6") || wanted("2.7"))
         for (Handles const kind : handles)
-            for (std::int64_t const bodies : sizes) {
+            for (std::int64_t const bodies : request.sizes) {
                 auto const points = measure_steps(cases, kind, bodies, threads, request.repeat, communicator);
                 figures.points.insert(figures.points.end(), points.begin(), points.end());
                 spdlog::info("{} bodies, {} handles: measured", bodies, name_of(kind));

@@ -61,8 +61,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         int const k = links ? directions.beads : directions.bodies;
         auto const n = static_cast<double>(chain.size());
         SolverSizes const size = sizes_for(k);
-        dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()),
-                                  dca::run_length_for(pairwise));
+        dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()), dca::run_length_for(pairwise));
         double const numbers =
             chain.is_beads() ? bead_numbers : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? joint_numbers : 0);
         m.scene += scene_bytes(chain);

@@ -79,7 +79,7 @@ struct Evaluation {
     CATENA_HD void down(Run const& run, int p, Directions const& first, Directions next) const {
         std::int64_t const k = begin_of(run, p), end = end_of(run, p);
         Body body[part_length] = {bodies.at(k)};
-        Elimination<double, K> passed[part_length];
+        Elimination<double, K> passed[part_length] = {};
         Segment segment = bodies.segment(body[0]);
         Symmetric<double, K> z22 = segment.matrix.z22;
         Directions b2 = segment.bias.b2 + transposed_times(segment.matrix.z12, first);

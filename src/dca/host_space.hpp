@@ -96,12 +96,14 @@ class HostSpace : public HostAccess {
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
         over(tree.runs_, [&](dca::Run const& run) { climb_run(sweep, run); });
-        for (std::vector<dca::Merge> const& level : tree.levels_) over(std::span(level), [&](dca::Merge const& m) { climb_merge(sweep, m); });
+        for (std::vector<dca::Merge> const& level : tree.levels_)
+            over(std::span(level), [&](dca::Merge const& m) { climb_merge(sweep, m); });
         over(tree.roots_, [&](dca::Root const& root) { sweep.close(root); });
     }
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
-        for (std::size_t l = tree.levels_.size(); l-- > 0;) over(std::span(tree.levels_[l]), [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
+        for (std::size_t l = tree.levels_.size(); l-- > 0;)
+            over(std::span(tree.levels_[l]), [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
         over(tree.runs_, [&](dca::Run const& run) { descend_run(sweep, run); });
     }
     /// Both.

@@ -146,6 +146,8 @@ class ChainSolver {
         assemble_matrices(configuration);
         solve(loads, out);
     }
+    /// Whether assemble_and_solve() is one sweep, which reads beads by their positions and velocities.
+    virtual bool at_once() const { return false; }
     /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
     /// Collective.
     virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,

@@ -18,8 +18,7 @@ int ChainTree::levels() const {
     return level;
 }
 
-Partition::Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks,
-                     std::vector<std::uint8_t> const& jointed_tips)
+Partition::Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks, std::vector<std::uint8_t> const& jointed_tips)
     : first_of_chain{0}, jointed_tip(jointed_tips) {
     jointed_tip.resize(lengths.size(), 0);
     for (std::int64_t const n : lengths) {

@@ -45,8 +45,7 @@ class Partition {
     Partition() = default;
     /// `lengths` of the chains; every rank gets a run of units of about equal numbers of bodies. Ranks may be left without any.
     /// `jointed_tips`: one a chain, whether its last body is on a joint to the ground; empty: none is.
-    Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks,
-              std::vector<std::uint8_t> const& jointed_tips = {});
+    Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks, std::vector<std::uint8_t> const& jointed_tips = {});
 
     std::vector<ChainTree> trees;              // one a chain
     std::vector<std::int64_t> first_of_chain;  // chains + 1

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <vector>
 
-#include "dca/host_space.hpp"
 #include "dca/evaluation.hpp"
+#include "dca/host_space.hpp"
 
 namespace catena::dca {
 
@@ -58,13 +58,12 @@ class TreeSolver final : public ChainSolver {
     }
 
     void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
-        bool const plain = group_.partition.trees.front().run_length == 1;  // the chapter's tree of pairs
-        if (!Leaf::at_once || plain) {
-            assemble_matrices(configuration);
-            return solve(loads, out);
-        }
-        if constexpr (Leaf::at_once) evaluate(configuration, loads, out);
+        if constexpr (Leaf::at_once)
+            if (at_once()) return evaluate(configuration, loads, out);
+        ChainSolver::assemble_and_solve(configuration, loads, out);
     }
+    /// The chapter's tree of pairs stays plain.
+    bool at_once() const override { return Leaf::at_once && group_.partition.trees.front().run_length > 1; }
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
         return space_.time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
@@ -135,7 +134,8 @@ class TreeSolver final : public ChainSolver {
             space_.over(top_copies_, CopyForces<Leaf>{sweeps_});
             space_.descend(tree_, sweep);
         }
-        if (out.joint_force && group_.neighbour_outboard >= 0) space_.for_each(1, ForceOfNextRank<Leaf>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
+        if (out.joint_force && group_.neighbour_outboard >= 0)
+            space_.for_each(1, ForceOfNextRank<Leaf>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
     }
 
     /// One collective: the units of chains that several ranks share, to all ranks.

@@ -26,12 +26,12 @@ struct TreeSweeps {
     using Directions = Vector<double, K>;
 
     Leaf leaf;
-    std::uint8_t const* restricted = nullptr;         // of every joint (ChainGroup::restricted_of_joint)
-    RecordsView<Matrices, Order::plain> matrices;     // by slot
+    std::uint8_t const* restricted = nullptr;      // of every joint (ChainGroup::restricted_of_joint)
+    RecordsView<Matrices, Order::plain> matrices;  // by slot
     RecordsView<Biases, Order::plain> biases;
-    RecordsView<Joint, Order::by_body> joints;        // by joint
+    RecordsView<Joint, Order::by_body> joints;  // by joint
     RecordsView<Directions, Order::by_body> offsets, forces;
-    unsigned long long* lost = nullptr;               // the smallest joint whose matrix was not positive definite
+    unsigned long long* lost = nullptr;  // the smallest joint whose matrix was not positive definite
 
     static std::int64_t bytes(Schedule const& schedule) {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +

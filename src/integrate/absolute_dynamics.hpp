@@ -99,7 +99,7 @@ class AbsoluteDynamics : public BeadHost {
     /// At the current positions. Collective.
     virtual PotentialEnergy potential() = 0;
 
-    virtual ChainSolver const& solver() const = 0;
+    virtual ChainSolver& solver() const = 0;
 };
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,

@@ -151,6 +151,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     }
 
     std::vector<StateArray> state() const override {
+        solver_->check();
         return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view())};
     }
     void set_state(std::vector<StateArray> const& arrays) override {
@@ -168,7 +169,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
                        {{}, change_.view(), joint_force_.view(), of_tips(tip_force_)});
     }
     void evaluate_at_once() override {
-        if (group_.has_tips()) return AbsoluteDynamics::evaluate_at_once();
+        if (group_.has_tips() || !solver_->at_once()) return AbsoluteDynamics::evaluate_at_once();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         exchange_from_outboard(communicator_, group_, observed_.view(), space_);
         solver_->assemble_and_solve(where(), what(), {{}, change_.view(), joint_force_.view(), {}});
@@ -194,7 +195,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         return e;
     }
     ChainGroup const& group() const override { return group_; }
-    ChainSolver const& solver() const override { return *solver_; }
+    ChainSolver& solver() const override { return *solver_; }
 
     /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations. Not private:
     /// nvcc takes lambdas for kernels from public members alone.

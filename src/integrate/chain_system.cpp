@@ -371,6 +371,15 @@ std::vector<JointDynamics*> ChainSystem::joint() const {
     return all;
 }
 
+void ChainSystem::wait() const {
+    for (auto const& group : absolute_) group->solver().wait();
+    for (auto const& group : joint_) group->solver().wait();
+}
+void ChainSystem::measure(bool on) const {
+    for (auto const& group : absolute_) group->solver().measure(on);
+    for (auto const& group : joint_) group->solver().measure(on);
+}
+
 std::vector<SolverReport> ChainSystem::solver_reports() const {
     std::vector<SolverReport> reports;
     auto const add = [&](ChainSolver const& solver) {

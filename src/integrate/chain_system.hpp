@@ -83,6 +83,9 @@ class ChainSystem {
     Communicator const& communicator() const { return communicator_; }
     Backend backend() const { return backend_; }
     std::vector<SolverReport> solver_reports() const;
+    /// ChainSolver::wait and measure, of every group.
+    void wait() const;
+    void measure(bool on) const;
     /// Seconds of the phases so far: "kinematics and loads", "matrix sweep", "bias sweep", "forces", "waiting for forces", "exchange".
     std::map<std::string, double> const& seconds() const { return seconds_; }
     /// Seconds of matrix sweep and of these the ones during which OpenMM computed.

@@ -58,7 +58,7 @@ class JointDynamics : public BeadHost {
     virtual void close_tips(int corrections = usual_corrections) = 0;
     /// Largest opening of a jointed tip over the chains' reach, over all ranks; NaN where the state is not finite. Collective.
     virtual double closure_error() = 0;
-    virtual ChainSolver const& solver() const = 0;
+    virtual ChainSolver& solver() const = 0;
 
   protected:
     double time_ = 0;

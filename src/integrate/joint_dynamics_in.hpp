@@ -70,6 +70,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
 
     JointState state() const override {
+        solver_->check();
         JointState s;
         s.q = space_.read(state_.q);
         s.qd = space_.read(state_.qd);
@@ -134,9 +135,11 @@ class JointDynamicsIn final : public JointDynamics {
         return m;
     }
     BodyResults results() override {
+        solver_->check();
         return with_solution([&](JointSolution const& s) { return s.results(communicator_); });
     }
     double residual() override {
+        solver_->check();
         return with_solution([&](JointSolution const& s) { return s.residual(communicator_); });
     }
     PotentialEnergy potential() override { return potential_of(group_, given_, space_.read(state_.q), motion()); }
@@ -147,6 +150,7 @@ class JointDynamicsIn final : public JointDynamics {
         correct(true);
     }
     double closure_error() override {
+        solver_->check();
         double worst = space_.largest(group_.size, [s = steps()] CATENA_LAMBDA(std::int64_t k) -> double { return s.trouble(k); });
         if (group_.has_tips()) {
             move();
@@ -168,7 +172,7 @@ class JointDynamicsIn final : public JointDynamics {
     void take_bead_forces() override {
         if (std::exchange(forces_are_out_, false)) space_.push(bead_force_, force_mirror_);
     }
-    ChainSolver const& solver() const override { return *solver_; }
+    ChainSolver& solver() const override { return *solver_; }
     ChainGroup const& group() const override { return group_; }
 
     // Not private: nvcc takes lambdas for kernels from public members alone.

@@ -159,9 +159,7 @@ void RigidDynamics::set_momenta_and_biases() {
 LoadsView RigidDynamics::loads() {
     return {momentum_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)};
 }
-AccelerationsView RigidDynamics::found() {
-    return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)};
-}
+AccelerationsView RigidDynamics::found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
 void RigidDynamics::evaluate() {
     set_momenta_and_biases();
     solver_->solve(loads(), found());

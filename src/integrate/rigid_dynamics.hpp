@@ -38,7 +38,7 @@ class RigidDynamics : public AbsoluteDynamics {
     double residual() override;
 
     ChainGroup const& group() const override { return group_; }
-    ChainSolver const& solver() const override { return *solver_; }
+    ChainSolver& solver() const override { return *solver_; }
 
   protected:
     RigidDynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);

@@ -81,26 +81,25 @@ class CutTree {
   public:
     CutTree(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator, int level,
             dca::LevelPartMaker const& lower, Executor const& upper)
-        : dynamics_(group, scene, executor, communicator,
-                    dca::make_level_solver(group, communicator, {level, level}, lower, dca::host_levels(upper))),
-          state_(make_joint_state(group, scene)),
-          rates_(dynamics_.make_rates()) {}
+        : dynamics_(make_joint_dynamics(group, scene, executor, communicator,
+                                        dca::make_level_solver(group, communicator, {level, level}, lower, dca::host_levels(upper)))) {}
 
     void evaluate(bool counts) {
-        SplitSeconds const before = dynamics_.solver().report().split;
-        dynamics_.evaluate(state_, rates_);
-        SplitSeconds spent = dynamics_.solver().report().split;
+        SplitSeconds const before = dynamics_->solver().report().split;
+        dynamics_->update_configuration();
+        dynamics_->assemble_matrices();
+        dynamics_->solve();
+        dynamics_->set_rates();
+        SplitSeconds spent = dynamics_->solver().report().split;
         spent -= before;
         if (counts) spent_.push_back(spent);
     }
     std::vector<SplitSeconds> const& spent() const { return spent_; }
-    double residual() { return dynamics_.residual(); }
-    std::int64_t depth() const { return dynamics_.solver().report().depth; }
+    double residual() { return dynamics_->residual(); }
+    std::int64_t depth() const { return dynamics_->solver().report().depth; }
 
   private:
-    JointDynamics dynamics_;
-    JointState state_;
-    JointRates rates_;
+    std::unique_ptr<JointDynamics> dynamics_;
     std::vector<SplitSeconds> spent_;
 };
 
@@ -171,7 +170,7 @@ std::vector<FigurePoint> measure_steps(std::vector<FigureCase> const& cases, Han
 }
 
 std::vector<std::int64_t> merges_of_levels(std::int64_t bodies) {
-    dca::Partition const partition({bodies}, 1, true, 1);
+    dca::Partition const partition({bodies}, true, 1);
     std::vector<std::int64_t> merges;
     for (auto const& level : dca::make_schedule(partition, 0).levels) merges.push_back(std::ssize(level));
     return merges;

@@ -34,6 +34,30 @@ Clocks read_clocks(ChainSystem const& system) {
     return c;
 }
 
+/// Clocks before and after each of many evaluations.
+struct Samples {
+    std::vector<Clocks> before, after;
+    template <class Quantity>
+    std::vector<double> of(Quantity const& quantity, Communicator const& communicator) const {
+        std::vector<double> values;
+        for (std::size_t i = 0; i < before.size(); ++i) values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
+        return values;
+    }
+    /// Of one evaluation; at least 1: where matrices and biases are found at once they are not counted apart.
+    int count(std::int64_t Clocks::* sweeps) const { return std::max(1, static_cast<int>(after.front().*sweeps - before.front().*sweeps)); }
+};
+Samples sample(ChainSystem& system, int repeat, bool project) {
+    Samples s;
+    for (int i = 0; i < repeat; ++i) {
+        system.communicator().barrier();
+        s.before.push_back(read_clocks(system));
+        system.evaluate(project);
+        system.wait();
+        s.after.push_back(read_clocks(system));
+    }
+    return s;
+}
+
 }  // namespace
 
 Spread spread_of(std::vector<double> values) {
@@ -50,29 +74,22 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
     for (int i = 0; i < warm_up; ++i) system.evaluate();
 
     repeat = std::max(repeat, 1);
-    std::vector<Clocks> before, after;
-    for (int i = 0; i < repeat; ++i) {
-        communicator.barrier();
-        before.push_back(read_clocks(system));
-        system.evaluate(false);
-        after.push_back(read_clocks(system));
-    }
-    auto const samples = [&](auto const& quantity) {
-        std::vector<double> values;
-        for (int i = 0; i < repeat; ++i) values.push_back(communicator.max(quantity(after[i]) - quantity(before[i])));
-        return values;
-    };
-    auto const median = [&](auto const& quantity) { return spread_of(samples(quantity)).median; };
+    // Whole evaluations first: to measure their sweeps one by one would hold a GPU up.
+    Samples const whole = sample(system, repeat, false);
+    system.measure(true);
+    Samples const apart = sample(system, repeat, true);
+    system.measure(false);
+    auto const median = [&](auto const& quantity) { return spread_of(apart.of(quantity, communicator)).median; };
 
     Timing t;
-    t.evaluation = spread_of(samples([](Clocks const& c) { return c.moment; }));
-    t.matrix_sweeps = static_cast<int>(after.front().matrix_sweeps - before.front().matrix_sweeps);
-    t.bias_sweeps = static_cast<int>(after.front().bias_sweeps - before.front().bias_sweeps);
-    t.matrix_sweep = spread_of(samples([&](Clocks const& c) { return c.matrix / std::max(t.matrix_sweeps, 1); }));
-    t.bias_sweep = spread_of(samples([&](Clocks const& c) { return c.bias / std::max(t.bias_sweeps, 1); }));
-    t.phases = {{"matrix sweep", median([](Clocks const& c) { return c.matrix; })},
-                {"bias sweep", median([](Clocks const& c) { return c.bias; })},
-                {"exchange of units", median([](Clocks const& c) { return c.exchange; })}};
+    t.evaluation = spread_of(whole.of([](Clocks const& c) { return c.moment; }, communicator));
+    int const matrix_sweeps = apart.count(&Clocks::matrix_sweeps), bias_sweeps = apart.count(&Clocks::bias_sweeps);
+    t.matrix_sweep = spread_of(apart.of([&](Clocks const& c) { return c.matrix / matrix_sweeps; }, communicator));
+    t.bias_sweep = spread_of(apart.of([&](Clocks const& c) { return c.bias / bias_sweeps; }, communicator));
+    t.matrix_sweeps = whole.count(&Clocks::matrix_sweeps);
+    t.bias_sweeps = whole.count(&Clocks::bias_sweeps);
+    double const matrix = t.matrix_sweep.median * t.matrix_sweeps, bias = t.bias_sweep.median * t.bias_sweeps;
+    t.phases = {{"matrix sweep", matrix}, {"bias sweep", bias}, {"exchange of units", median([](Clocks const& c) { return c.exchange; })}};
     if (system.backend() == Backend::cuda_levels)  // parts of the sweeps
         for (auto const& [name, part] : {std::pair{"levels on the GPU", &SplitSeconds::lower},
                                          {"levels on the host", &SplitSeconds::upper},
@@ -82,7 +99,8 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
         t.phases.emplace_back("forces", median([](Clocks const& c) { return c.forces; }));
         t.phases.emplace_back("waiting for forces", median([](Clocks const& c) { return c.waiting; }));
     }
-    t.phases.emplace_back("other", median([](Clocks const& c) { return c.moment - c.matrix - c.bias - c.waiting; }));
+    double const waiting = median([](Clocks const& c) { return c.waiting; });
+    t.phases.emplace_back("other", std::max(0.0, t.evaluation.median - matrix - bias - waiting));
     return t;
 }
 

@@ -95,7 +95,7 @@ TEST_F(Levels, NumbersOfLevels) {
 
 /// What crosses between 8 bodies' lowest two levels and the third: two segments up, the forces at the segments' ends down.
 TEST_F(Levels, OnlyTheCutCrosses) {
-    dca::Partition const partition({8}, 5, true, 1);
+    dca::Partition const partition({8}, true, 1);
     dca::Schedule const s = dca::make_schedule(partition, 0);
     dca::LevelCut const even = dca::cut_levels(s, {2, 2});
     EXPECT_EQ(even.segments.size(), 2U);

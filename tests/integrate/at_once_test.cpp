@@ -1,0 +1,86 @@
+// Matrices and biases in one sweep: as good a solution as by one sweep after the other, and the same one.
+#include <gtest/gtest.h>
+
+#include "integrate/chain_system.hpp"
+#include "tests/mpi/world.hpp"
+#include "tests/support/same_bits.hpp"
+
+namespace catena::test {
+namespace {
+
+struct Case {
+    char const* name;
+    char const* chains;
+};
+Case const cases[] = {
+    {"free_beads", "{velocities: thermal, generator: {freely_jointed: {beads: 333, length: 0.38}}}"},
+    {"short_runs", "{velocities: thermal, generator: {freely_jointed: {beads: 17, length: 0.38}}}"},
+    {"one_bead", "{velocities: thermal, generator: {freely_jointed: {beads: 1, length: 0.38}}}"},
+    {"hanging_beads", "{base: fixed, velocities: thermal, generator: {random: {bodies: 200, joint: link, seed: 2}}}"},
+    {"held_beads",
+     "{base: fixed, velocities: thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, generator: {freely_jointed: {beads: 70, length: "
+     "0.38}}}"},
+    {"many_beads",
+     "{count: 5, velocities: thermal, generator: {freely_jointed: {beads: 23, length: 0.38}}}, {velocities: thermal, generator: "
+     "{freely_jointed: {beads: 129, length: 0.38}}}"},
+    {"free_bodies", "{base: free, velocities: thermal, generator: {random: {bodies: 301, joint: spherical, seed: 1}}}"},
+    {"hanging_bodies", "{base: fixed, velocities: thermal, generator: {random: {bodies: 50, joint: spherical, seed: 4}}}"},
+    {"held_bodies",
+     "{base: free, velocities: thermal, tip: {joint: {type: spherical}}, generator: {random: {bodies: 40, joint: spherical, seed: 3}}}"},
+    {"bodies_on_links", "{velocities: thermal, generator: {random: {bodies: 60, joint: link, rigid: 0.5, seed: 8}}}"},
+};
+
+class AtOnce : public ::testing::TestWithParam<Case> {
+  protected:
+    static Scene scene(Backend backend) {
+        Scene s =
+            parse_scene(std::string("chains: [") + GetParam().chains +
+                            "]\nforces: {gravity: [1, 2, -9.81]}\ndynamics: {integrator: rattle, step: 0.002, temperature: 300, seed: 5}",
+                        "scene.yaml");
+        s.solver.backend = backend;
+        return s;
+    }
+};
+
+void move(ChainSystem& system) {
+    system.evaluate();
+    for (AbsoluteDynamics* const group : system.absolute())
+        group->draw_velocities(2.5, 7, std::vector<bool>(system.scene().chains.size(), true));
+}
+
+double largest(std::vector<Vec3> const& a) {
+    double most = 0;
+    for (Vec3 const& v : a) most = std::max(most, norm(v));
+    return most;
+}
+
+/// Ranks may not matter to a bit; how the sweeps are put together matters in the last ones, which a chain of n bodies lets grow like n.
+TEST_P(AtOnce, IsTheSolution) {
+    for (Backend const backend : {Backend::serial, Backend::segments}) {
+        Scene const s = scene(backend);
+        ChainSystem system(s, Axes::world, testing::world());
+        move(system);
+        system.evaluate();
+        ChainSystem::Accelerations const apart = system.accelerations();
+        system.evaluate(false);
+        EXPECT_LE(system.residual(), system.residual_bound());
+        ChainSystem::Accelerations const at_once = system.accelerations();
+        double const tolerance = 64 * static_cast<double>(s.bodies()) * 0x1p-53;
+        ASSERT_EQ(apart.acceleration.size(), at_once.acceleration.size());
+        for (std::size_t k = 0; k < apart.acceleration.size(); ++k)
+            EXPECT_LE(norm(apart.acceleration[k] - at_once.acceleration[k]), tolerance * largest(apart.acceleration)) << "body " << k;
+        if (testing::world().rank() > 0) continue;
+        auto const one_rank = serial_communicator();
+        ChainSystem alone(s, Axes::world, *one_rank);
+        move(alone);
+        alone.evaluate();
+        alone.evaluate(false);
+        EXPECT_TRUE(same_bits(alone.accelerations().acceleration, at_once.acceleration));
+        EXPECT_TRUE(same_bits(alone.accelerations().joint_force, at_once.joint_force));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Chains, AtOnce, ::testing::ValuesIn(cases), [](auto const& each) { return each.param.name; });
+
+}  // namespace
+}  // namespace catena::test
