@@ -155,8 +155,29 @@ AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communica
     return found;
 }
 
+/// Those that find matrices and biases in one sweep.
+std::vector<Backend> backends_at_once(Communicator const& communicator, BenchRequest const& request) {
+    for (std::string const& joint : request.joints)
+        if (joint != "link" && joint != "spherical")
+            throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
+    if (request.handles == "full") throw InputError("full handles need a sweep after the other", "--handles", "use projected ones");
+    std::vector<Backend> chosen = request.backends;
+    if (chosen.empty()) {
+        chosen = cpu_backends();
+        std::erase(chosen, Backend::serial);
+    }
+    for (Backend const backend : chosen) {
+        if (backend == Backend::serial || backend == Backend::cuda_levels)
+            throw InputError(std::string(name_of(backend)) + " takes one sweep after the other", "--backend",
+                             "use segments, openmp or cuda");
+        if (backend == Backend::cuda && communicator.size() > 1)
+            throw InputError("a graph of evaluations cannot ask other ranks", "--backend cuda", "run it on one rank");
+    }
+    return chosen;
+}
+
 Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
-    std::vector<Backend> const backends = request.backends.empty() ? cpu_backends() : request.backends;
+    std::vector<Backend> const backends = backends_at_once(communicator, request);
     Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
     Outcome outcome;
     outcome.json = {{"bench", "evaluation"},
@@ -166,8 +187,6 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                     {"results", Json::array()}};
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
-            if (joint != "link" && joint != "spherical")
-                throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
             Scene scene = random_scene(joint, bodies, overrides_of(request));
             for (Backend const backend : backends) {
                 AtOnce const found = time_at_once(scene, backend, communicator, request.repeat);

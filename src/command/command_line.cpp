@@ -115,12 +115,13 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
     command
         ->add_option("--sizes", words.sizes,
-                     "bodies (default of solve 1e3,1e4,1e5, its oracle left out above 1e6; openmm: 140,9940,99960,1000020, "
+                     "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out above 1e6; openmm: 140,9940,99960,1000020, "
                      "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to 2048)")
         ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,
-                     "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute)")
+                     "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute; "
+                     "evaluation takes the first two)")
         ->type_name("J,...");
     add_repeat(*command, words, "21");
     command
@@ -231,6 +232,7 @@ BenchRequest bench_request(Words const& words) {
         throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
     if (request.name == "solve" || request.name == "evaluation") request.sizes = {1000, 10000, 100000};
+    if (request.name == "evaluation") request.joints = {"link", "spherical"};
     if (request.name == "figures") request.sizes = {2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048};
     if (!words.sizes.empty()) {
         request.sizes.clear();

@@ -191,7 +191,7 @@ void ChainSystem::make_openmm() {
     ChainsOnDevice chains{no_gpu_asked_for, -1};
     if (backend_ == Backend::cuda) {
         bool const beads = std::all_of(bead_groups_.begin(), bead_groups_.end(), [](ChainGroup const* group) { return group->beads; });
-        chains = {beads ? "" : "some beads are carried by rigid bodies, whose state is the host's", cuda::chosen_device()};
+        chains = {beads ? "" : "some beads are carried by rigid bodies", cuda::chosen_device()};
     }
     openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_, chains);
     make_current();
@@ -226,7 +226,10 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     double const begun = seconds_now();
     for (auto const& group : absolute_) group->assemble_matrices();
     for (auto const& group : joint_) group->assemble_matrices();
-    if (on_device()) openmm_->device_path()->mark(device_beads_);
+    if (on_device())
+        openmm_->device_path()->mark(device_beads_);
+    else if (openmm_ || timeline)
+        wait();  // so that the clock sees the sweep; the forces are waited for anyway
     double const assembled = seconds_now();
     for (auto const& group : absolute_) group->set_simple_forces();
     double const simple = seconds_now();
@@ -259,6 +262,7 @@ void ChainSystem::solve_joint_groups() {
     if (openmm_) begin_openmm(false);
     double const begun = seconds_now();
     for (auto const& group : joint_) group->assemble_matrices();
+    if (openmm_) wait();
     double const assembled = seconds_now();
     if (openmm_) finish_openmm();
     for (auto const& group : joint_) group->take_bead_forces();

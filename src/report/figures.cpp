@@ -26,15 +26,15 @@ class Prepared {
         start_ = system_.state();
     }
 
+    /// Once by the clock, and once more with its sweeps measured one by one.
     void step(bool counts) {
         Communicator const& communicator = system_.communicator();
-        system_.set_state(start_);
-        communicator.barrier();
+        double const seconds = seconds_of_step();
+        system_.measure(true);
         SolverReport const before = system_.solver_reports().front();
-        double const begin = seconds_now();
-        stepper_->step(0, nullptr);
-        double const seconds = seconds_now() - begin;
+        seconds_of_step();
         SolverReport const after = system_.solver_reports().front();
+        system_.measure(false);
         if (!counts) return;
         auto const solves = static_cast<double>(after.bias_sweeps - before.bias_sweeps);
         auto const add = [&](std::vector<double>& list, double value) { list.push_back(communicator.max(value)); };
@@ -59,6 +59,15 @@ class Prepared {
     }
 
   private:
+    double seconds_of_step() {
+        system_.set_state(start_);
+        system_.wait();
+        system_.communicator().barrier();
+        double const begin = seconds_now();
+        stepper_->step(0, nullptr);
+        system_.wait();
+        return seconds_now() - begin;
+    }
     static Scene scene_of(FigureCase const& what, Handles handles, std::int64_t bodies, int threads) {
         Scene scene = chapter_pendulum(bodies, {});
         scene.solver.backend = what.backend;
