@@ -96,18 +96,20 @@ TEST(Linked, random_mixture) {
 class Domains : public testing::Test {
   protected:
     Domains() {
-        std::ofstream table("domains_test.csv");
+        std::ofstream table(file());
         for (int k = 0; k < 12; ++k) table << fmt::format("{},{},{}\n", 0.35 * k, 0.3 * std::sin(2.0 * k), 0.3 * std::cos(2.0 * k));
     }
-    ~Domains() override { std::filesystem::remove("domains_test.csv"); }
+    ~Domains() override { std::filesystem::remove(file()); }
+    /// Of this test alone: others may run at the same time.
+    static std::string file() { return std::string("domains_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv"; }
     static std::string yaml(std::string const& rigid, std::string const& more = "") {
-        return "chains: [{sequence: GASTGGASTGGA, model: calvados2, positions: domains_test.csv, rigid: " + rigid + more + "}]";
+        return "chains: [{sequence: GASTGGASTGGA, model: calvados2, positions: " + file() + ", rigid: " + rigid + more + "}]";
     }
 };
 
 TEST_F(Domains, become_bodies_that_carry_their_beads) {
     BeadArrays const beads =
-        chain_of("chains: [{sequence: GASTGGASTGGA, model: calvados2, links: as_given, positions: domains_test.csv}]").beads;
+        chain_of("chains: [{sequence: GASTGGASTGGA, model: calvados2, links: as_given, positions: " + file() + "}]").beads;
     ChainSpec const chain = chain_of(yaml("[[8, 11], [2, 5]]", ", links: as_given"));
     LinkedArrays const& l = chain.linked;
     ASSERT_EQ(l.size(), 6u);  // 1, 2-5, 6, 7, 8-11, 12
