@@ -88,17 +88,31 @@ Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
             {"valid", m.valid()}};
 }
 
+Outcome begun(std::string const& name, Communicator const& communicator) {
+    Outcome outcome;
+    outcome.json = {{"bench", name},
+                    {"build", version_json()},
+                    {"hardware", hardware_json()},
+                    {"ranks", communicator.size()},
+                    {"results", Json::array()}};
+    return outcome;
+}
+/// `what`: the table's figures.
+Outcome ended(Outcome outcome, std::string const& what, Table const& table, Communicator const& communicator) {
+    outcome.json["valid"] = outcome.valid;
+    outcome.text = fmt::format("{}. {}, {}; {}, {}\n", what, counted(communicator.size(), "rank", "ranks"), hardware_text(),
+                               compiler_name(), instruction_set());
+    outcome.text += table.text();
+    outcome.complaint = "a residual above its bound: see the results";
+    return outcome;
+}
+
 Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = request.backends.empty() ? cpu_backends() : request.backends;
     Table table(
         {"joint", "bodies", "backend", "threads", "matrix sweep", "bias sweep", "evaluation", "ABA oracle", "residual", "bound", ""},
         {0, 2, 10});
-    Outcome outcome;
-    outcome.json = {{"bench", "solve"},
-                    {"build", version_json()},
-                    {"hardware", hardware_json()},
-                    {"ranks", communicator.size()},
-                    {"results", Json::array()}};
+    Outcome outcome = begun("solve", communicator);
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request));
@@ -114,14 +128,8 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                 outcome.json["results"].push_back(json_of(m, scene, oracle));
             }
         }
-    outcome.json["valid"] = outcome.valid;
-    outcome.text = fmt::format(
-        "ns a body, median of {}; a whole evaluation holds kinematics and loads too. {}, {}; {}, "
-        "{}\n",
-        request.repeat, counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set());
-    outcome.text += table.text();
-    outcome.complaint = "a residual above its bound: see the results";
-    return outcome;
+    std::string const what = fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too", request.repeat);
+    return ended(std::move(outcome), what, table, communicator);
 }
 
 /// Bytes a body that an evaluation must read and must write, whatever the algorithm: links: mass, position, velocity, force; acceleration.
@@ -179,12 +187,7 @@ std::vector<Backend> backends_at_once(Communicator const& communicator, BenchReq
 Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = backends_at_once(communicator, request);
     Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
-    Outcome outcome;
-    outcome.json = {{"bench", "evaluation"},
-                    {"build", version_json()},
-                    {"hardware", hardware_json()},
-                    {"ranks", communicator.size()},
-                    {"results", Json::array()}};
+    Outcome outcome = begun("evaluation", communicator);
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request));
@@ -218,14 +221,11 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                      {"valid", valid}});
             }
         }
-    outcome.json["valid"] = outcome.valid;
-    outcome.text = fmt::format(
+    std::string const what = fmt::format(
         "an evaluation, inputs and outputs in place, median of {}; GB/s counts what must be read and written once; floor: two sweeps over "
-        "what is read at 4.2 TB/s. {}, {}; {}, {}\n",
-        request.repeat, counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set());
-    outcome.text += table.text();
-    outcome.complaint = "a residual above its bound: see the results";
-    return outcome;
+        "what is read at 4.2 TB/s",
+        request.repeat);
+    return ended(std::move(outcome), what, table, communicator);
 }
 
 }  // namespace
