@@ -60,20 +60,15 @@ class CudaDevicePath final : public DevicePath {
   public:
     CudaDevicePath(OpenMM::Context& context, DevicePathPlan plan) : plan_(std::move(plan)), openmm_(module().entry(context)) {
         // What lives in OpenMM's context is made there.
-        openmm_->make_current();
+        if (!openmm_->make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
         stream_ = static_cast<cudaStream_t>(openmm_->arrays().stream);
         own_ = std::make_unique<Own>(plan_.particle.size());
         particles_.trouble = own_->trouble.data();
     }
 
-    ~CudaDevicePath() override {
-        try {
-            openmm_->make_current();  // what it owns lives there
-        } catch (...) {
-        }
-    }
+    ~CudaDevicePath() override { openmm_->make_current(); }  // what it owns lives there
 
-    void make_current() override { openmm_->make_current(); }
+    bool make_current() noexcept override { return openmm_->make_current(); }
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         refuse_trouble();

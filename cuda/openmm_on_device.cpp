@@ -30,9 +30,7 @@ class OnDevice final : public OpenMmOnDevice {
         CUcontext now = nullptr;
         if (cuCtxGetCurrent(&now) == CUDA_SUCCESS && now == gpu_.getContext()) cuCtxSetCurrent(before_);
     }
-    void make_current() override {
-        if (cuCtxSetCurrent(gpu_.getContext()) != CUDA_SUCCESS) throw OpenMM::OpenMMException("its CUDA context cannot be made current");
-    }
+    bool make_current() noexcept override { return cuCtxSetCurrent(gpu_.getContext()) == CUDA_SUCCESS; }
     OpenMmArrays arrays() override {
         return {address(gpu_.getPosq()),      gpu_.getUseMixedPrecision() ? address(gpu_.getPosqCorrection()) : nullptr,
                 gpu_.getUseDoublePrecision(), address(gpu_.getLongForceBuffer()),

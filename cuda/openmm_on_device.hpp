@@ -23,8 +23,8 @@ struct OpenMmArrays {
 class OpenMmOnDevice {
   public:
     virtual ~OpenMmOnDevice() = default;
-    /// OpenMM's CUcontext becomes the thread's; the destructor gives the thread back the one it had.
-    virtual void make_current() = 0;
+    /// OpenMM's CUcontext becomes the thread's, or false; the destructor gives the thread back the one it had.
+    virtual bool make_current() noexcept = 0;
     virtual OpenMmArrays arrays() = 0;
     /// Lets OpenMM bring particles that are near each other together: the particle that stands at each place from now on. `positions`:
     /// x, y, z of each particle.

@@ -31,9 +31,9 @@ struct DevicePathPlan {
 class DevicePath {
   public:
     virtual ~DevicePath() = default;
-    /// Makes the GPU context that OpenMM computes in that of this thread: what the chains keep on the GPU must be made there. Until the
-    /// object's end.
-    virtual void make_current() = 0;
+    /// Makes the GPU context that OpenMM computes in that of this thread, or says false: what the chains keep on the GPU must be made
+    /// there. Until the object's end.
+    virtual bool make_current() noexcept = 0;
     /// Enqueues OpenMM's work at the beads' positions. `beads`: all of them, group after group, the same every time. `timed`: clock() will
     /// be asked about it. Throws what OpenMM throws, and ComputationError where the beads of the evaluation before had no finite position
     /// or force.

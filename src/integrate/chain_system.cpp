@@ -76,15 +76,15 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     if (openmm_) find_bead_hosts();
 }
 
-ChainSystem::~ChainSystem() {
-    try {
-        make_current();
-    } catch (...) {  // then what it holds on the GPU goes with the context
-    }
+ChainSystem::~ChainSystem() { is_current(); }  // what it holds on the GPU is given back there
+
+bool ChainSystem::is_current() noexcept {
+    DevicePath* const path = openmm_ ? openmm_->device_path() : nullptr;
+    return path == nullptr || path->make_current();
 }
 
 void ChainSystem::make_current() {
-    if (openmm_ && openmm_->device_path()) openmm_->device_path()->make_current();
+    if (!is_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
 }
 
 std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) const {

@@ -100,6 +100,7 @@ class ChainSystem {
     JointRates own_rates(ChainGroup const&, std::map<std::string, std::vector<double>> const& arrays) const;
 
   private:
+    bool is_current() noexcept;
     void find_bead_groups();
     std::unique_ptr<ChainSolver> make_solver(ChainGroup const&) const;
     void make_openmm();
