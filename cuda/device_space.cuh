@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "cuda/device_blocks.cuh"
 #include "cuda/device_model.cuh"
 #include "cuda/kernels.cuh"
 #include "dca/host_space.hpp"
@@ -15,7 +16,7 @@ namespace catena::cuda {
 class DeviceSpace {
   public:
     static constexpr bool answers_at_once = false;
-    /// Copies share the stream and the place for answers: one thread at a time asks first() or largest().
+    /// Copies share the stream and the place for answers: one thread at a time asks largest().
     DeviceSpace() : stream_(std::make_shared<Stream>()), answer_(std::make_shared<Buffer<unsigned long long>>(1)) {}
     cudaStream_t stream() const { return stream_->get(); }
 
@@ -95,6 +96,16 @@ class DeviceSpace {
         bool runs_apart_ = false;
     };
 
+    using Blocks = DeviceBlocks;
+    bool pays_by_blocks(ChainGroup const& group) const {
+        return std::all_of(group.pieces.begin(), group.pieces.end(),
+                           [](dca::Piece const& piece) { return piece.count <= DeviceBlocks::longest_chain; });
+    }
+    template <class Action>
+    void each_block(Blocks const& blocks, Action const& action) const {
+        if (blocks.count() == 0) return;
+        launch<typename Action::Segment>(kernels::each_block<Action>, blocks.count(), kernels::threads_of_block, blocks.block(), action);
+    }
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
         if (count == 0) return;
@@ -129,18 +140,9 @@ class DeviceSpace {
         std::size_t const last = tree.stages_.size() - 1;
         climb_runs(tree, sweep);
         for (std::size_t i = 0; i < last; ++i) climb_stage(tree, i, sweep);
-        launch(kernels::turn<Sweep>, tree.blocks_[last], kernels::threads_of<Sweep>, sweep, tree.stages_[last], sweep);
+        launch<typename Sweep::Segment>(kernels::turn<Sweep>, tree.blocks_[last], kernels::threads_of<Sweep>, tree.stages_[last], sweep);
         for (std::size_t i = last; i-- > 0;) descend_stage(tree, i, sweep);
         descend_runs(tree, sweep);
-    }
-    template <class Predicate>
-    std::int64_t first(std::int64_t count, Predicate const& predicate) const {
-        if (count == 0) return 0;
-        set_answer(0xff);  // above every index
-        kernels::first_that<<<blocks(count), kernels::threads, 0, stream()>>>(count, answer_->data(), predicate);
-        started();
-        unsigned long long const found = get(answer_->data());
-        return found < static_cast<unsigned long long>(count) ? static_cast<std::int64_t>(found) : count;
     }
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {
@@ -281,9 +283,9 @@ class DeviceSpace {
         return count;
     }
     /// A kernel whose threads keep a segment each in shared memory.
-    template <class... Parameters, class Sweep, class... Arguments>
-    void launch(void (*kernel)(Parameters...), unsigned blocks, int threads, Sweep const&, Arguments const&... arguments) const {
-        std::size_t const bytes = kernels::SharedRecords<typename Sweep::Segment>::bytes(threads);
+    template <class Segment, class... Parameters, class... Arguments>
+    void launch(void (*kernel)(Parameters...), unsigned blocks, int threads, Arguments const&... arguments) const {
+        std::size_t const bytes = kernels::SharedRecords<Segment>::bytes(threads);
         constexpr std::size_t without_asking = 48 << 10;
         if (bytes > without_asking)
             check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
@@ -294,7 +296,7 @@ class DeviceSpace {
     }
     template <class Sweep>
     void climb_stage(Tree const& tree, std::size_t i, Sweep const& sweep) const {
-        launch(kernels::climb<Sweep>, tree.blocks_[i], kernels::threads_of<Sweep>, sweep, tree.stages_[i], sweep);
+        launch<typename Sweep::Segment>(kernels::climb<Sweep>, tree.blocks_[i], kernels::threads_of<Sweep>, tree.stages_[i], sweep);
     }
     template <class Sweep>
     void descend_stage(Tree const& tree, std::size_t i, Sweep const& sweep) const {
@@ -305,7 +307,8 @@ class DeviceSpace {
     void climb_runs(Tree const& tree, Sweep const& sweep) const {
         if (!tree.runs_apart_) return;
         auto const count = static_cast<std::int64_t>(tree.runs_.size());
-        launch(kernels::climb_runs<Sweep>, blocks(count * dca::parts_of_run), kernels::threads, sweep, tree.runs_.data(), count, sweep);
+        launch<typename Sweep::Segment>(kernels::climb_runs<Sweep>, blocks(count * dca::parts_of_run), kernels::threads, tree.runs_.data(),
+                                        count, sweep);
     }
     template <class Sweep>
     void descend_runs(Tree const& tree, Sweep const& sweep) const {
@@ -316,7 +319,7 @@ class DeviceSpace {
         started();
     }
     std::shared_ptr<Stream> stream_;
-    std::shared_ptr<Buffer<unsigned long long>> answer_;  // of first() and largest()
+    std::shared_ptr<Buffer<unsigned long long>> answer_;  // of largest()
 };
 
 }  // namespace catena::cuda

@@ -189,10 +189,6 @@ __global__ void __launch_bounds__(threads) descend_runs(dca::Run const* runs, st
     if (RunPart const mine(thread()); mine.run < count) descend_part(sweep, runs[mine.run], mine.part);
 }
 
-template <class Predicate>
-__global__ void first_that(std::int64_t count, unsigned long long* found, Predicate predicate) {
-    if (std::int64_t const i = thread(); i < count && predicate(i)) atomicMin(found, static_cast<unsigned long long>(i));
-}
 /// Doubles from 0 on have the order of their bits, and a NaN is above them all.
 template <class Value>
 __global__ void largest(std::int64_t count, unsigned long long* found, Value value) {

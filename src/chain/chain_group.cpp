@@ -331,6 +331,12 @@ dca::Piece const& piece_of(std::vector<dca::Piece> const& pieces, std::int64_t k
 
 }  // namespace
 
+std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const& tips) {
+    std::vector<std::int64_t> bodies;
+    for (LocalTip const& tip : tips) bodies.push_back(tip.body);
+    return bodies;
+}
+
 std::int64_t ChainGroup::scene_index(std::int64_t k) const {
     dca::Piece const& piece = piece_of(pieces, k);
     return first_in_scene[piece.chain] + piece.body + (k - piece.local);

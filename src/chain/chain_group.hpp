@@ -103,6 +103,9 @@ struct ChainGroup {
     std::vector<std::int64_t> const& first_of_rank() const { return partition.first_of_rank; }
 };
 
+/// That the tips belong to, local, in their order.
+std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const&);
+
 /// Access to a field's bodies on the host.
 struct HostAccess {
     template <int D>

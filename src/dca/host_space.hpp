@@ -2,12 +2,13 @@
 // cuda::DeviceSpace a GPU. Both have the same members; what they promise is said here.
 #pragma once
 
-#include <atomic>
+#include <algorithm>
 #include <chrono>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "dca/host_blocks.hpp"
 #include "dca/records.hpp"
 #include "dca/solver.hpp"
 
@@ -76,6 +77,17 @@ class HostSpace : public HostAccess {
         std::span<dca::Root const> roots_;
     };
 
+    /// Blocks of whole chains that the group has on this rank. A block has loops over its own bodies and tips, and sweeps over its own
+    /// chains (host_blocks.hpp).
+    using Blocks = HostBlocks;
+    /// Whether it pays to let each block do its whole work alone.
+    bool pays_by_blocks(ChainGroup const& group) const { return std::ssize(group.pieces) >= std::max(2, threads()); }
+    /// action(block) for every block; they may run side by side.
+    template <class Action>
+    void each_block(Blocks const& blocks, Action const& action) const {
+        executor_->for_each(blocks.count(), [&](std::int64_t b) { action(HostBlock(blocks, b)); });
+    }
+
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
         executor_->for_each(count, action);
@@ -111,21 +123,6 @@ class HostSpace : public HostAccess {
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         climb(tree, sweep);
         descend(tree, sweep);
-    }
-    /// The smallest i in [0, count) with predicate(i), or count.
-    template <class Predicate>
-    std::int64_t first(std::int64_t count, Predicate const& predicate) const {
-        std::atomic<std::int64_t> found{count};
-        executor_->for_ranges(count, [&](std::int64_t begin, std::int64_t end) {
-            for (std::int64_t i = begin; i < end; ++i) {
-                if (!predicate(i)) continue;
-                std::int64_t before = found;
-                while (i < before && !found.compare_exchange_weak(before, i)) {
-                }
-                return;
-            }
-        });
-        return found;
     }
     /// The largest of value(0), ..., value(count - 1), which are 0 or more; a NaN counts as the largest. 0 of none.
     template <class Value>

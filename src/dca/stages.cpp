@@ -117,4 +117,23 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
     return plan;
 }
 
+BlockPlan plan_blocks(Schedule const& schedule, std::vector<std::int64_t> const& tip, std::int64_t width) {
+    BlockPlan plan;
+    if (schedule.runs.empty()) return plan;
+    std::vector<std::int64_t> bottom;
+    for (Run const& run : schedule.runs) bottom.push_back(run.slot);
+    StagePlan of_stage;
+    plan.stage = Planner(schedule.levels, schedule.roots, schedule.slots)
+                     .stage(0, bottom, width, static_cast<int>(schedule.levels.size()), of_stage);
+    plan.roots = std::move(of_stage.roots);
+    for (Range const& runs : plan.stage.run) {
+        Run const &first = schedule.runs[static_cast<std::size_t>(runs.begin)],
+                  &last = schedule.runs[static_cast<std::size_t>(runs.end - 1)];
+        plan.body.push_back({first.body, last.body + last.count});
+        auto const place = [&](std::int64_t body) { return std::lower_bound(tip.begin(), tip.end(), body) - tip.begin(); };
+        plan.tip.push_back({place(plan.body.back().begin), place(plan.body.back().end)});
+    }
+    return plan;
+}
+
 }  // namespace catena::dca

@@ -33,4 +33,16 @@ struct StagePlan {
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
                       std::int64_t slots, std::int64_t threads);
 
+/// For work that whole chains do alone, one block each: no block needs another.
+struct BlockPlan {
+    Stage stage;
+    std::vector<Root> roots;
+    std::vector<Range> body, tip;  // of every block: its bodies, and its chains' jointed tips
+    std::int64_t blocks() const { return std::ssize(body); }
+};
+
+/// Neighbouring chains share a block while they have at most `width` runs together. `tip`: the last bodies of chains with a jointed tip.
+/// Precondition: no chain is shared with other ranks.
+BlockPlan plan_blocks(Schedule const&, std::vector<std::int64_t> const& tip, std::int64_t width);
+
 }  // namespace catena::dca

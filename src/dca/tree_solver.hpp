@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <vector>
 
 #include "dca/evaluation.hpp"
@@ -67,6 +68,19 @@ class TreeSolver final : public ChainSolver {
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
         return space_.time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
+    }
+
+    /// Whether chains can be carried through several sweeps block by block, without a word from other ranks, and it pays.
+    bool carries() const { return schedule_.shared.empty() && space_.pays_by_blocks(group_); }
+    /// action(sweeps)(block) for every block of whole chains, which does so many sweeps of each kind. Precondition: carries().
+    template <class Action>
+    void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps, Action const& action) {
+        if (!blocks_) blocks_.emplace(group_);
+        sweeps_.leaf.set(configuration);
+        space_.each_block(*blocks_, action(sweeps_));
+        report_.matrix_sweeps += matrix_sweeps;
+        report_.bias_sweeps += bias_sweeps;
+        if (Space::answers_at_once) check();
     }
 
     void check() override {
@@ -168,6 +182,7 @@ class TreeSolver final : public ChainSolver {
     Records<Vector<double, K>, Order::by_body> offsets_, forces_;
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
+    std::optional<typename Space::Blocks> blocks_;
     bool measured_ = false;
     SolverReport report_;
 };

@@ -12,6 +12,7 @@
 #include "dca/philox.hpp"
 #include "dca/solver.hpp"
 #include "integrate/carried_beads.hpp"
+#include "integrate/constrained_step.hpp"
 
 namespace catena {
 
@@ -68,8 +69,10 @@ class AbsoluteDynamics : public BeadHost {
     /// Positions by h along the velocities, impulses along the joints of the configuration updated last added in `sweeps` quasi-Newton
     /// sweeps so that the joints close at the end; velocities become the drift's. Collective.
     virtual void drift(double h, int sweeps) = 0;
-    /// v <- P (c v + sqrt((1 - c^2) kT / M) noise). Collective.
-    virtual void thermostat(double c, double kt, std::uint64_t seed, std::uint64_t step) = 0;
+    /// Velocities between those of before and noise, projected. Collective.
+    virtual void thermostat(Thermostat const&, std::uint64_t step) = 0;
+    /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is. Collective.
+    virtual void step(ConstrainedStep const& step) { take_step(*this, step); }
     /// Velocities of temperature kt, projected; matrices must be assembled. Collective.
     virtual void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) = 0;
 

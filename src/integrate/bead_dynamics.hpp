@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "dca/host_space.hpp"
+#include "dca/tree_solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
-#include "integrate/bead_chains.hpp"
+#include "integrate/bead_step.hpp"
 
 namespace catena {
 
@@ -68,17 +68,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         });
     }
 
-    void update_configuration() override {
-        exchange_from_inboard(communicator_, group_, position_.view(), space_);
-        exchange_from_outboard(communicator_, group_, position_.view(), space_);
-        BeadChains const c = chains();
-        std::int64_t const joints = group_.size + (group_.neighbour_outboard >= 0 ? 1 : 0);
-        space_.for_each(joints, [c] CATENA_LAMBDA(std::int64_t k) { c.set_direction(k); });
-        space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_direction(i); });
-    }
-    void assemble_matrices() override {
-        solver_->assemble_matrices({direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}});
-    }
+    void update_configuration() override { parts().update_configuration(); }
+    void assemble_matrices() override { solver_->assemble_matrices(directions()); }
     void set_simple_forces() override {
         space_.for_each(group_.size, [c = chains(), g = gravity_] CATENA_LAMBDA(std::int64_t k) { c.fall(k, g); });
     }
@@ -108,28 +99,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     }
     ConstView<3> host_positions() override { return bead_positions(); }
 
-    void kick(double h) override { project(h, velocity_.view()); }
-    void observe(double h) override { project(h, observed_.view()); }
-
-    void drift(double h, int sweeps) override {
-        BeadChains const c = chains();
-        space_.for_each(group_.size, [c, h] CATENA_LAMBDA(std::int64_t k) { c.drift(k, h); });
-        for (int sweep = 0; sweep < sweeps; ++sweep) {
-            exchange_from_inboard(communicator_, group_, position_.view(), space_);
-            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
-            space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_excess(i); });
-            solver_->solve({{}, {}, {}, bias_.view(), of_tips(tip_bias_)}, {{}, change_.view(), {}, {}});
-            space_.for_each(group_.size, [c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
-        }
+    void kick(double h) override { parts().kick(h); }
+    void observe(double h) override { parts().project(h, observed_.view()); }
+    void drift(double h, int sweeps) override { parts().drift(h, sweeps); }
+    void thermostat(Thermostat const& thermostat, std::uint64_t step) override { parts().thermostat(thermostat, step); }
+    /// Block by block where it pays.
+    void step(ConstrainedStep const& step) override {
+        if (!carry<dca::BeadLeaf<1>>(step) && !carry<dca::BeadLeaf<3>>(step)) AbsoluteDynamics::step(step);
     }
 
-    void thermostat(double keep, double kt, std::uint64_t seed, std::uint64_t step) override {
-        double const spread = std::sqrt((1.0 - keep * keep) * kt);
-        space_.for_each(group_.size, [c = chains(), keep, spread, seed, step] CATENA_LAMBDA(std::int64_t k) {
-            c.thermalise(k, keep, spread, seed, step);
-        });
-        kick(0.0);
-    }
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
         space_.edit(velocity_, [&](View<3> velocity) {
             for (dca::Piece const& piece : group_.pieces)
@@ -197,14 +175,39 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
-    /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations. Not private:
-    /// nvcc takes lambdas for kernels from public members alone.
-    void project(double h, View<3> out) {
-        space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momentum(k, h); });
-        solver_->solve({{}, momentum_.view(), {}, {}, {}}, {{}, out, {}, {}});
-    }
+    /// A step's parts, loop after loop over all chains (bead_step.hpp). Not private: nvcc asks for that.
+    struct Way {
+        BeadDynamics& d;
+        template <class Action>
+        void each_bead(Action const& action) const {
+            d.space_.for_each(d.group_.size, action);
+        }
+        template <class Action>
+        void each_link(Action const& action) const {
+            d.space_.for_each(d.group_.size + (d.group_.neighbour_outboard >= 0 ? 1 : 0), action);
+        }
+        template <class Action>
+        void each_tip(Action const& action) const {
+            d.space_.for_each(d.tips(), action);
+        }
+        void from_inboard() const { exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
+        void from_outboard() const { exchange_from_outboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
+        void assemble() const { d.assemble_matrices(); }
+        void solve(LoadsView const& loads, AccelerationsView const& out) const { d.solver_->solve(loads, out); }
+    };
 
   private:
+    BeadStep<Way> parts() { return {chains(), {*this}}; }
+    /// Whether the solver, if it is one of this leaf, carried the chains through the step.
+    template <class Leaf>
+    bool carry(ConstrainedStep const& step) {
+        auto* const solver = dynamic_cast<dca::TreeSolver<Leaf, Space>*>(solver_.get());
+        if (solver == nullptr || !solver->carries()) return false;
+        solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(),
+                      [&](dca::TreeSweeps<Leaf> const& sweeps) { return StepOfBlock<Leaf>{sweeps, chains(), step}; });
+        return true;
+    }
+    ConfigurationView directions() { return {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}}; }
     ConfigurationView where() const {
         ConfigurationView at;
         at.direction = direction_.view();
@@ -243,7 +246,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         c.direction = direction_.view();
         c.tip_direction = tip_direction_.view();
         c.bias = bias_.view();
-        c.tip_bias = tip_bias_.view();
+        c.tip_bias = of_tips(tip_bias_);
         return c;
     }
     template <class Use>

@@ -16,19 +16,14 @@ int ConstrainedIntegrator::bias_sweeps_a_step() const { return scheme_.kind == I
 
 void ConstrainedIntegrator::step(std::int64_t n) {
     double const h = scheme_.step;
-    for (AbsoluteDynamics* group : groups_) {
-        group->kick(pending_ * h);
-        if (scheme_.kind == Integrator::rattle) {
-            group->drift(h, sweeps_);
-        } else {
-            group->drift(0.5 * h, sweeps_);
-            group->update_configuration();
-            group->assemble_matrices();
-            group->thermostat(std::exp(-scheme_.friction * h), scheme_.kt, scheme_.seed, static_cast<std::uint64_t>(n));
-            group->drift(0.5 * h, sweeps_);
-        }
-        group->update_configuration();
-    }
+    ConstrainedStep step;
+    step.langevin = scheme_.kind == Integrator::g_baoab;
+    step.kick = pending_ * h;
+    step.drift = h;
+    step.sweeps = sweeps_;
+    step.thermostat = thermostat_of(std::exp(-scheme_.friction * h), scheme_.kt, scheme_.seed);
+    step.number = static_cast<std::uint64_t>(n);
+    for (AbsoluteDynamics* group : groups_) group->step(step);
     pending_ = 1.0;
 }
 

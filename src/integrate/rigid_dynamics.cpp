@@ -108,10 +108,10 @@ void RigidDynamics::drift(double h, int sweeps) {
     });
 }
 
-void RigidDynamics::thermostat(double c, double kt, std::uint64_t seed, std::uint64_t step) {
-    double const spread = std::sqrt((1.0 - c * c) * kt);
-    executor_.for_each(
-        group_.size, [&](std::int64_t k) { add_noise(k, c, spread, seed, step, NoiseStage::thermostat, NoiseStage::thermostat_angular); });
+void RigidDynamics::thermostat(Thermostat const& t, std::uint64_t step) {
+    executor_.for_each(group_.size, [&](std::int64_t k) {
+        add_noise(k, t.keep, t.spread, t.seed, step, NoiseStage::thermostat, NoiseStage::thermostat_angular);
+    });
     kick(0.0);
 }
 

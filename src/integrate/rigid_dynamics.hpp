@@ -25,7 +25,7 @@ class RigidDynamics : public AbsoluteDynamics {
     /// Impulses along the joints at the start enter momenta before the drift, and the free rotor runs again in every sweep
     /// (formulas, "Rigid bodies under RATTLE").
     void drift(double h, int sweeps) override;
-    void thermostat(double c, double kt, std::uint64_t seed, std::uint64_t step) override;
+    void thermostat(Thermostat const&, std::uint64_t step) override;
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override;
 
     std::vector<StateArray> state() const override;

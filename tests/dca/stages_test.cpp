@@ -10,16 +10,14 @@ class Stages : public ::testing::TestWithParam<std::vector<std::int64_t>> {};
 /// Walks the stages as a device does and notes who made each slot when.
 class Walk {
   public:
-    Walk(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots, std::int64_t slots,
-         std::int64_t threads)
-        : runs_(runs), plan_(plan_stages(runs, levels, roots, slots, threads)), made_(static_cast<std::size_t>(slots)) {
-        for (auto const& level : levels) merges_.insert(merges_.end(), level.begin(), level.end());
+    Walk(Schedule const& s, StagePlan plan) : runs_(s.runs), plan_(std::move(plan)), made_(static_cast<std::size_t>(s.slots)) {
+        for (auto const& level : s.levels) merges_.insert(merges_.end(), level.begin(), level.end());
         if (plan_.runs_apart)
-            for (Run const& run : runs) make(run.slot, {-1, 0, 0});
+            for (Run const& run : runs_) make(run.slot, {-1, 0, 0});
         for (int i = 0; i < static_cast<int>(plan_.stages.size()); ++i)
             for (int b = 0; b < plan_.stages[static_cast<std::size_t>(i)].blocks(); ++b) do_block(i, b);
-        EXPECT_EQ(done_, runs.size() + merges_.size());
-        EXPECT_EQ(closed_, roots.size());
+        EXPECT_EQ(done_, runs_.size() + merges_.size());
+        EXPECT_EQ(closed_, s.roots.size());
         EXPECT_LE(plan_.stages.size(), 2U);
     }
 
@@ -71,10 +69,35 @@ TEST_P(Stages, EveryItemIsDoneOnceAndAfterWhatItNeeds) {
                     SCOPED_TRACE(testing::Message()
                                  << "rank " << rank << " of " << ranks << ", threads " << threads << ", pairwise " << pairwise);
                     Schedule const s = make_schedule(partition, rank);
-                    Walk(s.runs, s.levels, s.roots, s.slots, threads);
+                    Walk(s, plan_stages(s.runs, s.levels, s.roots, s.slots, threads));
                     if (HasFailure()) return;
                 }
             }
+}
+TEST_P(Stages, BlocksHoldWholeChains) {
+    for (std::int64_t const width : {1, 40}) {
+        std::vector<std::int64_t> const& lengths = GetParam();
+        Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
+        std::vector<std::int64_t> last;
+        for (std::int64_t const n : lengths) last.push_back((last.empty() ? -1 : last.back()) + n);
+        BlockPlan const plan = plan_blocks(s, last, width);
+        StagePlan walked;
+        walked.stages = {plan.stage};
+        walked.roots = plan.roots;
+        Walk(s, walked);
+        Range before{0, 0}, tips{0, 0};
+        for (std::size_t b = 0; b < plan.body.size(); ++b) {
+            Range const body = plan.body[b], tip = plan.tip[b], run = plan.stage.run[b];
+            EXPECT_EQ(body.begin, before.end);
+            EXPECT_EQ(tip.begin, tips.end);
+            EXPECT_GT(tip.end, tip.begin);
+            EXPECT_EQ(last[static_cast<std::size_t>(tip.end - 1)], body.end - 1) << "a block ends within a chain";
+            EXPECT_TRUE(run.end - run.begin <= width || tip.end - tip.begin == 1) << "too many chains in a block";
+            before = body;
+            tips = tip;
+        }
+        EXPECT_EQ(before.end, s.bodies);
+    }
 }
 std::vector<std::int64_t> with_short_ones(std::int64_t bodies, std::int64_t of_short) {
     std::vector<std::int64_t> lengths(501, of_short);

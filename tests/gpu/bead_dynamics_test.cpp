@@ -58,11 +58,23 @@ TEST_P(GpuBeads, EachOperationLeavesTheBitsOfTheHost) {
             d.take_bead_forces();
         });
         both("kick", [](AbsoluteDynamics& d) { d.kick(0.005); });
-        both("thermostat", [&](AbsoluteDynamics& d) { d.thermostat(0.9, 2.5, 3, step); });
+        both("thermostat", [&](AbsoluteDynamics& d) { d.thermostat(thermostat_of(0.9, 2.5, 3), step); });
         both("observation", [](AbsoluteDynamics& d) { d.observe(0.002); });
         both("drift", [](AbsoluteDynamics& d) { d.drift(0.01, 0); });
         both("drift and closing", [](AbsoluteDynamics& d) { d.drift(0.01, 1); });
         both("drift, closed", [](AbsoluteDynamics& d) { d.drift(0.01, 4); });
+    }
+    ConstrainedStep step;
+    step.kick = step.drift = 0.01;
+    step.sweeps = 4;
+    step.thermostat = thermostat_of(0.9, 2.5, 3);
+    for (; step.number < 4; ++step.number) {
+        step.langevin = step.number % 2 == 0;
+        both("matrices", [](AbsoluteDynamics& d) {
+            d.update_configuration();
+            d.assemble_matrices();
+        });
+        both("whole step", [&](AbsoluteDynamics& d) { d.step(step); });
     }
     both("evaluation", [](AbsoluteDynamics& d) { d.evaluate(); });
     EXPECT_EQ(host_->residual(), device_->residual());

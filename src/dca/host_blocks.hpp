@@ -1,0 +1,68 @@
+// A block of whole chains on the host: one thread does all that a step asks for on them.
+#pragma once
+
+#include <vector>
+
+#include "dca/solver.hpp"
+#include "dca/stages.hpp"
+#include "dca/tree_sweeps.hpp"
+
+namespace catena {
+
+class HostBlocks {
+  public:
+    /// A chain a block. Precondition: the group has no chain that is shared with other ranks.
+    explicit HostBlocks(ChainGroup const& group)
+        : schedule_(group.schedule), plan_(dca::plan_blocks(group.schedule, last_bodies(group.tips), 1)) {
+        for (auto const& level : schedule_.levels) merges_.insert(merges_.end(), level.begin(), level.end());
+    }
+    std::int64_t count() const { return plan_.blocks(); }
+
+  private:
+    friend class HostBlock;
+    dca::Schedule const& schedule_;
+    dca::BlockPlan plan_;
+    std::vector<dca::Merge> merges_;  // of all levels
+};
+
+class HostBlock {
+  public:
+    HostBlock(HostBlocks const& blocks, std::int64_t at) : blocks_(blocks), at_(static_cast<std::size_t>(at)) {}
+
+    template <class Action>
+    void each_body(Action const& action) const {
+        each(blocks_.plan_.body[at_], action);
+    }
+    template <class Action>
+    void each_tip(Action const& action) const {
+        each(blocks_.plan_.tip[at_], action);
+    }
+    template <class Sweep>
+    void climb(Sweep const& sweep) const {
+        each(stage().run[at_], [&](std::int64_t i) { climb_run(sweep, blocks_.schedule_.runs[static_cast<std::size_t>(i)]); });
+        for (int l = 0; l < stage().levels; ++l) each_merge(l, [&](dca::Merge const& m) { climb_merge(sweep, m); });
+        each(stage().root[at_], [&](std::int64_t i) { sweep.close(blocks_.plan_.roots[static_cast<std::size_t>(i)]); });
+    }
+    template <class Sweep>
+    void climb_and_descend(Sweep const& sweep) const {
+        climb(sweep);
+        for (int l = stage().levels; l-- > 0;) each_merge(l, [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
+        each(stage().run[at_], [&](std::int64_t i) { descend_run(sweep, blocks_.schedule_.runs[static_cast<std::size_t>(i)]); });
+    }
+
+  private:
+    dca::Stage const& stage() const { return blocks_.plan_.stage; }
+    template <class Action>
+    void each_merge(int level, Action const& action) const {
+        dca::Range const range = stage().merge[at_ * static_cast<std::size_t>(stage().levels) + static_cast<std::size_t>(level)];
+        each(range, [&](std::int64_t i) { action(blocks_.merges_[static_cast<std::size_t>(i)]); });
+    }
+    template <class Action>
+    static void each(dca::Range const& range, Action const& action) {
+        for (std::int64_t i = range.begin; i < range.end; ++i) action(i);
+    }
+    HostBlocks const& blocks_;
+    std::size_t at_;
+};
+
+}  // namespace catena

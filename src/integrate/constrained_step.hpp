@@ -1,0 +1,47 @@
+// One step of RATTLE or g-BAOAB (constrained_integrator.hpp), for whatever does its parts, on the host or a GPU.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "dca/host_device.hpp"
+
+namespace catena {
+
+/// v <- P (keep v + spread M^-1/2 noise).
+struct Thermostat {
+    double keep = 1, spread = 0;
+    std::uint64_t seed = 0;
+};
+/// The variance of velocities tends to kt / M.
+inline Thermostat thermostat_of(double keep, double kt, std::uint64_t seed) { return {keep, std::sqrt((1.0 - keep * keep) * kt), seed}; }
+
+struct ConstrainedStep {
+    bool langevin = false;
+    double kick = 0;   // of the forces at its beginning
+    double drift = 0;  // of all of it
+    int sweeps = 0;    // a drift
+    Thermostat thermostat;
+    std::uint64_t number = 0;
+    int matrix_sweeps() const { return langevin ? 1 : 0; }
+    int bias_sweeps() const { return langevin ? 2 + 2 * sweeps : 1 + sweeps; }
+};
+
+/// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is.
+CATENA_EITHER_SIDE
+template <class Parts>
+CATENA_HD void take_step(Parts&& parts, ConstrainedStep const& s) {
+    parts.kick(s.kick);
+    if (s.langevin) {
+        parts.drift(0.5 * s.drift, s.sweeps);
+        parts.update_configuration();
+        parts.assemble_matrices();
+        parts.thermostat(s.thermostat, s.number);
+        parts.drift(0.5 * s.drift, s.sweeps);
+    } else {
+        parts.drift(s.drift, s.sweeps);
+    }
+    parts.update_configuration();
+}
+
+}  // namespace catena
