@@ -71,7 +71,7 @@ class CudaDevicePath final : public DevicePath {
     bool make_current() noexcept override { return openmm_->make_current(); }
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
-        refuse_trouble();
+        refuse_trouble();  // of the evaluation before, which is over where its step is
         timed_ = timed;
         if (of_this_order_ == 0) order(beads);
         of_this_order_ = (of_this_order_ + 1) % evaluations_of_an_order;
@@ -99,6 +99,13 @@ class CudaDevicePath final : public DevicePath {
             group->add_forces(particles_.from(next));
             next += group->count();
         }
+    }
+
+    void refuse_trouble() override {
+        std::int64_t const bead = std::exchange(*own_->trouble.data(), -1);
+        if (bead >= 0)
+            throw ComputationError("the position of bead " + std::to_string(bead + 1) +
+                                   ", or OpenMM's force on it, is not finite: take a smaller step, or a start without overlaps");
     }
 
     Clock clock() override {
@@ -179,14 +186,6 @@ class CudaDevicePath final : public DevicePath {
         Vec3 sum = Vec3::zero();
         for (Vec3 const& each : x) sum = sum + each;
         return (1.0 / static_cast<double>(x.size())) * sum;
-    }
-
-    /// Of the evaluation before, which is over where its step is.
-    void refuse_trouble() {
-        std::int64_t const bead = std::exchange(*own_->trouble.data(), -1);
-        if (bead >= 0)
-            throw ComputationError("the position of bead " + std::to_string(bead + 1) +
-                                   ", or OpenMM's force on it, is not finite: take a smaller step, or a start without overlaps");
     }
 
     DevicePathPlan plan_;

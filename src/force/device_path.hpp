@@ -42,6 +42,9 @@ class DevicePath {
     virtual void mark(std::span<DeviceBeads* const> beads) = 0;
     /// Lets the beads' streams wait for OpenMM and add its forces.
     virtual void finish(std::span<DeviceBeads* const> beads) = 0;
+    /// Throws ComputationError where beads of the last evaluation had no finite position or force. To be asked once their streams have
+    /// been waited for.
+    virtual void refuse_trouble() = 0;
     /// Of the last evaluation, which was timed: OpenMM's computation, and the chains' work from begin() to mark(). Waits for both.
     struct Clock {
         Interval openmm, chains;

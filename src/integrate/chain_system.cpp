@@ -375,6 +375,10 @@ std::vector<JointDynamics*> ChainSystem::joint() const {
     return all;
 }
 
+void ChainSystem::check_forces() const {
+    if (on_device()) openmm_->device_path()->refuse_trouble();
+}
+
 void ChainSystem::wait() const {
     for (auto const& group : absolute_) group->solver().wait();
     for (auto const& group : joint_) group->solver().wait();

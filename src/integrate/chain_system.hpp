@@ -83,6 +83,9 @@ class ChainSystem {
     Communicator const& communicator() const { return communicator_; }
     Backend backend() const { return backend_; }
     std::vector<SolverReport> solver_reports() const;
+    /// Throws ComputationError where OpenMM's last forces, or the positions it had, were not finite. To be asked once the chains' state was
+    /// waited for.
+    void check_forces() const;
     /// ChainSolver::wait and measure, of every group.
     void wait() const;
     void measure(bool on) const;

@@ -102,6 +102,7 @@ class ConstrainedStepper final : public Stepper {
     double constraint_error() override {
         double worst = 0;
         for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
+        system_.check_forces();
         return worst;
     }
     bool add_sweep() override {
