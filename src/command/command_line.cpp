@@ -103,7 +103,8 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     command->footer(
         "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
-        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000");
+        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
+        "SIGINT, SIGTERM or SIGUSR1 on any rank: all finish their step, write a checkpoint and end with status 3.");
 
     command = app.add_subcommand("report", "solver error against run time, as tables, JSON and a picture");
     command->add_option("SCENE", words.scenes, "scene files (default: generated chains of 16, 256 and 4096 bodies)")->type_name("");
@@ -280,7 +281,7 @@ Request parse_command_line(int argc, char const* const* argv) {
     app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
     app.footer(
         "catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation "
-        "failed or is INVALID; 2 the input is wrong.");
+        "failed or is INVALID; 2 the input is wrong; 3 a run was stopped by a signal and can go on.");
     add_commands(app, words);
     app.require_subcommand(0, 1);  // so that "catena bench solve" is no second command
     app.allow_extras();

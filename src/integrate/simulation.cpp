@@ -74,16 +74,25 @@ class Run {
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
         std::int64_t const rounds = communicator_.rounds();
+        StopAgreement stop(communicator_, options_.stop, first);
         for (std::int64_t n = first;; ++n) {
             bool const writes = n % scene_.output.every == 0;
-            bool const due = n == last_ || (scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first);
+            bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
+            bool const looks = writes || saves || n % check_every == 0;
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
             at_step(n, [&] { stepper_->prepare(timeline); });
             if (n == first) open(n);  // nothing is written or replaced before the first step has its forces
-            if (writes) output(n);
-            if (due || n % check_every == 0) check(n);
-            if (due) checkpoint(n);
-            if (n == last_) break;
+            stopped_by_ = n == last_ ? 0 : stop.reason_at(n);
+            bool const ends = n == last_ || stopped_by_ != 0;
+            double const error = looks || ends ? constraint_error(n) : 0;
+            if (looks) adapt(n, error);
+            if (writes) output(n, error);
+            if (saves || ends) checkpoint(n);
+            if (ends) {
+                reached_ = n;
+                error_at_end_ = error;
+                break;
+            }
             at_step(n, [&] { stepper_->step(n, timeline); });
             progress.update(n + 1);
         }
@@ -127,30 +136,32 @@ class Run {
         folder_->open(sites_.topology(), frame(n, system_.snapshot()), observables_->columns());
     }
 
-    void output(std::int64_t n) {
-        double const error = check(n);
+    void output(std::int64_t n, double error) {
         stepper_->observe(scene_.output.joint_forces);
         ChainSystem::Snapshot const snapshot = system_.snapshot();
         std::vector<EnergyTerm> const terms = system_.potential_energy();
         Frame const f = frame(n, snapshot);
-        if (!root_) return;
-        last_row_ = observables_->row(snapshot, f.positions, terms, error);
+        if (root_) last_row_ = observables_->row(snapshot, f.positions, terms, error);
         folder_->write(f, last_row_);
     }
 
-    /// The constraint error, the largest over ranks: every rank decides the same. A state that is not finite has none.
-    double check(std::int64_t n) {
+    /// The largest over ranks: every rank decides the same. A state that is not finite has none.
+    double constraint_error(std::int64_t n) {
         double const error = stepper_->constraint_error();
         if (!std::isfinite(error))
             throw ComputationError("the state is not finite at step " + std::to_string(n) +
                                    ": choose a smaller dynamics.step, or look at the start");
+        return error;
+    }
+
+    /// Another sweep where the error comes near to the tolerance. At steps that the scene chooses alone, not where a run happens to end: a
+    /// restart is to be the undisturbed run.
+    void adapt(std::int64_t n, double error) {
         worst_error_ = std::max(worst_error_, error);
-        bool const counted = n == checked_ || (n == first_ && !options_.restart.empty());  // seen before, or by the run before
-        checked_ = n;
+        bool const counted = n == first_ && !options_.restart.empty();  // by the run before
         double const tolerance = scene_.dynamics.constraint_tolerance;
         if (error > std::max(early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted && stepper_->add_sweep())
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
-        return error;
     }
 
     /// What fails within a step says at which.
@@ -220,30 +231,31 @@ class Run {
     }
 
     json finish(std::int64_t first) {
-        bool const valid = worst_error_ <= scene_.dynamics.constraint_tolerance;
+        bool const valid = std::max(worst_error_, error_at_end_) <= scene_.dynamics.constraint_tolerance;
         std::vector<std::string> const texts = gather_texts(communicator_, timeline_json(timelines_).dump());
         json const summary = summarise(first, valid);
         json timeline{{"ranks", json::array()}};
         for (std::size_t rank = 0; rank < texts.size(); ++rank)
             timeline["ranks"].push_back({{"rank", rank}, {"steps", json::parse(texts[rank])}});
         folder_->finish(summary.dump(2) + "\n", timeline.dump() + "\n");
-        return root_ ? summary : json{{"valid", valid}};
+        return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
     }
 
     json summarise(std::int64_t first, bool valid) {
-        double const steps = static_cast<double>(last_ - first);
+        double const steps = static_cast<double>(reached_ - first);
         json s{{"title", scene_.title},
                {"scene", scene_.file},
                {"scene_hash", scene_.hash},
                {"command", options_.command_line},
                {"valid", valid}};
         s["run"] = {{"first_step", first},
-                    {"last_step", last_},
-                    {"time", time(last_)},
+                    {"last_step", reached_},
+                    {"time", time(reached_)},
                     {"integrator", name_of(scene_.dynamics.integrator)},
                     {"step", scene_.dynamics.step},
                     {"bodies", scene_.bodies()},
                     {"dof", degrees_of_freedom(scene_)}};
+        if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
         if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
         s["parallel"] = {{"ranks", communicator_.size()},
@@ -266,7 +278,8 @@ class Run {
         s["solver"].update(stepper_->describe());
         bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(), [](auto const& g) { return g->has_tips(); });
         if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
-            s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
+            s["constraints"] = {{"largest_error", std::max(worst_error_, error_at_end_)},
+                                {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (OpenMmForce const* openmm = system_.openmm()) {
             double const matrix = system_.matrix_seconds();
             s["forces"] = {{"openmm", openmm_version()},
@@ -300,8 +313,9 @@ class Run {
     std::vector<StepTimeline> timelines_;
     std::vector<double> last_row_;
     std::vector<std::string> notes_;
-    double worst_error_ = 0, seconds_ = 0;
-    std::int64_t first_ = 0, checked_ = -1, rounds_ = 0;
+    double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
+    std::int64_t first_ = 0, reached_ = 0, rounds_ = 0;
+    int stopped_by_ = 0;
 };
 
 }  // namespace
