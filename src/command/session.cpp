@@ -101,6 +101,7 @@ int Session::conclude(Outcome const& outcome) const {
 
 int guarded(int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
     try {
+        start_hdf5();
         std::unique_ptr<Communicator> const world = world_communicator(&argc, &argv);
         return run_request(*world, argc, argv, execute);
     } catch (InputError const& error) {  // no ranks, no communicator: the launcher's numbers say who speaks
