@@ -11,6 +11,23 @@
 
 namespace catena {
 
+/// Messages between bodies of neighbouring ranks and units of the tree, as one rank counts them.
+struct Traffic {
+    std::int64_t gathers = 0, gathered_bytes = 0;  // all_gather; the bytes of all ranks
+    std::int64_t exchanges = 0, sent_bytes = 0;    // exchange; what this rank sent
+    Traffic& operator+=(Traffic const& other) {
+        gathers += other.gathers;
+        gathered_bytes += other.gathered_bytes;
+        exchanges += other.exchanges;
+        sent_bytes += other.sent_bytes;
+        return *this;
+    }
+    Traffic operator-(Traffic const& other) const {
+        return {gathers - other.gathers, gathered_bytes - other.gathered_bytes, exchanges - other.exchanges, sent_bytes - other.sent_bytes};
+    }
+    bool operator==(Traffic const&) const = default;
+};
+
 class Communicator {
   public:
     virtual ~Communicator() = default;
@@ -35,6 +52,8 @@ class Communicator {
     virtual void barrier() const = 0;
     /// How many messages rounds this rank took part in (collectives and exchanges), for reports.
     virtual std::int64_t rounds() const = 0;
+    /// All of them so far; zero where nothing is counted.
+    virtual Traffic traffic() const { return {}; }
     /// Ends every rank at once: for an error that other ranks cannot know of.
     [[noreturn]] virtual void abort(int status) const = 0;
 };

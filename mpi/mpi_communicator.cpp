@@ -119,11 +119,13 @@ class MpiCommunicator final : public Communicator {
     int ranks_on_host() const override { return on_host_.ranks; }
     int rank_on_host() const override { return on_host_.rank; }
     std::int64_t rounds() const override { return rounds_; }
+    Traffic traffic() const override { return traffic_; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override {
         Blocks const blocks = blocks_of(own, all, bytes_of_rank);
         ++rounds_;
+        traffic_ += {1, static_cast<std::int64_t>(all.size()), 0, 0};
         if (!blocks.short_enough) return all_gather_in_pieces(own, all, blocks);
         void const* const send = in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
         check(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE,
@@ -150,6 +152,7 @@ class MpiCommunicator final : public Communicator {
         ++rounds_;
         if (to < 0) send = {};
         if (from < 0) receive = {};
+        traffic_ += {0, 0, 1, static_cast<std::int64_t>(send.size())};
         while (!send.empty() || !receive.empty()) {
             std::span const out = send.first(std::min(send.size(), largest_message_));
             std::span const in = receive.first(std::min(receive.size(), largest_message_));
@@ -259,6 +262,7 @@ class MpiCommunicator final : public Communicator {
     int rank_ = 0, size_ = 1;
     OnHost on_host_;
     mutable std::int64_t rounds_ = 0;
+    mutable Traffic traffic_;
 };
 
 }  // namespace

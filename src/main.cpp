@@ -15,7 +15,7 @@ int execute(Session const& session, CheckRequest const& request) {
 }
 
 int execute(Session const& session, PlanRequest const& request) {
-    return session.conclude(plan_scene(session.load(request.scene), session.communicator()));
+    return session.conclude(plan_scene(session.load(request.scene), session.communicator(), request));
 }
 
 int execute(Session const& session, SolveRequest const& request) {

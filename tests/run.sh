@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: tests/run.sh [--quick] [--long] [--help]
+usage: tests/run.sh [--quick] [--long] [--cluster] [--help]
 
 Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
@@ -17,15 +17,18 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
 
   --quick  format and release alone
   --long   also the long tests (statistics, drift; an hour or so)
+  --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
+           job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
 Logs: build/logs/. Exit status 0 if everything passed, 1 if not; the last line counts tests and checks.
 TEXT
 }
 
-quick=no long=no
+quick=no long=no cluster=no
 for option in "$@"; do
     case $option in
         --quick) quick=yes ;;
         --long) long=yes ;;
+        --cluster) cluster=yes ;;
         -h | --help) usage; exit 0 ;;
         *) echo "unknown option: $option (see tests/run.sh --help)" >&2; exit 2 ;;
     esac
@@ -92,6 +95,18 @@ tidy() {
         <<<"$sources"
 }
 
+# What the scripts of tests/cluster find is shown: each line is a finding with its figure.
+cluster_tests() {
+    local name
+    say "cluster"
+    need_packages cluster-packages slurmctld slurmd slurm-client munge iproute2 procps || true
+    check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 || true
+    check killed-at-writes "$python" tests/cluster/killed_at_write.py --stride 1 || true
+    check two-hosts "$python" tests/cluster/two_hosts.py || true
+    check slurm tests/cluster/slurm.sh || true
+    for name in killed-ranks killed-at-writes two-hosts slurm; do grep -hE '^(passed|FAILED|NOT RUN)' "$logs/$name.log" || true; done
+}
+
 finish() {
     say "Summary, $((SECONDS / 60)) min $((SECONDS % 60)) s"
     printf '%s\n' "${summary[@]}"
@@ -115,6 +130,7 @@ if build release; then
     ctests release-tests --preset release
     if [ $long = yes ]; then ctests long-tests --test-dir build/release --output-on-failure -L long; fi
 fi
+if [ $cluster = yes ]; then cluster_tests; fi
 if [ $quick = yes ]; then finish; exit; fi
 
 if grep -q '^CATENA_NVCC:FILEPATH=/' build/release/CMakeCache.txt; then

@@ -16,23 +16,23 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures"};
+constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures", "network"};
 
 /// What the contract promises for later versions, by command.
 std::map<std::string, std::vector<std::string>> const later_options{
     {"check", {}},
-    {"plan", {"--explain", "--ranks", "--hosts"}},
+    {"plan", {"--explain"}},
     {"solve", {"--precision", "--refine"}},
     {"run", {"--precision", "--refine"}},
     {"report", {"--suite", "--quick", "--precision"}},
     {"bench", {"--precision"}},
 };
-std::vector<std::string> const later_benches{"sweeps", "peers", "network"};
+std::vector<std::string> const later_benches{"sweeps", "peers"};
 
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network;
     std::vector<std::string> scenes;
     bool overwrite = false;
 };
@@ -79,8 +79,13 @@ void add_commands(CLI::App& app, Words& words) {
 
     command = app.add_subcommand("plan", "print what will run and what is left out, and why");
     add_scene(*command, words);
+    command->add_option("--ranks", words.ranks, "predict the messages of a step and their time on up to so many ranks")->type_name("P");
+    command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
+    command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
+        ->type_name("FILE");
     command->footer(
-        "Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments");
+        "Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
+        "  catena plan inputs/random-revolute.yaml --ranks 4096 --hosts 512 --network network.json");
 
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
@@ -103,7 +108,8 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     command->footer(
         "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
-        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000");
+        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
+        "SIGINT, SIGTERM or SIGUSR1 on any rank: all finish their step, write a checkpoint and end with status 3.");
 
     command = app.add_subcommand("report", "solver error against run time, as tables, JSON and a picture");
     command->add_option("SCENE", words.scenes, "scene files (default: generated chains of 16, 256 and 4096 bodies)")->type_name("");
@@ -204,6 +210,21 @@ R scene_request(Words const& words, std::string const& command) {
     return request;
 }
 
+PlanRequest plan_request(Words const& words) {
+    auto request = scene_request<PlanRequest>(words, "plan");
+    if (!words.ranks.empty()) request.ranks = whole_number("--ranks", words.ranks, 1, 1000000);
+    if (!words.hosts.empty()) request.hosts = whole_number("--hosts", words.hosts, 1, 1000000);
+    request.network = words.network;
+    if (request.ranks == 0 && (!words.hosts.empty() || !words.network.empty()))
+        throw InputError("--hosts or --network without --ranks", "command line", "say for how many ranks: --ranks P");
+    if (request.ranks > 0 && request.hosts > request.ranks)
+        throw InputError("more hosts than ranks", "command line", "give each host a rank at least");
+    if (request.ranks > 0 && request.network.empty())
+        throw InputError("--ranks without --network", "command line",
+                         "measure it by mpirun -np 2 catena bench network --json network.json, then add --network network.json");
+    return request;
+}
+
 RunRequest run_request(Words const& words) {
     auto request = scene_request<RunRequest>(words, "run");
     if (!words.steps.empty()) request.steps = whole_number("--steps", words.steps, 0);
@@ -254,7 +275,7 @@ BenchRequest bench_request(Words const& words) {
 
 Request request_of(std::string const& command, Words const& words) {
     if (command == "check") return scene_request<CheckRequest>(words, command);
-    if (command == "plan") return scene_request<PlanRequest>(words, command);
+    if (command == "plan") return plan_request(words);
     if (command == "run") return run_request(words);
     if (command == "report") return report_request(words);
     if (command == "bench") return bench_request(words);
@@ -280,7 +301,7 @@ Request parse_command_line(int argc, char const* const* argv) {
     app.add_flag("--version", version_asked, "print version, compiler and what is in the build");
     app.footer(
         "catena COMMAND --help explains a command. mpirun -np P catena ... works for every one.\nExit status: 0 good; 1 the computation "
-        "failed or is INVALID; 2 the input is wrong.");
+        "failed or is INVALID; 2 the input is wrong; 3 a run was stopped by a signal and can go on.");
     add_commands(app, words);
     app.require_subcommand(0, 1);  // so that "catena bench solve" is no second command
     app.allow_extras();

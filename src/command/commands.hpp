@@ -12,7 +12,7 @@ namespace catena::command {
 Outcome check_scene(Scene const&, Communicator const&);
 
 /// What will run and what is left out, and why.
-Outcome plan_scene(Scene const&, Communicator const&);
+Outcome plan_scene(Scene const&, Communicator const&, PlanRequest const&);
 
 /// One evaluation, timed, with its residual.
 Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
@@ -28,5 +28,7 @@ Outcome run_bench(Communicator const&, BenchRequest const&);
 /// Catena's steps beside OpenMM's own; what overlap brings. One rank.
 Outcome bench_openmm(Communicator const&, BenchRequest const&);
 Outcome bench_overlap(Communicator const&, BenchRequest const&);
+/// Messages between the ranks and the solver's own gathers, with the model that `plan --network` reads.
+Outcome bench_network(Communicator const&, BenchRequest const&);
 
 }  // namespace catena::command

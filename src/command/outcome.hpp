@@ -13,7 +13,8 @@ struct Outcome {
     std::string text;
     Json json;
     bool valid = true;
-    std::string complaint = {};  // where it is not valid: what is wrong and what to do, for those who see nothing of `text`
+    bool whole = true;           // false: stopped on request before its end
+    std::string complaint = {};  // where it is not valid or whole: what is wrong and what to do, for those who see nothing of `text`
 };
 
 /// Objects a key a line, lists of plain values on one line. Numbers read back to the same doubles; what is not finite becomes null.

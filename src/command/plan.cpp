@@ -4,6 +4,7 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/plan_messages.hpp"
 #include "cuda/solver.hpp"
 #include "dca/segment.hpp"
 #include "integrate/chain_system.hpp"
@@ -181,7 +182,7 @@ void add_output(Text& text, Json& json, Scene const& scene) {
 
 }  // namespace
 
-Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
+Outcome plan_scene(Scene const& scene, Communicator const& communicator, PlanRequest const& request) {
     ChainSystem const system(scene, axes_for(scene), communicator);
     std::vector<SolverReport> const reports = system.solver_reports();
     Outcome outcome;
@@ -215,6 +216,7 @@ Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
         text.entry("", "on path host the matrix sweep runs while it computes: matrices do not wait for forces");
     }
     add_dynamics(text, json, scene);
+    add_messages(text, json, system, request);
     add_output(text, json, scene);
     text.heading("left out");
     json["left_out"] = left_out(scene, system);

@@ -26,7 +26,10 @@ struct SceneOptions : CommonOptions {
     std::string scene;
 };
 struct CheckRequest : SceneOptions {};
-struct PlanRequest : SceneOptions {};
+struct PlanRequest : SceneOptions {
+    std::int64_t ranks = 0, hosts = 1;  // 0: no prediction
+    std::string network;                // JSON of `bench network`
+};
 struct SolveRequest : SceneOptions {
     int repeat = 11;
     std::string accelerations;  // HDF5 file

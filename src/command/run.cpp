@@ -4,6 +4,7 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/stop_signals.hpp"
 #include "integrate/simulation.hpp"
 
 namespace catena::command {
@@ -63,6 +64,17 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
     return text.str();
 }
 
+std::string complaint_of(nlohmann::json const& s, bool whole) {
+    nlohmann::json const& run = s.at("run");
+    if (!s.at("valid").get<bool>())
+        return fmt::format("constraint error {:.2e} above dynamics.constraint_tolerance {:.0e}: choose a smaller dynamics.step",
+                           number(s.at("constraints"), "largest_error"), number(s.at("constraints"), "tolerance"));
+    if (whole) return "";
+    return fmt::format("stopped by {} at step {} of {}: go on with --restart {}", StopSignals::name_of(run.at("stopped_by").get<int>()),
+                       run.at("last_step").get<std::int64_t>(), run.at("steps").get<std::int64_t>(),
+                       s.at("files").at("checkpoint.h5").get<std::string>());
+}
+
 }  // namespace
 
 Outcome run_scene(Scene const& scene, Communicator const& communicator, RunRequest const& request) {
@@ -73,16 +85,16 @@ Outcome run_scene(Scene const& scene, Communicator const& communicator, RunReque
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;
+    StopSignals const signals;
+    options.stop = StopSignals::noted;
     nlohmann::json const summary = run_simulation(scene, communicator, options);
     Outcome outcome;
     outcome.valid = summary.at("valid").get<bool>();
+    outcome.whole = !summary.at("run").contains("stopped_by");
     if (communicator.rank() != 0) return outcome;
     outcome.text = text_of(scene, summary);
     outcome.json = summary;
-    if (!outcome.valid)
-        outcome.complaint =
-            fmt::format("constraint error {:.2e} above dynamics.constraint_tolerance {:.0e}: choose a smaller dynamics.step",
-                        number(summary.at("constraints"), "largest_error"), number(summary.at("constraints"), "tolerance"));
+    outcome.complaint = complaint_of(summary, outcome.whole);
     return outcome;
 }
 

@@ -18,6 +18,8 @@
 namespace catena::command {
 namespace {
 
+constexpr int stopped_status = 3;
+
 void say_error(std::string line) {
     std::replace(line.begin(), line.end(), '\n', ' ');
     std::fflush(stdout);
@@ -87,16 +89,19 @@ int Session::conclude(Outcome const& outcome) const {
         else if (!options_.quiet)
             std::fputs(outcome.text.c_str(), stdout);
         if (!outcome.valid && (options_.quiet || options_.json == "-")) spdlog::error("INVALID: {}", outcome.complaint);
+        if (outcome.valid && !outcome.whole) say_error(outcome.complaint);
         if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw ComputationError("cannot write to standard output");
         if (options_.json.empty() || options_.json == "-" || outcome.json.is_null()) return;
         write_text_file(options_.json, json_text(outcome.json));
         spdlog::info("wrote {}", options_.json);
     });
-    return communicator_.max(outcome.valid ? 0 : 1) == 0 ? 0 : 1;
+    if (communicator_.max(outcome.valid ? 0 : 1) > 0) return 1;
+    return outcome.whole ? 0 : stopped_status;
 }
 
 int guarded(int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
     try {
+        start_hdf5();
         std::unique_ptr<Communicator> const world = world_communicator(&argc, &argv);
         return run_request(*world, argc, argv, execute);
     } catch (InputError const& error) {  // no ranks, no communicator: the launcher's numbers say who speaks

@@ -18,7 +18,8 @@ class Session {
     Communicator const& communicator() const { return communicator_; }
     /// The scene with the options' overrides.
     Scene load(std::string const& file) const;
-    /// Prints the text on rank 0 unless --quiet, writes --json. The exit status: 0, or 1 where the outcome is not valid. Collective.
+    /// Prints the text on rank 0 unless --quiet, writes --json. The exit status: 0, 1 where the outcome is not valid, 3 where
+    /// it is not whole. Collective.
     int conclude(Outcome const&) const;
 
   private:

@@ -20,7 +20,7 @@ char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", 
 }  // namespace
 
 RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
-    : scene_(scene), communicator_(communicator), root_(communicator.rank() == 0), first_step_(first_step), folder_(options.output) {
+    : scene_(scene), communicator_(communicator), first_step_(first_step), folder_(options.output) {
     on_first_rank(communicator, [&] {
         bool const exists = fs::exists(folder_);
         std::error_code ignored;
@@ -50,26 +50,43 @@ void RunFolder::open(Topology const& topology, Frame const& first, std::vector<s
     });
 }
 
+template <class Action>
+void RunFolder::on_disk(Action const& action) {
+    on_first_rank(communicator_, [&] {
+        try {
+            action();
+        } catch (ComputationError const& error) {
+            std::string const checkpoint = path("checkpoint.h5");
+            std::error_code ignored;
+            if (!fs::exists(checkpoint, ignored)) throw;
+            throw ComputationError(std::string(error.what()) + ": mend that and go on with --restart " + checkpoint);
+        }
+    });
+}
+
 void RunFolder::write(Frame const& frame, std::vector<double> const& observables) {
-    if (!root_) return;
-    trajectory_->write(frame);
-    observables_->write(frame.step, frame.time, observables);
+    on_disk([&] {
+        trajectory_->write(frame);
+        observables_->write(frame.step, frame.time, observables);
+    });
 }
 
 void RunFolder::write_checkpoint(Checkpoint const& checkpoint) {
-    if (!root_) return;
-    trajectory_->flush();  // a restart finds every frame up to the checkpoint's step
-    observables_->flush();
-    catena::write_checkpoint(path("checkpoint.h5"), checkpoint);
+    on_disk([&] {
+        trajectory_->flush();  // a restart finds every frame up to the checkpoint's step
+        observables_->flush();
+        catena::write_checkpoint(path("checkpoint.h5"), checkpoint);
+    });
 }
 
 void RunFolder::finish(std::string const& summary, std::string const& timeline) {
-    if (!root_) return;
-    trajectory_->close();
-    observables_->close();
-    write_text_file(path("summary.json"), summary);
-    write_text_file(path("timeline.json"), timeline);
-    write_run_report(folder_);
+    on_disk([&] {
+        trajectory_->close();
+        observables_->close();
+        write_text_file(path("summary.json"), summary);
+        write_text_file(path("timeline.json"), timeline);
+        write_run_report(folder_);
+    });
 }
 
 }  // namespace catena

@@ -1,4 +1,4 @@
-// The folder a run writes, on rank 0; on the other ranks every call is empty.
+// The folder a run writes, on rank 0. What fails there (a full disk) ends all ranks in good order: every call is collective.
 #pragma once
 
 #include <memory>
@@ -14,10 +14,10 @@ namespace catena {
 
 class RunFolder {
   public:
-    /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Collective; throws InputError on every rank.
+    /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Throws InputError on every rank.
     RunFolder(Scene const&, Communicator const&, RunOptions const&, std::int64_t first_step);
 
-    /// The files that need the first state. Collective.
+    /// The files that need the first state.
     void open(Topology const&, Frame const& first, std::vector<std::string> const& columns);
     void write(Frame const&, std::vector<double> const& observables);
     void write_checkpoint(Checkpoint const&);
@@ -28,9 +28,13 @@ class RunFolder {
     std::vector<std::string> const& topology_files() const { return topology_files_; }
 
   private:
+    /// By rank 0; a ComputationError of its tells the way back as well.
+    template <class Action>
+    void on_disk(Action const& action);
+
     Scene const& scene_;
     Communicator const& communicator_;
-    bool root_, appends_ = false;
+    bool appends_ = false;
     std::int64_t first_step_;
     std::string folder_;
     std::unique_ptr<TrajectoryWriter> trajectory_;

@@ -6,8 +6,10 @@
 
 #include "error.hpp"
 #include "integrate/run_folder.hpp"
+#include "integrate/share.hpp"
 #include "integrate/sites.hpp"
 #include "integrate/start_velocities.hpp"
+#include "integrate/step_messages.hpp"
 #include "integrate/stepper.hpp"
 #include "mpi/first_rank.hpp"
 
@@ -24,32 +26,12 @@ constexpr std::int64_t check_every = 100;
 /// A sweep is added when the error comes this near to the tolerance: it grows and falls with the chain's shape between the looks.
 constexpr double early = 0.1, rounding_of_joints = 1e-13;
 
-json timeline_json(std::vector<StepTimeline> const& steps) {
-    json list = json::array();
-    for (StepTimeline const& step : steps) {
-        json phases = json::array();
-        for (Phase const& p : step.phases) phases.push_back({{"name", p.name}, {"lane", p.lane}, {"begin", p.begin}, {"end", p.end}});
-        list.push_back({{"step", step.step}, {"phases", phases}});
-    }
-    return list;
-}
-
-/// The text of every rank, on rank 0. Collective.
-std::vector<std::string> gather_texts(Communicator const& communicator, std::string const& own) {
-    auto const ranks = static_cast<std::size_t>(communicator.size());
-    std::int64_t const length = static_cast<std::int64_t>(own.size());
-    std::vector<std::int64_t> lengths(ranks);
-    communicator.all_gather(std::as_bytes(std::span(&length, 1)), std::as_writable_bytes(std::span(lengths)),
-                            std::vector<std::int64_t>(ranks, sizeof(length)));
-    std::int64_t total = 0;
-    for (std::int64_t const l : lengths) total += l;
-    std::string all(communicator.rank() == 0 ? static_cast<std::size_t>(total) : 0, ' ');
-    communicator.gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), lengths);
-    std::vector<std::string> texts;
-    std::size_t at = 0;
-    for (std::size_t r = 0; communicator.rank() == 0 && r < ranks; at += static_cast<std::size_t>(lengths[r++]))
-        texts.push_back(all.substr(at, static_cast<std::size_t>(lengths[r])));
-    return texts;
+json as_json(Traffic const& sum, std::int64_t steps) {
+    auto const a_step = [&](std::int64_t n) { return static_cast<double>(n) / static_cast<double>(steps); };
+    return {{"gathers", a_step(sum.gathers)},
+            {"gathered_bytes", a_step(sum.gathered_bytes)},
+            {"exchanges", a_step(sum.exchanges)},
+            {"sent_bytes", a_step(sum.sent_bytes)}};
 }
 
 class Run {
@@ -63,6 +45,7 @@ class Run {
           sites_(scene_),
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator) {
         stepper_ = make_stepper(system_, scene_.dynamics);
+        for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
 
     json run() {
@@ -74,17 +57,31 @@ class Run {
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
         std::int64_t const rounds = communicator_.rounds();
+        StopAgreement stop(communicator_, options_.stop, first);
         for (std::int64_t n = first;; ++n) {
             bool const writes = n % scene_.output.every == 0;
-            bool const due = n == last_ || (scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first);
+            bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
+            bool const looks = writes || saves || n % check_every == 0;
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
+            Traffic const before = communicator_.traffic();
             at_step(n, [&] { stepper_->prepare(timeline); });
+            Traffic of_step = communicator_.traffic() - before;
             if (n == first) open(n);  // nothing is written or replaced before the first step has its forces
-            if (writes) output(n);
-            if (due || n % check_every == 0) check(n);
-            if (due) checkpoint(n);
-            if (n == last_) break;
+            stopped_by_ = n == last_ ? 0 : stop.reason_at(n);
+            bool const ends = n == last_ || stopped_by_ != 0;
+            double const error = looks || ends ? constraint_error(n) : 0;
+            if (looks) adapt(n, error);
+            if (writes) output(n, error);
+            if (saves || ends) checkpoint(n);
+            if (ends) {
+                reached_ = n;
+                error_at_end_ = error;
+                break;
+            }
+            Traffic const prepared = communicator_.traffic();
             at_step(n, [&] { stepper_->step(n, timeline); });
+            of_step += communicator_.traffic() - prepared;
+            if (n > first) count_messages(of_step);  // the first step also starts the integrator
             progress.update(n + 1);
         }
         progress.finish();
@@ -127,30 +124,39 @@ class Run {
         folder_->open(sites_.topology(), frame(n, system_.snapshot()), observables_->columns());
     }
 
-    void output(std::int64_t n) {
-        double const error = check(n);
+    void output(std::int64_t n, double error) {
         stepper_->observe(scene_.output.joint_forces);
         ChainSystem::Snapshot const snapshot = system_.snapshot();
         std::vector<EnergyTerm> const terms = system_.potential_energy();
         Frame const f = frame(n, snapshot);
-        if (!root_) return;
-        last_row_ = observables_->row(snapshot, f.positions, terms, error);
+        if (root_) last_row_ = observables_->row(snapshot, f.positions, terms, error);
         folder_->write(f, last_row_);
     }
 
-    /// The constraint error, the largest over ranks: every rank decides the same. A state that is not finite has none.
-    double check(std::int64_t n) {
+    /// The largest over ranks: every rank decides the same. A state that is not finite has none.
+    double constraint_error(std::int64_t n) {
         double const error = stepper_->constraint_error();
         if (!std::isfinite(error))
             throw ComputationError("the state is not finite at step " + std::to_string(n) +
                                    ": choose a smaller dynamics.step, or look at the start");
+        return error;
+    }
+
+    /// Another sweep where the error comes near to the tolerance. At steps that the scene chooses alone, not where a run happens to end: a
+    /// restart is to be the undisturbed run.
+    void adapt(std::int64_t n, double error) {
         worst_error_ = std::max(worst_error_, error);
-        bool const counted = n == checked_ || (n == first_ && !options_.restart.empty());  // seen before, or by the run before
-        checked_ = n;
+        bool const counted = n == first_ && !options_.restart.empty();  // by the run before
         double const tolerance = scene_.dynamics.constraint_tolerance;
         if (error > std::max(early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted && stepper_->add_sweep())
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
-        return error;
+    }
+
+    void count_messages(Traffic const& of_step) {
+        ++counted_steps_;
+        counted_ += of_step;
+        for (std::size_t i = 0; i < messages_.size(); ++i)
+            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]));
     }
 
     /// What fails within a step says at which.
@@ -188,68 +194,47 @@ class Run {
                                      std::to_string(dca::tree_table_version),
                                  options_.restart, "go on with the version that made it");
         });
-        share(c);
+        share(communicator_, c);
         system_.set_state(c.arrays);
         stepper_->restore(c);
         if (auto const found = c.arrays.find("largest_constraint_error"); found != c.arrays.end()) worst_error_ = found->second.at(0);
         return c.step;
     }
 
-    /// Rank 0's checkpoint to every rank.
-    void share(Checkpoint& c) {
-        if (communicator_.size() == 1) return;
-        auto const value = [&](auto& v) { communicator_.broadcast(std::as_writable_bytes(std::span(&v, 1))); };
-        auto const text = [&](std::string& s) {
-            auto size = static_cast<std::int64_t>(s.size());
-            value(size);
-            s.resize(static_cast<std::size_t>(size));
-            communicator_.broadcast(std::as_writable_bytes(std::span(s)));
-        };
-        value(c.step);
-        value(c.time);
-        json names = {{"integers", c.integers}, {"arrays", json::object()}};
-        for (auto const& [name, array] : c.arrays) names["arrays"][name] = array.size();
-        std::string packed = names.dump();
-        text(packed);
-        names = json::parse(packed);
-        c.integers = names["integers"].get<std::map<std::string, std::int64_t>>();
-        for (auto const& [name, size] : names["arrays"].items()) {
-            c.arrays[name].resize(size.get<std::size_t>());
-            communicator_.broadcast(std::as_writable_bytes(std::span(c.arrays[name])));
-        }
-    }
-
     json finish(std::int64_t first) {
-        bool const valid = worst_error_ <= scene_.dynamics.constraint_tolerance;
-        std::vector<std::string> const texts = gather_texts(communicator_, timeline_json(timelines_).dump());
+        bool const valid = std::max(worst_error_, error_at_end_) <= scene_.dynamics.constraint_tolerance;
         json const summary = summarise(first, valid);
-        json timeline{{"ranks", json::array()}};
-        for (std::size_t rank = 0; rank < texts.size(); ++rank)
-            timeline["ranks"].push_back({{"rank", rank}, {"steps", json::parse(texts[rank])}});
+        json const timeline = gather_timelines(communicator_, timelines_);
         folder_->finish(summary.dump(2) + "\n", timeline.dump() + "\n");
-        return root_ ? summary : json{{"valid", valid}};
+        return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
     }
 
     json summarise(std::int64_t first, bool valid) {
-        double const steps = static_cast<double>(last_ - first);
+        double const steps = static_cast<double>(reached_ - first);
         json s{{"title", scene_.title},
                {"scene", scene_.file},
                {"scene_hash", scene_.hash},
                {"command", options_.command_line},
                {"valid", valid}};
         s["run"] = {{"first_step", first},
-                    {"last_step", last_},
-                    {"time", time(last_)},
+                    {"last_step", reached_},
+                    {"time", time(reached_)},
                     {"integrator", name_of(scene_.dynamics.integrator)},
                     {"step", scene_.dynamics.step},
                     {"bodies", scene_.bodies()},
                     {"dof", degrees_of_freedom(scene_)}};
+        if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
         if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
         s["parallel"] = {{"ranks", communicator_.size()},
                          {"threads", system_.executor().threads()},
                          {"message_passing", message_passing_library()},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
+        std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
+        if (counted_steps_ > 0)
+            s["parallel"]["messages_a_step"] = {{"counted", as_json(counted_, counted_steps_)},
+                                                {"predicted", as_json(predicted_, counted_steps_)},
+                                                {"ranks_that_differ", differ}};
         json solvers = json::array();
         for (std::size_t i = 0; i < system_.groups().size(); ++i) {
             ChainGroup const& g = *system_.groups()[i];
@@ -266,7 +251,8 @@ class Run {
         s["solver"].update(stepper_->describe());
         bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(), [](auto const& g) { return g->has_tips(); });
         if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
-            s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
+            s["constraints"] = {{"largest_error", std::max(worst_error_, error_at_end_)},
+                                {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (OpenMmForce const* openmm = system_.openmm()) {
             double const matrix = system_.matrix_seconds();
             s["forces"] = {{"openmm", openmm_version()},
@@ -295,13 +281,16 @@ class Run {
     Sites sites_;
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
+    std::vector<StepMessages> messages_;  // one a group
+    Traffic counted_, predicted_;         // of `counted_steps_`, on this rank
     std::unique_ptr<RunFolder> folder_;
     std::unique_ptr<Observables> observables_;
     std::vector<StepTimeline> timelines_;
     std::vector<double> last_row_;
     std::vector<std::string> notes_;
-    double worst_error_ = 0, seconds_ = 0;
-    std::int64_t first_ = 0, checked_ = -1, rounds_ = 0;
+    double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
+    std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0;
+    int stopped_by_ = 0;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "integrate/stop_agreement.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 
@@ -17,12 +18,13 @@ struct RunOptions {
     std::string restart;                // checkpoint to go on from
     bool overwrite = false;
     bool quiet = false;
+    StopAgreement::Wish stop;  // the run ends after the step that is under way, with a checkpoint and what it has
     std::string command_line;  // for the summary
 };
 
 /// Runs the scene and writes its folder: trajectory.h5md, topology.pdb, observables.csv, checkpoint.h5, summary.json, timeline.json,
 /// report.html. Returns the summary (on rank 0; {"valid": ...} on the others). Collective. `valid` is false when the constraint
-/// error or a value that is not finite makes the run worthless.
+/// error or a value that is not finite makes the run worthless. A run that `stop` ended has "run": {"stopped_by": ..., "steps": ...}.
 /// Throws InputError for a folder that exists (without restart or overwrite) or a checkpoint of another scene.
 nlohmann::json run_simulation(Scene const&, Communicator const&, RunOptions const&);
 

@@ -43,6 +43,7 @@ class JointStepper final : public Stepper {
         ++corrections_;
         return true;
     }
+    int sweeps() const override { return corrections_; }
     void save(Checkpoint& c) const override {
         c.integers["corrections_of_tips"] = corrections_;
         if (!integrator_->carries_rates()) return;
@@ -58,7 +59,9 @@ class JointStepper final : public Stepper {
     }
     json describe() const override {
         int const sweeps = integrator_->evaluations_a_step() + (has_tips() ? corrections_ + 1 : 0);
-        return {{"matrix_sweeps_a_step", sweeps}, {"bias_sweeps_a_step", sweeps}};
+        json found = {{"matrix_sweeps_a_step", sweeps}, {"bias_sweeps_a_step", sweeps}};
+        if (has_tips()) found["corrections_of_tips"] = corrections_;
+        return found;
     }
 
   private:
@@ -110,6 +113,7 @@ class ConstrainedStepper final : public Stepper {
         integrator_.set_sweeps(integrator_.sweeps() + 1);
         return true;
     }
+    int sweeps() const override { return integrator_.sweeps(); }
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());

@@ -21,6 +21,8 @@ class Stepper {
     virtual double constraint_error() = 0;
     /// One more projection sweep from now on; false where there is none to add.
     virtual bool add_sweep() = 0;
+    /// Of a drift; in joint coordinates corrections of jointed tips.
+    virtual int sweeps() const = 0;
     virtual void save(Checkpoint&) const = 0;
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;

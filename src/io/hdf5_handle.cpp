@@ -53,6 +53,8 @@ void flush_to_disk(File const& handle, std::string const& file, std::string cons
 
 namespace catena {
 
+void start_hdf5() { hdf5::Quiet const started; }
+
 std::string hdf5_version() {
     unsigned major = 0, minor = 0, release = 0;
     H5get_libversion(&major, &minor, &release);

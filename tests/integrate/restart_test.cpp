@@ -23,12 +23,13 @@ std::string text_of(std::string const& file) {
 
 class Restart : public testing::TestWithParam<RunScene> {
   protected:
-    nlohmann::json run(std::string const& output, std::int64_t steps, std::string const& restart = "") {
+    nlohmann::json run(std::string const& output, std::int64_t steps, std::string const& restart = "", StopAgreement::Wish stop = {}) {
         RunOptions options;
         options.output = folder_ / output;
         options.steps = steps;
         options.restart = restart;
         options.quiet = true;
+        options.stop = std::move(stop);
         return run_simulation(parse_scene(GetParam().text, "scene.yaml"), *communicator_, options);
     }
     TemporaryFolder folder_;
@@ -54,6 +55,23 @@ TEST_P(Restart, FromTheCheckpointBefore) {
     run("parts", 20);  // leaves checkpoints at 20 and, before it, 10
     run("parts", 40, folder_ / "parts/checkpoint.previous.h5");
     EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(folder_ / "parts/checkpoint.h5").arrays);
+    EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
+}
+
+TEST_P(Restart, WhereItWasAskedToStop) {
+    run("whole", 40);
+    int looks = 0;
+    auto const stopped = run("parts", 40, "", [&] { return ++looks == 4 ? 15 : 0; });
+    EXPECT_EQ(stopped["run"]["stopped_by"], 15);
+    EXPECT_EQ(stopped["run"]["steps"], 40);
+    auto const step = stopped["run"]["last_step"].get<std::int64_t>();
+    EXPECT_GT(step, 0);
+    EXPECT_LT(step, 40);
+    EXPECT_EQ(read_checkpoint(folder_ / "parts/checkpoint.h5").step, step);
+    run("parts", 40, folder_ / "parts/checkpoint.h5");
+    Checkpoint const whole = read_checkpoint(folder_ / "whole/checkpoint.h5"), parts = read_checkpoint(folder_ / "parts/checkpoint.h5");
+    EXPECT_EQ(whole.integers, parts.integers);
+    EXPECT_EQ(whole.arrays, parts.arrays);
     EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
 }
 

@@ -148,6 +148,18 @@ TEST_P(CommunicatorTest, RoundsCountWhatWasSent) {
     EXPECT_EQ(ranks().rounds() - before, message_passing_library() == "none" ? 0 : 3);
 }
 
+TEST_P(CommunicatorTest, TrafficCountsGathersAndExchanges) {
+    Traffic const before = ranks().traffic();
+    std::vector<std::int64_t> all(all_blocks().size());
+    ranks().all_gather(readable(block_of(ranks().rank())), writable(all), bytes_of_ranks());
+    std::vector<double> send(3, 1.0), receive(3);
+    int const inboard = ranks().rank() - 1, outboard = ranks().rank() + 1 < ranks().size() ? ranks().rank() + 1 : -1;
+    ranks().exchange(readable(send), outboard, writable(receive), inboard);
+    Traffic const counted = ranks().traffic() - before;
+    if (message_passing_library() == "none") return;
+    EXPECT_EQ(counted, (Traffic{1, 8 * std::ssize(all), 1, outboard < 0 ? 0 : 24}));
+}
+
 INSTANTIATE_TEST_SUITE_P(Messages, CommunicatorTest, ::testing::Values(Messages::whole, Messages::in_pieces),
                          [](auto const& test) { return test.param == Messages::whole ? "Whole" : "InPieces"; });
 

@@ -1,0 +1,46 @@
+# What the job scripts of jobs/ share. To be sourced by a batch script that was submitted from Catena's folder, or with CATENA_ROOT set to it.
+# shellcheck shell=bash
+
+# shellcheck source=jobs/common.sh
+source "${CATENA_ROOT:-$PWD}/jobs/common.sh"
+cd "${SLURM_SUBMIT_DIR:-$root}" || exit
+catena=${CATENA_PROGRAM:-$root/build/release/catena}
+[ -x "$catena" ] || fail "no such program ($catena): build it (jobs/quickstart.sh), or name it by CATENA_PROGRAM"
+mpi_environment
+threads=${SLURM_CPUS_PER_TASK:-1}
+# Each rank has the cores that the job asked for; the words of mpirun about a rank that ended are wanted here.
+mpirun=(mpirun --map-by "slot:PE=$threads")
+
+stopped=3  # how catena says that a signal stopped it and that its checkpoint is good
+
+# run_catena SCENE FOLDER OPTION...: `catena run` over the job's ranks, from the folder's checkpoint where there is one. SIGUSR1 and SIGTERM
+# are handed on as SIGUSR1, at which catena writes a checkpoint. Returns catena's exit status.
+run_catena() {
+    local scene=$1 folder=$2 words launcher status=0
+    shift 2
+    words=(run "$scene" --output "$folder" --threads "$threads")
+    if [ -e "$folder/checkpoint.h5" ]; then
+        words+=(--restart "$folder/checkpoint.h5")
+    elif [ "${SLURM_RESTART_COUNT:-0}" -gt 0 ]; then
+        words+=(--overwrite)  # the run before ended before its first checkpoint
+    fi
+    "${mpirun[@]}" "$catena" "${words[@]}" "$@" &
+    launcher=$!
+    trap 'kill -USR1 "$launcher" 2>/dev/null' USR1 TERM
+    while kill -0 "$launcher" 2>/dev/null; do wait "$launcher" || true; done  # a signal ends the waiting, not the run
+    wait "$launcher" || status=$?
+    trap - USR1 TERM
+    if [ "$status" -gt 128 ]; then echo "catena was ended by signal $((status - 128)): its last checkpoint is in $folder" >&2; fi
+    return "$status"
+}
+
+# run_to_the_end SCENE FOLDER OPTION...: run_catena in a job that goes back to the queue when its time is nearly up, and goes on from its
+# checkpoint when its turn comes again.
+run_to_the_end() {
+    local status=0
+    run_catena "$@" || status=$?
+    [ "$status" -eq "$stopped" ] || return "$status"
+    echo "time is nearly up: job $SLURM_JOB_ID goes back to the queue"
+    scontrol requeue "$SLURM_JOB_ID"
+    sleep 60  # Slurm ends this script
+}

@@ -1,0 +1,157 @@
+#include "mpi/network.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <chrono>
+#include <limits>
+#include <set>
+#include <span>
+
+namespace catena {
+namespace {
+
+constexpr std::int64_t message_bytes[] = {8, 64, 512, 4096, 32768, 262144, 2097152};
+/// Units of a chain that is cut (see tree.hpp), and directions a handle.
+constexpr std::int64_t units = 64;
+constexpr int kinds[] = {1, 2, 3, 4, 5, 6};
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// The slowest rank's seconds in the fastest of `repeat` calls after one that warms up: what others do on the cores is not the network's.
+/// Collective.
+template <class Action>
+double timed(Communicator const& communicator, int repeat, Action&& action) {
+    double fastest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= repeat; ++i) {
+        communicator.barrier();
+        double const start = now();
+        action();
+        double const slowest = communicator.max(now() - start);
+        if (i > 0) fastest = std::min(fastest, slowest);
+    }
+    return fastest;
+}
+
+using HostName = std::array<char, 64>;
+
+std::vector<std::string> hosts_of_ranks(Communicator const& communicator) {
+    HostName own{};
+    ::gethostname(own.data(), own.size() - 1);
+    std::vector<HostName> all(static_cast<std::size_t>(communicator.size()));
+    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(all.size(), sizeof(HostName)));
+    std::vector<std::string> names;
+    for (HostName const& name : all) names.emplace_back(name.data());
+    return names;
+}
+
+std::int64_t different(std::vector<std::string> const& names) { return std::ssize(std::set<std::string>(names.begin(), names.end())); }
+
+/// There and back between rank 0 and `partner`, many times in one measurement: a clock's grain is as long as a short message.
+double there_and_back(Communicator const& communicator, int partner, std::int64_t bytes, int repeat) {
+    int const trips = static_cast<int>(std::clamp<std::int64_t>(2097152 / bytes, 4, 100));
+    std::vector<std::byte> data(static_cast<std::size_t>(bytes));
+    int const rank = communicator.rank(), other = rank == 0 ? partner : 0;
+    double const seconds = timed(communicator, repeat, [&] {
+        for (int trip = 0; trip < trips && (rank == 0 || rank == partner); ++trip) {
+            if (rank == 0) communicator.exchange(data, other, {}, -1);
+            communicator.exchange({}, -1, data, other);
+            if (rank != 0) communicator.exchange(data, other, {}, -1);
+        }
+    });
+    return 0.5 * seconds / trips;
+}
+
+/// The latency is the shortest message's, the rest the longest one's.
+Link link_of(std::vector<TimedMessage> const& messages, std::string const& what) {
+    std::vector<TimedMessage> mine;
+    std::copy_if(messages.begin(), messages.end(), std::back_inserter(mine), [&](TimedMessage const& m) { return m.what == what; });
+    TimedMessage const &shortest = mine.front(), &longest = mine.back();
+    double const a_byte = (longest.seconds - shortest.seconds) / static_cast<double>(longest.bytes - shortest.bytes);
+    return {shortest.seconds, std::max(a_byte, 0.0)};
+}
+
+/// A gather of `count` records that ranks share as evenly as they can.
+class Gather {
+  public:
+    Gather(Communicator const& communicator, std::int64_t count, std::int64_t bytes_of_one)
+        : communicator_(communicator), all_(static_cast<std::size_t>(count * bytes_of_one)) {
+        std::int64_t const ranks = communicator.size();
+        for (std::int64_t r = 0; r < ranks; ++r) bytes_.push_back((count * (r + 1) / ranks - count * r / ranks) * bytes_of_one);
+        own_.resize(static_cast<std::size_t>(bytes_[static_cast<std::size_t>(communicator.rank())]));
+    }
+    void operator()() { communicator_.all_gather(own_, all_, bytes_); }
+
+  private:
+    Communicator const& communicator_;
+    std::vector<std::int64_t> bytes_;
+    std::vector<std::byte> own_, all_;
+};
+
+void time_gathers(NetworkTimes& times, Communicator const& communicator, int repeat) {
+    auto const add = [&](std::string const& what, std::int64_t numbers) {
+        std::int64_t const bytes = numbers * static_cast<std::int64_t>(sizeof(double));
+        Gather gather(communicator, units, bytes);
+        times.gathers.push_back({what, units * bytes, timed(communicator, repeat, gather)});
+    };
+    for (int const k : kinds) {
+        add("biases, " + std::to_string(k) + (k == 1 ? " direction" : " directions"), 2 * k);
+        add("matrices, " + std::to_string(k) + (k == 1 ? " direction" : " directions"), 2 * k * k + k);
+    }
+    add("kinematics", 13);
+    std::vector<double> ratios;
+    for (TimedMessage const& gather : times.gathers)
+        ratios.push_back(gather.seconds / times.network.gather_seconds(gather.bytes, times.ranks, times.hosts));
+    std::nth_element(ratios.begin(), ratios.begin() + std::ssize(ratios) / 2, ratios.end());
+    times.network.gather_overhead = ratios[ratios.size() / 2];
+}
+
+double stages(std::int64_t count) { return static_cast<double>(std::bit_width(static_cast<std::uint64_t>(count - 1))); }
+
+}  // namespace
+
+double Network::gather_seconds(std::int64_t bytes, std::int64_t ranks, std::int64_t hosts) const {
+    if (ranks == 1) return 0;
+    std::int64_t const on_host = (ranks + hosts - 1) / hosts;
+    double seconds =
+        static_cast<double>(bytes) * (1.0 - 1.0 / static_cast<double>(ranks)) * (hosts > 1 ? far : near).value().seconds_a_byte;
+    if (on_host > 1) seconds += stages(on_host) * near.value().latency;
+    if (hosts > 1) seconds += stages(hosts) * far.value().latency;
+    return gather_overhead * seconds;
+}
+
+NetworkTimes time_network(Communicator const& communicator, int repeat) {
+    std::vector<std::string> const host = hosts_of_ranks(communicator);
+    NetworkTimes times;
+    times.ranks = communicator.size();
+    times.hosts = different(host);
+    for (bool const far : {false, true}) {
+        auto const partner = std::find_if(host.begin() + 1, host.end(), [&](std::string const& name) { return (name != host[0]) == far; });
+        if (partner == host.end()) continue;
+        std::string const what = far ? "far" : "near";
+        for (std::int64_t const bytes : message_bytes)
+            times.messages.push_back({what, bytes, there_and_back(communicator, static_cast<int>(partner - host.begin()), bytes, repeat)});
+        (far ? times.network.far : times.network.near) = link_of(times.messages, what);
+    }
+    if (times.ranks == 1) return times;
+    if (!times.network.near) times.network.near = times.network.far;  // one rank a host
+    time_gathers(times, communicator, repeat);
+    return times;
+}
+
+double time_messages(Communicator const& communicator, Traffic const& a_step, int repeat) {
+    Gather gather(communicator, a_step.gathers > 0 ? a_step.gathered_bytes / a_step.gathers : 0, 1);
+    std::vector<std::byte> send(static_cast<std::size_t>(a_step.exchanges > 0 ? a_step.sent_bytes / a_step.exchanges : 0)), receive = send;
+    int const before = communicator.rank() - 1, after = communicator.rank() + 1 < communicator.size() ? communicator.rank() + 1 : -1;
+    return timed(communicator, repeat, [&] {
+        for (std::int64_t i = 0; i < a_step.gathers; ++i) gather();
+        for (std::int64_t i = 0; i < a_step.exchanges; ++i) communicator.exchange(send, after, receive, before);
+    });
+}
+
+std::int64_t count_hosts(Communicator const& communicator) { return different(hosts_of_ranks(communicator)); }
+
+}  // namespace catena

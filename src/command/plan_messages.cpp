@@ -1,0 +1,166 @@
+#include "command/plan_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <concepts>
+
+#include "error.hpp"
+#include "integrate/step_messages.hpp"
+#include "io/output_file.hpp"
+#include "mpi/network.hpp"
+
+namespace catena::command {
+namespace {
+
+/// Of a drift at 10 fs (README); the run chooses its own.
+constexpr int usual_drift_sweeps = 5;
+constexpr int measurements = 21;
+
+Json json_of(Traffic const& t) {
+    return {{"gathers", t.gathers}, {"gathered_bytes", t.gathered_bytes}, {"exchanges", t.exchanges}, {"sent_bytes", t.sent_bytes}};
+}
+
+Json json_of(Link const& link) { return {{"latency", link.latency}, {"seconds_a_byte", link.seconds_a_byte}}; }
+
+/// Sums over the groups: without sweeps of drifts (corrections of tips), and what each of these adds.
+struct Messages {
+    Traffic fixed, each;
+    Traffic with(int sweeps) const {
+        Traffic sum = fixed;
+        for (int i = 0; i < sweeps; ++i) sum += each;
+        return sum;
+    }
+};
+
+/// As a rank in the middle sees it, were there so many.
+Cut cut_on(ChainGroup const& group, bool pairwise, std::int64_t ranks) {
+    dca::Partition const& here = group.partition;
+    std::vector<std::int64_t> lengths;
+    for (dca::ChainTree const& tree : here.trees) lengths.push_back(tree.bodies);
+    dca::Partition const there(lengths, pairwise, static_cast<int>(ranks), here.jointed_tip);
+    Cut cut;
+    for (int chain = 0; chain < there.chains(); ++chain)
+        if (there.is_split(chain)) cut.shared_units += there.trees[static_cast<std::size_t>(chain)].units;
+    cut.inboard = cut.outboard = cut.shared_units > 0;
+    return cut;
+}
+
+class Groups {
+  public:
+    explicit Groups(ChainSystem const& system) : system_(system) {
+        for (auto const& group : system.groups()) of_step_.emplace_back(*group, system.scene());
+    }
+    /// `cut`: of a group, as the rank that is asked for sees it.
+    template <class CutOf>
+        requires std::invocable<CutOf, ChainGroup const&>
+    Messages messages(CutOf const& cut) const {
+        Messages sum;
+        for (std::size_t i = 0; i < of_step_.size(); ++i) {
+            Cut const at = cut(*system_.groups()[i]);
+            Traffic const fixed = of_step_[i].a_step(0, at);
+            sum.fixed += fixed;
+            sum.each += of_step_[i].a_step(1, at) - fixed;
+        }
+        return sum;
+    }
+    /// As a rank in the middle of so many sees them.
+    Messages messages(std::int64_t ranks) const {
+        bool const pairwise = system_.scene().solver.pairwise();
+        return messages([&](ChainGroup const& group) { return cut_on(group, pairwise, ranks); });
+    }
+    int usual_sweeps() const {
+        return uses_joint_coordinates(system_.scene().dynamics.integrator) ? JointDynamics::usual_corrections : usual_drift_sweeps;
+    }
+
+  private:
+    ChainSystem const& system_;
+    std::vector<StepMessages> of_step_;
+};
+
+Link link_of(Json const& json) { return {json.at("latency").get<double>(), json.at("seconds_a_byte").get<double>()}; }
+
+Network read_network(std::string const& file, std::int64_t ranks, std::int64_t hosts) {
+    Network network;
+    try {
+        Json const json = Json::parse(read_text_file(file)).at("network");
+        if (!json.at("near").is_null()) network.near = link_of(json.at("near"));
+        if (!json.at("far").is_null()) network.far = link_of(json.at("far"));
+        network.gather_overhead = json.at("gather_overhead").get<double>();
+    } catch (Json::exception const&) {
+        throw InputError("not the JSON of a network", "--network " + file, "write it by mpirun -np 2 catena bench network --json " + file);
+    }
+    if (ranks > 1 && !network.near)
+        throw InputError("measured on one rank", "--network " + file, "measure it on two at least: mpirun -np 2 catena bench network");
+    if (hosts > 1 && !network.far)
+        throw InputError("measured on one host", "--network " + file, "measure it over two hosts, or leave --hosts out");
+    return network;
+}
+
+double seconds_of(Traffic const& t, Network const& network, std::int64_t ranks, std::int64_t hosts) {
+    double seconds = 0;
+    if (t.gathers > 0) seconds += static_cast<double>(t.gathers) * network.gather_seconds(t.gathered_bytes / t.gathers, ranks, hosts);
+    if (t.exchanges > 0) seconds += static_cast<double>(t.exchanges) * network.exchange_seconds(t.sent_bytes / t.exchanges, hosts);
+    return seconds;
+}
+
+/// The model's word on the ranks at hand beside what they take: the same messages, nothing computed meanwhile.
+void add_measured(Text& text, Json& json, ChainSystem const& system, Groups const& groups, Network const& network) {
+    Communicator const& communicator = system.communicator();
+    std::int64_t const ranks = communicator.size(), hosts = count_hosts(communicator);
+    json["network"] = {{"measured", nullptr}};
+    if (ranks == 1 || !network.near || (hosts > 1 && !network.far)) return;
+    Traffic const t = groups.messages(ranks).with(groups.usual_sweeps());
+    double const measured = time_messages(communicator, t, measurements), predicted = seconds_of(t, network, ranks, hosts);
+    text.entry("measured", fmt::format("{} on these {} ranks, predicted {}", duration_text(measured), ranks, duration_text(predicted)));
+    json["network"]["measured"] = {{"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
+}
+
+void add_prediction(Text& text, Json& json, ChainSystem const& system, Groups const& groups, PlanRequest const& request) {
+    Network const network = read_network(request.network, request.ranks, request.hosts);
+    Table table({"ranks", "hosts", "gathers", "bytes", "exchanges", "bytes sent", "time a step"});
+    Json rows = Json::array();
+    for (std::int64_t ranks = std::min<std::int64_t>(2, request.ranks);; ranks = std::min(2 * ranks, request.ranks)) {
+        std::int64_t const hosts = std::max<std::int64_t>(1, request.hosts * ranks / request.ranks);
+        Traffic const t = groups.messages(ranks).with(groups.usual_sweeps());
+        double const seconds = seconds_of(t, network, ranks, hosts);
+        table.add({std::to_string(ranks), std::to_string(hosts), std::to_string(t.gathers), std::to_string(t.gathered_bytes),
+                   std::to_string(t.exchanges), std::to_string(t.sent_bytes), duration_text(seconds)});
+        Json row = {{"ranks", ranks}, {"hosts", hosts}, {"seconds", seconds}};
+        row.update(json_of(t));
+        rows.push_back(row);
+        if (ranks == request.ranks) break;
+    }
+    add_measured(text, json, system, groups, network);
+    text.entry("predicted",
+               fmt::format("messages of a step and their time with {} sweeps, network of {}", groups.usual_sweeps(), request.network));
+    text.add(table);
+    json["network"].update({{"near", network.near ? json_of(*network.near) : Json(nullptr)},
+                            {"far", network.far ? json_of(*network.far) : Json(nullptr)},
+                            {"sweeps", groups.usual_sweeps()},
+                            {"predicted", rows}});
+}
+
+}  // namespace
+
+void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest const& request) {
+    json["messages"] = nullptr;
+    if (!system.scene().dynamics.given) {
+        if (request.ranks > 0)
+            throw InputError("the scene has no dynamics section", system.scene().file, "add one: --ranks predicts its steps");
+        return;
+    }
+    Groups const groups(system);
+    Messages const here = groups.messages([](ChainGroup const& group) { return cut_of(group); });
+    text.heading("messages");
+    text.entry(
+        "a step",
+        fmt::format("{} gathers of {} bytes in all, {} exchanges in which rank 0 sends {} bytes; each sweep of a drift or correction "
+                    "of tips adds {} gathers, {} bytes, {} exchanges, {} bytes",
+                    here.fixed.gathers, here.fixed.gathered_bytes, here.fixed.exchanges, here.fixed.sent_bytes, here.each.gathers,
+                    here.each.gathered_bytes, here.each.exchanges, here.each.sent_bytes));
+    json["messages"] = {{"fixed", json_of(here.fixed)}, {"each_sweep", json_of(here.each)}};
+    if (request.ranks > 0) add_prediction(text, json, system, groups, request);
+}
+
+}  // namespace catena::command

@@ -1,0 +1,19 @@
+// What ranks tell each other about a run beside its steps: the checkpoint at its start, their timelines at its end.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "integrate/timeline.hpp"
+#include "io/output.hpp"
+#include "mpi/communicator.hpp"
+
+namespace catena {
+
+/// Rank 0's checkpoint to every rank, its notes excepted. Collective.
+void share(Communicator const&, Checkpoint&);
+
+/// {"ranks": [{"rank", "steps": [{"step", "phases": [...]}]}]} on rank 0. Collective.
+nlohmann::json gather_timelines(Communicator const&, std::vector<StepTimeline> const&);
+
+}  // namespace catena

@@ -1,0 +1,87 @@
+#include "integrate/step_messages.hpp"
+
+#include "integrate/body_loads.hpp"
+
+namespace catena {
+namespace {
+
+/// Messages added up; `numbers`: doubles of one unit or body.
+class Sum {
+  public:
+    explicit Sum(Cut const& cut) : cut_(cut) {}
+    void gathers(std::int64_t times, std::int64_t numbers) {
+        if (cut_.shared_units == 0) return;
+        traffic_.gathers += times;
+        traffic_.gathered_bytes += times * bytes(cut_.shared_units * numbers);
+    }
+    /// As exchange_from_inboard: the last body goes to the rank after.
+    void from_inboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.outboard); }
+    void from_outboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.inboard); }
+    /// Sweeps of the tree with K directions a handle (see segment.hpp).
+    void matrix_sweeps(std::int64_t times, std::int64_t k) { gathers(times, 2 * k * k + k); }
+    void bias_sweeps(std::int64_t times, std::int64_t k) { gathers(times, 2 * k); }
+    Traffic const& traffic() const { return traffic_; }
+
+  private:
+    static std::int64_t bytes(std::int64_t numbers) { return numbers * static_cast<std::int64_t>(sizeof(double)); }
+    void exchanges(std::int64_t times, std::int64_t numbers, bool sends) {
+        if (!cut_.inboard && !cut_.outboard) return;
+        traffic_.exchanges += times;
+        if (sends) traffic_.sent_bytes += times * bytes(numbers);
+    }
+    Cut cut_;
+    Traffic traffic_;
+};
+
+}  // namespace
+
+Cut cut_of(ChainGroup const& group) {
+    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0, group.neighbour_outboard >= 0};
+}
+
+StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
+    : integrator_(scene.dynamics.integrator),
+      directions_(group.directions),
+      absolute_(group.beads || group.linked || group.axes == Axes::world),
+      beads_(group.beads),
+      linked_(group.linked),
+      moving_meeting_(group.moving_meeting()),
+      tips_(group.has_tips()) {
+    BodyLoads const loads = group.beads ? BodyLoads() : make_body_loads(group, scene);
+    joint_loads_ = loads.joint_loads;
+    springs_ = loads.springs;
+}
+
+Traffic StepMessages::a_step(int sweeps, Cut const& cut) const { return absolute_ ? absolute(sweeps, cut) : joint(sweeps, cut); }
+
+/// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its matrices; a projection beside each.
+Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
+    std::int64_t const drifts = integrator_ == Integrator::g_baoab ? 2 : 1, closings = drifts * sweeps;
+    Sum sum(cut);
+    sum.matrix_sweeps(drifts, directions_);
+    sum.bias_sweeps(drifts + closings, directions_);
+    sum.from_inboard(closings, 3);
+    if (beads_ || linked_) {
+        sum.from_inboard(drifts, 3);
+        sum.from_outboard(drifts, 3);
+    } else {
+        if (springs_) sum.from_inboard(drifts, 4);
+        if (joint_loads_) sum.from_outboard(1, 3);
+    }
+    return sum.traffic();
+}
+
+/// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without loads.
+Traffic StepMessages::joint(int corrections, Cut const& cut) const {
+    std::int64_t const evaluations = integrator_ == Integrator::rk4 ? 4 : 1, motions = evaluations + (tips_ ? corrections + 1 : 0);
+    Sum sum(cut);
+    sum.gathers(motions, 13);
+    if (moving_meeting_) sum.from_outboard(motions, 12);
+    if (joint_loads_) sum.from_outboard(evaluations, 4);
+    sum.matrix_sweeps(motions, directions_);
+    sum.bias_sweeps(motions, directions_);
+    sum.from_inboard(motions, 4);
+    return sum.traffic();
+}
+
+}  // namespace catena

@@ -1,0 +1,31 @@
+// What a step costs in messages, told from the partition alone: the sizes that the communicator then counts. OpenMM's are not among them.
+#pragma once
+
+#include "chain/chain_group.hpp"
+#include "scene/scene.hpp"
+
+namespace catena {
+
+/// What the ranks' ends cut of a group of chains, as one rank sees it.
+struct Cut {
+    std::int64_t shared_units = 0;           // of chains that several ranks share
+    bool inboard = false, outboard = false;  // a chain goes on there on another rank
+};
+Cut cut_of(ChainGroup const&);
+
+class StepMessages {
+  public:
+    StepMessages(ChainGroup const&, Scene const&);
+    /// `sweeps`: Stepper::sweeps().
+    Traffic a_step(int sweeps, Cut const&) const;
+
+  private:
+    Traffic absolute(int sweeps, Cut const&) const;
+    Traffic joint(int corrections, Cut const&) const;
+
+    Integrator integrator_;
+    std::int64_t directions_;
+    bool absolute_, beads_, linked_, joint_loads_, springs_, moving_meeting_, tips_;
+};
+
+}  // namespace catena
