@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
+#include "integrate/force_summary.hpp"
 #include "integrate/run_folder.hpp"
 #include "integrate/share.hpp"
 #include "integrate/sites.hpp"
@@ -63,6 +64,7 @@ class Run {
             bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
             bool const looks = writes || saves || n % check_every == 0;
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
+            if ((saves || n == last_) && system_.openmm()) system_.openmm()->renew_ghosts();  // as after a restart from here
             Traffic const before = communicator_.traffic();
             at_step(n, [&] { stepper_->prepare(timeline); });
             Traffic of_step = communicator_.traffic() - before;
@@ -164,6 +166,8 @@ class Run {
     void at_step(std::int64_t n, Action const& action) {
         try {
             action();
+        } catch (SharedError const& error) {
+            throw SharedError("at step " + std::to_string(n) + ": " + error.what());
         } catch (ComputationError const& error) {
             throw ComputationError("at step " + std::to_string(n) + ": " + error.what());
         }
@@ -203,13 +207,13 @@ class Run {
 
     json finish(std::int64_t first) {
         bool const valid = std::max(worst_error_, error_at_end_) <= scene_.dynamics.constraint_tolerance;
-        json const summary = summarise(first, valid);
+        json const summary = summarise(first, valid, summary_of_forces(system_, reached_ - first));
         json const timeline = gather_timelines(communicator_, timelines_);
         folder_->finish(summary.dump(2) + "\n", timeline.dump() + "\n");
         return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
     }
 
-    json summarise(std::int64_t first, bool valid) {
+    json summarise(std::int64_t first, bool valid, json const& forces) {
         double const steps = static_cast<double>(reached_ - first);
         json s{{"title", scene_.title},
                {"scene", scene_.file},
@@ -253,17 +257,7 @@ class Run {
         if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
             s["constraints"] = {{"largest_error", std::max(worst_error_, error_at_end_)},
                                 {"tolerance", scene_.dynamics.constraint_tolerance}};
-        if (OpenMmForce const* openmm = system_.openmm()) {
-            double const matrix = system_.matrix_seconds();
-            s["forces"] = {{"openmm", openmm_version()},
-                           {"platform", openmm->platform()},
-                           {"path", openmm->path()},
-                           {"description", openmm->description()},
-                           {"matrix_sweep_seconds", matrix},
-                           {"matrix_sweep_hidden", matrix > 0 ? system_.hidden_seconds() / matrix : 0.0},
-                           {"largest_context", openmm->largest_context()},
-                           {"rebuilds", openmm->rebuilds()}};
-        }
+        if (system_.openmm()) s["forces"] = forces;
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;
         for (std::size_t i = 0; i < last_row_.size(); ++i) s["last_observables"][observables_->columns()[i]] = last_row_[i];
