@@ -26,8 +26,9 @@ Outcome list() {
         "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
         "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n"
         "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this machine, beside the chapter's numbers\n"
-        "            (--figure, --output)\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures"}}};
+        "            (--figure, --output)\n"
+        "plan        the planner's predictions of an evaluation beside what is measured, and its choices beside the best of all\n";
+    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures", "plan"}}};
     return outcome;
 }
 
@@ -234,6 +235,7 @@ Outcome run_bench(Communicator const& communicator, BenchRequest const& request)
     if (request.name == "list") return list();
     if (request.name == "figures") return bench_figures(communicator, request);
     if (request.name == "evaluation") return evaluation(communicator, request);
+    if (request.name == "plan") return bench_plan(communicator, request);
     if (request.name == "openmm") return bench_openmm(communicator, request);
     return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);
 }

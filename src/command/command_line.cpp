@@ -16,12 +16,12 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures"};
+constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures", "plan"};
 
 /// What the contract promises for later versions, by command.
 std::map<std::string, std::vector<std::string>> const later_options{
     {"check", {}},
-    {"plan", {"--explain", "--ranks", "--hosts"}},
+    {"plan", {"--ranks", "--hosts"}},
     {"solve", {"--precision", "--refine"}},
     {"run", {"--precision", "--refine"}},
     {"report", {"--suite", "--quick", "--precision"}},
@@ -34,7 +34,7 @@ struct Words {
     CommonOptions common;
     std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures;
     std::vector<std::string> scenes;
-    bool overwrite = false;
+    bool overwrite = false, explain = false, measure = false, calibrate = false;
 };
 
 void add_common(CLI::App& command, Words& words) {
@@ -77,10 +77,14 @@ void add_commands(CLI::App& app, Words& words) {
     command->footer(
         "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
 
-    command = app.add_subcommand("plan", "print what will run and what is left out, and why");
+    command = app.add_subcommand("plan", "print what will run, how long it takes, what is left out, and why");
     add_scene(*command, words);
+    command->add_flag("--explain", words.explain, "also measure what is saved by what is left out");
+    command->add_flag("--measure", words.measure, "also measure an evaluation, beside what was predicted");
+    command->add_flag("--calibrate", words.calibrate,
+                      "measure every kind of chain on this machine, for all later predictions (a scene may be left out)");
     command->footer(
-        "Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments");
+        "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments");
 
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
@@ -204,6 +208,18 @@ R scene_request(Words const& words, std::string const& command) {
     return request;
 }
 
+PlanRequest plan_request(Words const& words) {
+    PlanRequest request;
+    if (words.calibrate && words.scene.empty())
+        static_cast<CommonOptions&>(request) = checked(words.common);
+    else
+        request = scene_request<PlanRequest>(words, "plan");
+    request.explain = words.explain;
+    request.measure = words.measure;
+    request.calibrate = words.calibrate;
+    return request;
+}
+
 RunRequest run_request(Words const& words) {
     auto request = scene_request<RunRequest>(words, "run");
     if (!words.steps.empty()) request.steps = whole_number("--steps", words.steps, 0);
@@ -233,6 +249,9 @@ BenchRequest bench_request(Words const& words) {
     request.name = known_value("catena bench", words.name, bench_names);
     if (request.name == "solve" || request.name == "evaluation") request.sizes = {1000, 10000, 100000};
     if (request.name == "evaluation") request.joints = {"link", "spherical"};
+    if (request.name == "plan") request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
+    if (request.name == "plan")
+        for (std::int64_t bodies = 16; bodies <= 1 << 20; bodies *= 2) request.sizes.push_back(bodies);
     if (request.name == "figures") request.sizes = {2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048};
     if (!words.sizes.empty()) {
         request.sizes.clear();
@@ -254,7 +273,7 @@ BenchRequest bench_request(Words const& words) {
 
 Request request_of(std::string const& command, Words const& words) {
     if (command == "check") return scene_request<CheckRequest>(words, command);
-    if (command == "plan") return scene_request<PlanRequest>(words, command);
+    if (command == "plan") return plan_request(words);
     if (command == "run") return run_request(words);
     if (command == "report") return report_request(words);
     if (command == "bench") return bench_request(words);

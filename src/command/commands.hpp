@@ -11,8 +11,10 @@ namespace catena::command {
 /// What the scene is: chains, bodies, degrees of freedom, handle kinds, forces, memory.
 Outcome check_scene(Scene const&, Communicator const&);
 
-/// What will run and what is left out, and why.
-Outcome plan_scene(Scene const&, Communicator const&);
+/// What will run, how long it takes, what is left out, and why.
+Outcome plan_scene(Scene const&, Communicator const&, PlanRequest const&);
+/// Measures every kind of chain, and keeps that.
+Outcome calibrate(Communicator const&, PlanRequest const&);
 
 /// One evaluation, timed, with its residual.
 Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
@@ -28,5 +30,7 @@ Outcome run_bench(Communicator const&, BenchRequest const&);
 /// Catena's steps beside OpenMM's own; what overlap brings. One rank.
 Outcome bench_openmm(Communicator const&, BenchRequest const&);
 Outcome bench_overlap(Communicator const&, BenchRequest const&);
+/// Predictions and choices of the planner beside what is measured. One rank.
+Outcome bench_plan(Communicator const&, BenchRequest const&);
 
 }  // namespace catena::command

@@ -4,24 +4,17 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/predictions.hpp"
 #include "cuda/solver.hpp"
 #include "dca/segment.hpp"
 #include "integrate/chain_system.hpp"
+#include "plan/cache.hpp"
 
 namespace catena::command {
 namespace {
 
 Axes axes_for(Scene const& scene) {
     return scene.dynamics.given && !uses_joint_coordinates(scene.dynamics.integrator) ? Axes::world : Axes::joint;
-}
-
-std::string backend_reason(Scene const& scene, Communicator const& communicator) {
-    if (scene.solver.backend != Backend::automatic) return "asked for";
-    int const threads = choose_threads(scene, communicator);
-    if (threads == 1) return "auto: one thread a rank";
-    std::int64_t const share = scene.bodies() / communicator.size();
-    bool const many = choose_backend(scene, communicator) == Backend::openmp;
-    return fmt::format("auto: {} bodies a rank are {} to be worth {} threads", share, many ? "enough" : "too few", threads);
 }
 
 /// What one evaluation of a group costs in messages.
@@ -179,14 +172,43 @@ void add_output(Text& text, Json& json, Scene const& scene) {
     json["output"] = {{"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
 }
 
+/// Of the chains themselves: OpenMM is left out.
+plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
+    scene.forces.openmm.reset();
+    ChainSystem system(scene, axes, communicator);
+    return plan::measure_phases(system, {5, 200, 0.5});
+}
+
 }  // namespace
 
-Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
-    ChainSystem const system(scene, axes_for(scene), communicator);
+Outcome calibrate(Communicator const& communicator, PlanRequest const& request) {
+    Outcome outcome;
+    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
+    plan::with_planner(communicator, threads, largest_sample, [&](plan::Planner& planner) {
+        double const start = seconds_now();
+        planner.measure_everything();
+        std::string const file = plan::cache_file(planner.machine());
+        outcome.text = fmt::format("{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
+                                   counted(static_cast<long long>(planner.calibration().points()), "point", "points"), seconds_now() - start,
+                                   file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME" : "kept in " + file);
+        outcome.json = {{"machine", planner.machine().identity}, {"points", planner.calibration().points()}, {"file", file}};
+    });
+    return outcome;
+}
+
+Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanRequest const& request) {
+    Axes const axes = axes_for(given);
+    Predictions predictions;
+    plan::with_planner(communicator, given.solver.threads, largest_sample,
+                       [&](plan::Planner& planner) { predictions = predict(planner, given, axes, communicator.size()); });
+    share(communicator, predictions.choice);
+    Scene const scene = with_choice(given, predictions.choice);
+    ChainSystem const system(scene, axes, communicator);
+    predictions.choice.arrangement = {system.backend(), system.executor().threads()};
     std::vector<SolverReport> const reports = system.solver_reports();
     Outcome outcome;
     Json& json = outcome.json;
-    std::string const reason = backend_reason(scene, communicator);
+    std::string const& reason = predictions.choice.reason;
     json = {{"scene", scene.file},
             {"backend", name_of(system.backend())},
             {"backend_reason", reason},
@@ -219,8 +241,11 @@ Outcome plan_scene(Scene const& scene, Communicator const& communicator) {
     text.heading("left out");
     json["left_out"] = left_out(scene, system);
     for (Json const& line : json["left_out"]) text.note(line.get<std::string>());
-    text.heading("no prediction of times in this version");
-    json["predicted_seconds"] = nullptr;
+    if (communicator.rank() == 0) add_predictions(text, json, predictions);
+    if (request.measure) {
+        plan::PhaseSeconds const measured = measure(scene, axes, communicator);
+        if (communicator.rank() == 0) add_measured(text, json, predictions, measured);
+    }
     outcome.text = text.str();
     return outcome;
 }

@@ -26,7 +26,9 @@ struct SceneOptions : CommonOptions {
     std::string scene;
 };
 struct CheckRequest : SceneOptions {};
-struct PlanRequest : SceneOptions {};
+struct PlanRequest : SceneOptions {  // the scene may be missing where the machine is calibrated
+    bool explain = false, measure = false, calibrate = false;
+};
 struct SolveRequest : SceneOptions {
     int repeat = 11;
     std::string accelerations;  // HDF5 file

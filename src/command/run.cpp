@@ -5,6 +5,7 @@
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "integrate/simulation.hpp"
+#include "plan/choice.hpp"
 
 namespace catena::command {
 namespace {
@@ -21,7 +22,7 @@ double number(nlohmann::json const& object, char const* key) {
     return found == object.end() || !found->is_number() ? NAN : found->get<double>();
 }
 
-std::string text_of(Scene const& scene, nlohmann::json const& s) {
+std::string text_of(Scene const& scene, nlohmann::json const& s, std::string const& reason) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
     text.heading(title_of(scene));
@@ -33,6 +34,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
     text.entry("solver", fmt::format("{}, {}, {} each", s.at("solver").at("backend").get<std::string>(),
                                      counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"),
                                      counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
+    text.entry("", reason);
     if (auto const forces = s.find("forces"); forces != s.end()) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
@@ -65,7 +67,10 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
 
 }  // namespace
 
-Outcome run_scene(Scene const& scene, Communicator const& communicator, RunRequest const& request) {
+Outcome run_scene(Scene const& given, Communicator const& communicator, RunRequest const& request) {
+    Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
+    plan::Choice const choice = plan::choose(given, axes, communicator);
+    Scene const scene = with_choice(given, choice);
     RunOptions options;
     options.output = output_folder(scene, request);
     options.steps = request.steps;
@@ -77,7 +82,7 @@ Outcome run_scene(Scene const& scene, Communicator const& communicator, RunReque
     Outcome outcome;
     outcome.valid = summary.at("valid").get<bool>();
     if (communicator.rank() != 0) return outcome;
-    outcome.text = text_of(scene, summary);
+    outcome.text = text_of(scene, summary, choice.reason);
     outcome.json = summary;
     if (!outcome.valid)
         outcome.complaint =
