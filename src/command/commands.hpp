@@ -20,7 +20,7 @@ Outcome calibrate(Communicator const&, PlanRequest const&);
 Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
 
 /// A simulation with its folder.
-Outcome run_scene(Scene const&, Communicator const&, RunRequest const&);
+Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 
 /// Solver error against run time; writes report.json and, where Python can draw it, report.png.
 Outcome report_scenes(std::vector<Scene> const&, Communicator const&, ReportRequest const&);

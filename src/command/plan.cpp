@@ -172,6 +172,14 @@ void add_output(Text& text, Json& json, Scene const& scene) {
     json["output"] = {{"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
 }
 
+void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& predictions, int ranks) {
+    Memory const memory = memory_of(scene, ranks);
+    text.heading("memory, each rank");
+    text.entry("host", bytes_text(memory.sum()));
+    text.entry("GPU", bytes_text(predictions.gpu_memory) + " with backend cuda" + (predictions.no_gpu.empty() ? "" : ", if there were one"));
+    json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
+}
+
 /// Of the chains themselves: OpenMM is left out.
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
     scene.forces.openmm.reset();
@@ -227,6 +235,7 @@ Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanReq
     text.entry("ranks", std::to_string(communicator.size()));
     text.entry("threads a rank", std::to_string(system.executor().threads()));
     for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);
+    add_memory(text, json, scene, predictions, communicator.size());
     text.heading("forces");
     text.entry("gravity", vector_text(scene.forces.gravity));
     text.entry("joints and bodies", forces_text(forces_on_joints(scene)));

@@ -48,6 +48,7 @@ Predictions predict(plan::Planner& planner, Scene const& scene, Axes axes, int r
         found.all.push_back(
             planner.predict(shares, *found.levels, given ? scene.solver.levels_on_gpu() : found.levels->best()));
     }
+    for (plan::Share const& share : shares) found.gpu_memory += planner.machine().gpu_memory(share.family, share.bodies);
     found.choice = plan::choose(scene, axes, planner, ranks);
     return found;
 }

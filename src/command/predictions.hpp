@@ -15,6 +15,7 @@ struct Predictions {
     std::vector<plan::Prediction> all;
     std::optional<plan::LevelPlan> levels;  // where there is a GPU
     std::string no_gpu;
+    double gpu_memory = 0;  // bytes that a rank's GPU would need
 };
 /// What this rank's planner says of the scene, and what it chooses.
 Predictions predict(plan::Planner&, Scene const&, Axes, int ranks);

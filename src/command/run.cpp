@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
@@ -67,10 +68,10 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
 
 }  // namespace
 
-Outcome run_scene(Scene const& given, Communicator const& communicator, RunRequest const& request) {
+Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
     plan::Choice const choice = plan::choose(given, axes, communicator);
-    Scene const scene = with_choice(given, choice);
+    Scene const scene = with_choice(std::move(given), choice);
     RunOptions options;
     options.output = output_folder(scene, request);
     options.steps = request.steps;

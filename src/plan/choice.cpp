@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "cuda/memory.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/cache.hpp"
 
@@ -21,8 +22,19 @@ std::string no_gpu_for(Scene const& scene, Machine const& machine) {
 }
 
 std::string text_of(Prediction const& p) {
-    return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(), 1e3 * p.seconds[evaluation])
+    return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(), 1e3 * p.seconds[typical_evaluation])
                               : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
+}
+
+/// A GPU that would be chosen must hold the scene.
+void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<Share> const& shares, Machine const& machine) {
+    Arrangement const best = quickest(predictions).arrangement;
+    if (!uses_gpu(best.backend)) return;
+    double needed = 0;
+    for (Share const& share : shares) needed += machine.gpu_memory(share.family, share.bodies);
+    for (Prediction& p : predictions)
+        if (p.arrangement == best)
+            p.unusable = cuda::too_little_memory(static_cast<std::int64_t>(needed), static_cast<std::int64_t>(machine.free_gpu_memory()));
 }
 
 Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks) {
@@ -34,6 +46,7 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     std::vector<Share> const shares = shares_of(scene, axes, ranks);
     std::vector<Prediction> predictions;
     for (Arrangement const& each : usable) predictions.push_back(planner.predict(shares, each));
+    refuse_what_does_not_fit(predictions, shares, planner.machine());
     Prediction const& best = quickest(predictions);
     std::string reason = "auto: predicted " + text_of(best);
     for (Prediction const& p : predictions)

@@ -2,6 +2,9 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
+
+#include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
 #include "report/hardware.hpp"
 
@@ -21,6 +24,17 @@ std::vector<int> numbers_of_threads(int all, bool asked) {
     for (int threads = 2; threads < all && !asked; threads *= 2) numbers.push_back(threads);
     if (all > 1) numbers.push_back(all);
     return numbers;
+}
+
+/// Counted for a chain that is small enough to be made at once; a longer one takes in proportion.
+double gpu_memory_of(Family const& family, std::int64_t bodies) {
+    std::int64_t constexpr largest = 16384;
+    std::int64_t const counted = std::min(bodies, largest);
+    Scene const scene = sample(family, counted);
+    auto const alone = serial_communicator();
+    auto const groups = make_groups(scene, family.axes, family.handles, false, *alone);
+    double const bytes = static_cast<double>(cuda::memory_needed(*groups.front(), scene, Backend::cuda, *alone).sum());
+    return bytes * static_cast<double>(bodies) / static_cast<double>(counted);
 }
 
 }  // namespace
@@ -46,6 +60,10 @@ Machine this_machine(Communicator const& communicator, int threads) {
     m.measure_levels = [](Family const& family, std::int64_t bodies, Place place, int of_host) {
         auto const executor = openmp_is_built() ? openmp_executor(of_host) : serial_executor();
         return measure_level_costs(family, bodies, place == Place::gpu ? cuda::make_levels : dca::host_levels(*executor));
+    };
+    m.gpu_memory = gpu_memory_of;
+    m.free_gpu_memory = [ranks = communicator.ranks_on_host()] {
+        return static_cast<double>(cuda::free_memory(*serial_communicator())) / ranks;
     };
     return m;
 }

@@ -21,6 +21,9 @@ struct Machine {
 
     std::function<PhaseSeconds(Family const&, std::int64_t bodies, Arrangement const&)> measure;
     std::function<LevelSeconds(Family const&, std::int64_t bodies, Place, int threads)> measure_levels;
+    /// Bytes that a GPU must have for chains of a family; those that are free.
+    std::function<double(Family const&, std::int64_t bodies)> gpu_memory;
+    std::function<double()> free_gpu_memory;
 };
 
 /// `threads`: 0: as many as this rank has cores, and fewer; else this number alone.

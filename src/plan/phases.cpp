@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "report/timing.hpp"
+
 namespace catena::plan {
 namespace {
 
@@ -53,6 +55,7 @@ PhaseSeconds measure_phases(ChainSystem& system, Effort const& effort) {
     system.evaluate();  // velocities in absolute coordinates are projected once
     PhaseSeconds least = time_once(system);
     least.fill(std::numeric_limits<double>::infinity());
+    std::vector<double> evaluations;
     double const start = seconds_now();
     for (int i = 0; i < effort.most; ++i) {
         bool const enough = i >= effort.least && seconds_now() - start > effort.seconds;
@@ -60,7 +63,9 @@ PhaseSeconds measure_phases(ChainSystem& system, Effort const& effort) {
         communicator.barrier();
         PhaseSeconds const once = time_once(system);
         for (std::size_t p = 0; p < phases; ++p) least[p] = std::min(least[p], communicator.max(once[p]));
+        evaluations.push_back(communicator.max(once[evaluation]));
     }
+    least[typical_evaluation] = spread_of(evaluations).median;
     return least;
 }
 

@@ -20,9 +20,12 @@ struct Arrangement {
     std::string name() const;
 };
 
-/// `evaluation` is the whole of it, which may be less than its phases: small handles have matrices and biases in one sweep.
-enum Phase : std::size_t { kinematics, matrix_sweep, bias_sweep, evaluation, phases };
-inline constexpr std::array<char const*, phases> phase_names{"kinematics and loads", "matrix sweep", "bias sweep", "evaluation"};
+/// `evaluation` is the whole of it, which may be less than its phases: small handles have matrices and biases in one sweep. What disturbs
+/// a machine makes it slower, never faster: these are the shortest of several; `typical_evaluation` is their median, which says what
+/// several threads really come to where others use the cores too.
+enum Phase : std::size_t { kinematics, matrix_sweep, bias_sweep, evaluation, typical_evaluation, phases };
+inline constexpr std::array<char const*, phases> phase_names{"kinematics and loads", "matrix sweep", "bias sweep", "evaluation",
+                                                             "evaluation, median"};
 using PhaseSeconds = std::array<double, phases>;
 using PhaseCurve = Curve<phases>;
 
@@ -34,8 +37,7 @@ struct Effort {
 
 /// The scene with the arrangement in the place of its own.
 Scene arranged(Scene, Arrangement const&);
-/// The shortest time of each phase over several evaluations of the present state: what disturbs a machine makes it slower, never faster.
-/// Forces from outside do not count. Collective.
+/// Over several evaluations of the present state; forces from outside do not count. Collective.
 PhaseSeconds measure_phases(ChainSystem&, Effort const& = {});
 
 }  // namespace catena::plan

@@ -82,7 +82,7 @@ Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& l
     found.arrangement = {Backend::cuda_levels, machine_.threads};
     found.alike = false;
     found.seconds[matrix_sweep] = found.seconds[bias_sweep] = std::nan("");
-    found.seconds[evaluation] = found.seconds[kinematics] + levels.seconds(cut);
+    found.seconds[evaluation] = found.seconds[typical_evaluation] = found.seconds[kinematics] + levels.seconds(cut);
     return found;
 }
 
@@ -101,7 +101,7 @@ Prediction const& quickest(std::vector<Prediction> const& predictions) {
     Prediction const* best = nullptr;
     for (Prediction const& p : predictions) {
         if (!p.alike || !p.unusable.empty()) continue;
-        if (!best || p.seconds[evaluation] < worth_it * best->seconds[evaluation]) best = &p;
+        if (!best || p.seconds[typical_evaluation] < worth_it * best->seconds[typical_evaluation]) best = &p;
     }
     return *best;
 }
