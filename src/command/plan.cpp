@@ -4,9 +4,8 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/left_out.hpp"
 #include "command/predictions.hpp"
-#include "cuda/solver.hpp"
-#include "dca/segment.hpp"
 #include "integrate/chain_system.hpp"
 #include "plan/cache.hpp"
 
@@ -75,44 +74,6 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"bodies_of_ranks", shares},
                     {"collectives", {{"matrices", rounds.matrices}, {"biases", rounds.biases}, {"kinematics", rounds.kinematics}}},
                     {"solver_memory_bytes", report.memory_bytes}});
-}
-
-/// What the scene does not need, and why it may be left out.
-std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system) {
-    std::vector<std::string> lines;
-    ForcesOnJoints const found = forces_on_joints(scene);
-    bool const full = scene.solver.handles == Handles::full;
-    for (auto const& group : system.groups()) {
-        if (group->beads) {
-            lines.emplace_back("kinematics of beads: their positions are the coordinates");
-            lines.emplace_back("rotations and inertias of beads: a bead is a point, both its handles are the bead itself");
-            continue;
-        }
-        if (group->axes == Axes::joint) {
-            bool const needed = group->has_tips() || group->carried_in_scene || found.drag > 0;
-            if (!needed)
-                lines.emplace_back(
-                    "positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
-            lines.emplace_back("rotations at merges: both sides of a joint share its axes");
-        } else {
-            lines.emplace_back("kinematics along the chain: orientations and positions are the coordinates");
-            lines.emplace_back("rotations at merges: all handles are in ground axes");
-        }
-        if (!full && group->directions < 6)
-            lines.push_back(fmt::format("{} of 6 directions a handle: the joints' forces along them are known", 6 - group->directions));
-        if (found.springs == 0) lines.emplace_back("joint springs: there are none");
-        if (found.dampers == 0) lines.emplace_back("joint dampers: there are none");
-        if (found.wrenches == 0) lines.emplace_back("external wrenches: there are none");
-    }
-    if (full) lines.emplace_back("projection on the restricted directions: handles are full, as in the founding chapter");
-    if (!scene.forces.openmm) lines.emplace_back("OpenMM: forces.openmm is not in the scene");
-    if (system.backend() != Backend::openmp && !(uses_gpu(system.backend()) && openmp_is_built()))
-        lines.emplace_back("threads: this backend has one a rank");
-    if (system.communicator().size() == 1) lines.emplace_back("messages: there is one rank");
-    if (!uses_gpu(system.backend()))
-        lines.emplace_back(
-            "GPU: " + (cuda::why_not().empty() ? "there is " + cuda::device_name() + "; ask for it by --backend cuda" : cuda::why_not()));
-    return lines;
 }
 
 struct StepPlan {
@@ -248,8 +209,12 @@ Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanReq
     add_dynamics(text, json, scene);
     add_output(text, json, scene);
     text.heading("left out");
-    json["left_out"] = left_out(scene, system);
-    for (Json const& line : json["left_out"]) text.note(line.get<std::string>());
+    json["left_out"] = Json::array();
+    for (LeftOut const& each : left_out(scene, system)) {
+        json["left_out"].push_back(each.text);
+        if (!request.explain) text.note(each.text);
+    }
+    if (request.explain) add_savings(text, json, scene, system);
     if (communicator.rank() == 0) add_predictions(text, json, predictions);
     if (request.measure) {
         plan::PhaseSeconds const measured = measure(scene, axes, communicator);

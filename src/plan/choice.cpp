@@ -54,18 +54,9 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     return {best.arrangement, {}, reason + without};
 }
 
-/// The part of `UP,DOWN` that is open is negative.
-std::pair<int, int> asked_levels(std::string const& text) {
-    std::size_t const comma = text.find(',');
-    std::string const up = text.substr(0, comma), down = comma == std::string::npos ? up : text.substr(comma + 1);
-    auto const number = [](std::string const& part) { return part == "auto" ? -1 : part == "all" ? GpuLevels::all : std::stoi(part); };
-    return {number(up), number(down)};
-}
-
 Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks) {
-    auto const [up, down] = asked_levels(scene.solver.gpu_levels);
     LevelPlan const levels = planner.plan_levels(shares_of(scene, axes, ranks));
-    GpuLevels const best = levels.best(up, down);
+    GpuLevels const best = levels.best();
     return {{Backend::cuda_levels, planner.machine().threads},
             best,
             fmt::format("levels auto: {},{} of {} predicted {:.3g} ms, all {:.3g} ms, none {:.3g} ms", best.up, best.down, levels.levels(),
@@ -73,7 +64,7 @@ Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks)
 }
 
 bool levels_are_open(SolverSpec const& solver) {
-    return solver.backend == Backend::cuda_levels && solver.gpu_levels.find("auto") != std::string::npos;
+    return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto";
 }
 
 }  // namespace

@@ -50,13 +50,11 @@ double LevelPlan::seconds(GpuLevels cut) const {
     return sum;
 }
 
-GpuLevels LevelPlan::best(int up, int down) const {
-    GpuLevels best{std::max(up, 0), std::max(down, 0)};
-    for (int u = 0; u <= levels(); ++u)
-        for (int d = 0; d <= levels(); ++d) {
-            GpuLevels const cut{up < 0 ? u : up, down < 0 ? d : down};
-            if (seconds(cut) < seconds(best)) best = cut;
-        }
+GpuLevels LevelPlan::best() const {
+    GpuLevels best{0, 0};
+    for (int up = 0; up <= levels(); ++up)
+        for (int down = 0; down <= levels(); ++down)
+            if (seconds({up, down}) < seconds(best)) best = {up, down};
     return best;
 }
 

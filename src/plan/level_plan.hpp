@@ -27,8 +27,8 @@ class LevelPlan {
     int levels() const { return static_cast<int>(rows_.size()) - 1; }
     /// Seconds of both sweeps, transfers included.
     double seconds(GpuLevels) const;
-    /// The least of all; `up` and `down`: only these, where they are 0 or more.
-    GpuLevels best(int up = -1, int down = -1) const;
+    /// The cut that takes least.
+    GpuLevels best() const;
 
   private:
     void add(LevelledShare const&);
