@@ -1,6 +1,7 @@
 #include <cuda_runtime_api.h>
 
 #include "cuda/kernel_image.hpp"
+#include "cuda/memory.hpp"
 #include "cuda/owners.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
@@ -53,6 +54,15 @@ std::string choose_device(Communicator const& communicator) {
     if (!lacks_kernels(status)) return reason;
     cudaDeviceProp const gpu = properties();
     return reason + "; configure with -DCATENA_CUDA_ARCHITECTURES=" + std::to_string(10 * gpu.major + gpu.minor);
+}
+
+std::int64_t free_memory(Communicator const& communicator) {
+    int devices = 0;
+    check(cudaGetDeviceCount(&devices), "be counted");
+    std::size_t free = 0, all = 0;
+    check(cudaMemGetInfo(&free, &all), "say how much memory is free");
+    int const sharing = (communicator.ranks_on_host() + devices - 1) / devices;
+    return static_cast<std::int64_t>(free) / sharing;
 }
 
 }  // namespace catena::cuda

@@ -15,7 +15,11 @@ int execute(Session const& session, CheckRequest const& request) {
 }
 
 int execute(Session const& session, PlanRequest const& request) {
-    return session.conclude(plan_scene(session.load(request.scene), session.communicator(), request));
+    Communicator const& ranks = session.communicator();
+    if (request.scene.empty()) return session.conclude(calibrate(ranks, request));
+    Scene const scene = session.load(request.scene);
+    if (request.calibrate) calibrate(ranks, request);
+    return session.conclude(plan_scene(scene, ranks, request));
 }
 
 int execute(Session const& session, SolveRequest const& request) {

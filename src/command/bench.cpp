@@ -27,8 +27,9 @@ Outcome list() {
         "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n"
         "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this machine, beside the chapter's numbers\n"
         "            (--figure, --output)\n"
-        "network     latency and bandwidth between ranks, and the solver's own gathers; catena plan --network takes what --json writes\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures", "network"}}};
+        "network     latency and bandwidth between ranks, and the solver's own gathers; catena plan --network takes what --json writes\n"
+        "plan        the planner's predictions of an evaluation beside what is measured, and its choices beside the best of all\n";
+    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures", "network", "plan"}}};
     return outcome;
 }
 
@@ -236,6 +237,7 @@ Outcome run_bench(Communicator const& communicator, BenchRequest const& request)
     if (request.name == "figures") return bench_figures(communicator, request);
     if (request.name == "network") return bench_network(communicator, request);
     if (request.name == "evaluation") return evaluation(communicator, request);
+    if (request.name == "plan") return bench_plan(communicator, request);
     if (request.name == "openmm") return bench_openmm(communicator, request);
     return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);
 }

@@ -16,12 +16,12 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures", "network"};
+constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures", "network", "plan"};
 
 /// What the contract promises for later versions, by command.
 std::map<std::string, std::vector<std::string>> const later_options{
     {"check", {}},
-    {"plan", {"--explain"}},
+    {"plan", {}},
     {"solve", {"--precision", "--refine"}},
     {"run", {"--precision", "--refine"}},
     {"report", {"--suite", "--quick", "--precision"}},
@@ -34,7 +34,7 @@ struct Words {
     CommonOptions common;
     std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network;
     std::vector<std::string> scenes;
-    bool overwrite = false;
+    bool overwrite = false, explain = false, measure = false, calibrate = false;
 };
 
 void add_common(CLI::App& command, Words& words) {
@@ -77,14 +77,19 @@ void add_commands(CLI::App& app, Words& words) {
     command->footer(
         "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
 
-    command = app.add_subcommand("plan", "print what will run and what is left out, and why");
+    command = app.add_subcommand("plan", "print what will run, how long it takes, what is left out, and why");
     add_scene(*command, words);
+    command->add_flag("--explain", words.explain, "also measure what is saved by what is left out");
+    command->add_flag("--measure", words.measure, "also measure an evaluation, beside what was predicted");
+    command->add_flag("--calibrate", words.calibrate,
+                      "measure every kind of chain on this machine, for all later predictions (a scene may be left out)");
     command->add_option("--ranks", words.ranks, "predict the messages of a step and their time on up to so many ranks")->type_name("P");
     command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
     command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
         ->type_name("FILE");
     command->footer(
-        "Examples:\n  catena plan inputs/alpha-synuclein.yaml\n  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
+        "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n"
+        "  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
         "  catena plan inputs/random-revolute.yaml --ranks 4096 --hosts 512 --network network.json");
 
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
@@ -211,7 +216,14 @@ R scene_request(Words const& words, std::string const& command) {
 }
 
 PlanRequest plan_request(Words const& words) {
-    auto request = scene_request<PlanRequest>(words, "plan");
+    PlanRequest request;
+    if (words.calibrate && words.scene.empty())
+        static_cast<CommonOptions&>(request) = checked(words.common);
+    else
+        request = scene_request<PlanRequest>(words, "plan");
+    request.explain = words.explain;
+    request.measure = words.measure;
+    request.calibrate = words.calibrate;
     if (!words.ranks.empty()) request.ranks = whole_number("--ranks", words.ranks, 1, 1000000);
     if (!words.hosts.empty()) request.hosts = whole_number("--hosts", words.hosts, 1, 1000000);
     request.network = words.network;
@@ -254,6 +266,9 @@ BenchRequest bench_request(Words const& words) {
     request.name = known_value("catena bench", words.name, bench_names);
     if (request.name == "solve" || request.name == "evaluation") request.sizes = {1000, 10000, 100000};
     if (request.name == "evaluation") request.joints = {"link", "spherical"};
+    if (request.name == "plan") request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
+    if (request.name == "plan")
+        for (std::int64_t bodies = 16; bodies <= 1 << 20; bodies *= 2) request.sizes.push_back(bodies);
     if (request.name == "figures") request.sizes = {2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048};
     if (!words.sizes.empty()) {
         request.sizes.clear();

@@ -11,14 +11,16 @@ namespace catena::command {
 /// What the scene is: chains, bodies, degrees of freedom, handle kinds, forces, memory.
 Outcome check_scene(Scene const&, Communicator const&);
 
-/// What will run and what is left out, and why.
+/// What will run, how long it takes, what is left out, and why.
 Outcome plan_scene(Scene const&, Communicator const&, PlanRequest const&);
+/// Measures every kind of chain, and keeps that.
+Outcome calibrate(Communicator const&, PlanRequest const&);
 
 /// One evaluation, timed, with its residual.
 Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
 
 /// A simulation with its folder.
-Outcome run_scene(Scene const&, Communicator const&, RunRequest const&);
+Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 
 /// Solver error against run time; writes report.json and, where Python can draw it, report.png.
 Outcome report_scenes(std::vector<Scene> const&, Communicator const&, ReportRequest const&);
@@ -30,5 +32,7 @@ Outcome bench_openmm(Communicator const&, BenchRequest const&);
 Outcome bench_overlap(Communicator const&, BenchRequest const&);
 /// Messages between the ranks and the solver's own gathers, with the model that `plan --network` reads.
 Outcome bench_network(Communicator const&, BenchRequest const&);
+/// Predictions and choices of the planner beside what is measured. One rank.
+Outcome bench_plan(Communicator const&, BenchRequest const&);
 
 }  // namespace catena::command

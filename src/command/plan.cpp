@@ -4,25 +4,17 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/left_out.hpp"
 #include "command/plan_messages.hpp"
-#include "cuda/solver.hpp"
-#include "dca/segment.hpp"
+#include "command/predictions.hpp"
 #include "integrate/chain_system.hpp"
+#include "plan/cache.hpp"
 
 namespace catena::command {
 namespace {
 
 Axes axes_for(Scene const& scene) {
     return scene.dynamics.given && !uses_joint_coordinates(scene.dynamics.integrator) ? Axes::world : Axes::joint;
-}
-
-std::string backend_reason(Scene const& scene, Communicator const& communicator) {
-    if (scene.solver.backend != Backend::automatic) return "asked for";
-    int const threads = choose_threads(scene, communicator);
-    if (threads == 1) return "auto: one thread a rank";
-    std::int64_t const share = scene.bodies() / communicator.size();
-    bool const many = choose_backend(scene, communicator) == Backend::openmp;
-    return fmt::format("auto: {} bodies a rank are {} to be worth {} threads", share, many ? "enough" : "too few", threads);
 }
 
 /// What one evaluation of a group costs in messages.
@@ -85,44 +77,6 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"solver_memory_bytes", report.memory_bytes}});
 }
 
-/// What the scene does not need, and why it may be left out.
-std::vector<std::string> left_out(Scene const& scene, ChainSystem const& system) {
-    std::vector<std::string> lines;
-    ForcesOnJoints const found = forces_on_joints(scene);
-    bool const full = scene.solver.handles == Handles::full;
-    for (auto const& group : system.groups()) {
-        if (group->beads) {
-            lines.emplace_back("kinematics of beads: their positions are the coordinates");
-            lines.emplace_back("rotations and inertias of beads: a bead is a point, both its handles are the bead itself");
-            continue;
-        }
-        if (group->axes == Axes::joint) {
-            bool const needed = group->has_tips() || group->carried_in_scene || found.drag > 0;
-            if (!needed)
-                lines.emplace_back(
-                    "positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone");
-            lines.emplace_back("rotations at merges: both sides of a joint share its axes");
-        } else {
-            lines.emplace_back("kinematics along the chain: orientations and positions are the coordinates");
-            lines.emplace_back("rotations at merges: all handles are in ground axes");
-        }
-        if (!full && group->directions < 6)
-            lines.push_back(fmt::format("{} of 6 directions a handle: the joints' forces along them are known", 6 - group->directions));
-        if (found.springs == 0) lines.emplace_back("joint springs: there are none");
-        if (found.dampers == 0) lines.emplace_back("joint dampers: there are none");
-        if (found.wrenches == 0) lines.emplace_back("external wrenches: there are none");
-    }
-    if (full) lines.emplace_back("projection on the restricted directions: handles are full, as in the founding chapter");
-    if (!scene.forces.openmm) lines.emplace_back("OpenMM: forces.openmm is not in the scene");
-    if (system.backend() != Backend::openmp && !(uses_gpu(system.backend()) && openmp_is_built()))
-        lines.emplace_back("threads: this backend has one a rank");
-    if (system.communicator().size() == 1) lines.emplace_back("messages: there is one rank");
-    if (!uses_gpu(system.backend()))
-        lines.emplace_back(
-            "GPU: " + (cuda::why_not().empty() ? "there is " + cuda::device_name() + "; ask for it by --backend cuda" : cuda::why_not()));
-    return lines;
-}
-
 struct StepPlan {
     int matrix_sweeps = 0, bias_sweeps = 0, bias_sweeps_a_drift_sweep = 0;
     std::string text;
@@ -180,14 +134,53 @@ void add_output(Text& text, Json& json, Scene const& scene) {
     json["output"] = {{"frames", frames}, {"trajectory_bytes", size}, {"checkpoint_every", o.checkpoint_every}};
 }
 
+void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& predictions, int ranks) {
+    Memory const memory = memory_of(scene, ranks);
+    text.heading("memory, each rank");
+    text.entry("host", bytes_text(memory.sum()));
+    text.entry("GPU",
+               bytes_text(predictions.gpu_memory) + " with backend cuda" + (predictions.no_gpu.empty() ? "" : ", if there were one"));
+    json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
+}
+
+/// Of the chains themselves: OpenMM is left out.
+plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
+    scene.forces.openmm.reset();
+    ChainSystem system(scene, axes, communicator);
+    return plan::measure_phases(system, {5, 200, 0.5});
+}
+
 }  // namespace
 
-Outcome plan_scene(Scene const& scene, Communicator const& communicator, PlanRequest const& request) {
-    ChainSystem const system(scene, axes_for(scene), communicator);
+Outcome calibrate(Communicator const& communicator, PlanRequest const& request) {
+    Outcome outcome;
+    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
+    plan::with_planner(communicator, threads, largest_sample, [&](plan::Planner& planner) {
+        double const start = seconds_now();
+        planner.measure_everything();
+        std::string const file = plan::cache_file(planner.machine());
+        outcome.text =
+            fmt::format("{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
+                        counted(static_cast<long long>(planner.calibration().points()), "point", "points"), seconds_now() - start,
+                        file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME" : "kept in " + file);
+        outcome.json = {{"machine", planner.machine().identity}, {"points", planner.calibration().points()}, {"file", file}};
+    });
+    return outcome;
+}
+
+Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanRequest const& request) {
+    Axes const axes = axes_for(given);
+    Predictions predictions;
+    plan::with_planner(communicator, given.solver.threads, largest_sample,
+                       [&](plan::Planner& planner) { predictions = predict(planner, given, axes, communicator.size()); });
+    share(communicator, predictions.choice);
+    Scene const scene = with_choice(given, predictions.choice);
+    ChainSystem const system(scene, axes, communicator);
+    predictions.choice.arrangement = {system.backend(), system.executor().threads()};
     std::vector<SolverReport> const reports = system.solver_reports();
     Outcome outcome;
     Json& json = outcome.json;
-    std::string const reason = backend_reason(scene, communicator);
+    std::string const& reason = predictions.choice.reason;
     json = {{"scene", scene.file},
             {"backend", name_of(system.backend())},
             {"backend_reason", reason},
@@ -206,6 +199,7 @@ Outcome plan_scene(Scene const& scene, Communicator const& communicator, PlanReq
     text.entry("ranks", std::to_string(communicator.size()));
     text.entry("threads a rank", std::to_string(system.executor().threads()));
     for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);
+    add_memory(text, json, scene, predictions, communicator.size());
     text.heading("forces");
     text.entry("gravity", vector_text(scene.forces.gravity));
     text.entry("joints and bodies", forces_text(forces_on_joints(scene)));
@@ -219,10 +213,17 @@ Outcome plan_scene(Scene const& scene, Communicator const& communicator, PlanReq
     add_messages(text, json, system, request);
     add_output(text, json, scene);
     text.heading("left out");
-    json["left_out"] = left_out(scene, system);
-    for (Json const& line : json["left_out"]) text.note(line.get<std::string>());
-    text.heading("no prediction of times in this version");
-    json["predicted_seconds"] = nullptr;
+    json["left_out"] = Json::array();
+    for (LeftOut const& each : left_out(scene, system)) {
+        json["left_out"].push_back(each.text);
+        if (!request.explain) text.note(each.text);
+    }
+    if (request.explain) add_savings(text, json, scene, system);
+    if (communicator.rank() == 0) add_predictions(text, json, predictions);
+    if (request.measure) {
+        plan::PhaseSeconds const measured = measure(scene, axes, communicator);
+        if (communicator.rank() == 0) add_measured(text, json, predictions, measured);
+    }
     outcome.text = text.str();
     return outcome;
 }

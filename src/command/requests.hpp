@@ -26,7 +26,8 @@ struct SceneOptions : CommonOptions {
     std::string scene;
 };
 struct CheckRequest : SceneOptions {};
-struct PlanRequest : SceneOptions {
+struct PlanRequest : SceneOptions {  // the scene may be missing where the machine is calibrated
+    bool explain = false, measure = false, calibrate = false;
     std::int64_t ranks = 0, hosts = 1;  // 0: no prediction
     std::string network;                // JSON of `bench network`
 };

@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <utility>
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "command/stop_signals.hpp"
 #include "integrate/simulation.hpp"
+#include "plan/choice.hpp"
 
 namespace catena::command {
 namespace {
@@ -36,7 +38,7 @@ std::string ghosts_text(nlohmann::json const& ghosts) {
                        mean(ghosts.at("messages_a_step")), mean(ghosts.at("bytes_a_step")));
 }
 
-std::string text_of(Scene const& scene, nlohmann::json const& s) {
+std::string text_of(Scene const& scene, nlohmann::json const& s, std::string const& reason) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
     text.heading(title_of(scene));
@@ -48,6 +50,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
     text.entry("solver", fmt::format("{}, {}, {} each", s.at("solver").at("backend").get<std::string>(),
                                      counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"),
                                      counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
+    text.entry("", reason);
     if (auto const forces = s.find("forces"); forces != s.end()) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
@@ -92,7 +95,10 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
 
 }  // namespace
 
-Outcome run_scene(Scene const& scene, Communicator const& communicator, RunRequest const& request) {
+Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
+    Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
+    plan::Choice const choice = plan::choose(given, axes, communicator);
+    Scene const scene = with_choice(std::move(given), choice);
     RunOptions options;
     options.output = output_folder(scene, request);
     options.steps = request.steps;
@@ -107,7 +113,7 @@ Outcome run_scene(Scene const& scene, Communicator const& communicator, RunReque
     outcome.valid = summary.at("valid").get<bool>();
     outcome.whole = !summary.at("run").contains("stopped_by");
     if (communicator.rank() != 0) return outcome;
-    outcome.text = text_of(scene, summary);
+    outcome.text = text_of(scene, summary, choice.reason);
     outcome.json = summary;
     outcome.complaint = complaint_of(summary, outcome.whole);
     return outcome;

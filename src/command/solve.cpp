@@ -13,6 +13,7 @@
 #include "integrate/observables.hpp"
 #include "integrate/start_velocities.hpp"
 #include "mpi/first_rank.hpp"
+#include "plan/choice.hpp"
 #include "report/solution.hpp"
 #include "report/timing.hpp"
 
@@ -138,6 +139,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry("solver", fmt::format("{}, {} handles, {}, {} each", name_of(system.backend()), name_of(scene.solver.handles),
                                      counted(system.communicator().size(), "rank", "ranks"),
                                      counted(system.executor().threads(), "thread", "threads")));
+    text.entry("", json["backend_reason"]);
     for (std::size_t i = 0; system.openmm() && i < system.openmm()->description().size(); ++i)
         text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
     if (json["velocities"] == "thermal")
@@ -174,12 +176,14 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
 Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest const& request) {
     prepare_file(communicator, request.accelerations);
     bool const thermal = starts_thermal(given);
-    Scene const scene = with_start_velocities(std::move(given), communicator);
+    plan::Choice const choice = plan::choose(given, Axes::joint, communicator);
+    Scene const scene = with_start_velocities(with_choice(std::move(given), choice), communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     system.close_tips();  // as a run does: velocities then fit them
     Timing const timing = time_evaluations(system, request.repeat);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);
+    json["backend_reason"] = choice.reason;
     double const residual = system.residual(), bound = system.residual_bound();
     std::vector<EnergyTerm> const energies = system.potential_energy();
     // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.

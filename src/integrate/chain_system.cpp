@@ -7,14 +7,20 @@
 #include "chain/gather.hpp"
 #include "cuda/bead_dynamics.hpp"
 #include "cuda/joint_dynamics.hpp"
+#include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
 
 namespace catena {
 namespace {
 
+/// What kernels, graphs and streams take by themselves.
+constexpr std::int64_t gpu_reserve = std::int64_t{128} << 20;
+constexpr char const* without_gpu = "use auto, another backend, or a build with CUDA on a machine with a GPU";
+constexpr char const* without_memory = "use more GPUs (ranks on several hosts), another backend, or fewer bodies";
+
 /// Ends all ranks together, with the words of the first that has a reason. Collective.
-void refuse_cuda(Communicator const& communicator, std::string const& backend, std::string const& reason) {
+void refuse_cuda(Communicator const& communicator, std::string const& backend, std::string const& reason, char const* remedy) {
     std::string own = reason, all(static_cast<std::size_t>(communicator.size()) * 200, ' ');
     own.resize(200, ' ');
     communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)),
@@ -24,14 +30,14 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
     std::string text = all.substr(found, 200 - found % 200);
     text.erase(text.find_last_not_of(' ') + 1);
     if (communicator.size() > 1) text += ", rank " + std::to_string(found / 200);
-    throw InputError(text, "solver.backend: " + backend, "use auto, another backend, or a build with CUDA on a machine with a GPU");
+    throw InputError(text, "solver.backend: " + backend, remedy);
 }
 
 }  // namespace
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not());
+    if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
     std::int64_t constexpr worth_threads = 4096;
@@ -47,11 +53,12 @@ int choose_threads(Scene const& scene, Communicator const& communicator) {
 
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
     : scene_(scene), communicator_(communicator), axes_(axes), backend_(choose_backend(scene, communicator)) {
-    if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator));
+    if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator), without_gpu);
     // What the GPU does not do runs on all the host's threads.
     bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
     groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator);
+    if (uses_gpu(backend_)) require_gpu_memory();
     if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {
         if (group->beads && backend_ == Backend::cuda) {
@@ -81,6 +88,13 @@ ChainSystem::~ChainSystem() { is_current(); }  // what it holds on the GPU is gi
 bool ChainSystem::is_current() noexcept {
     DevicePath* const path = openmm_ ? openmm_->device_path() : nullptr;
     return path == nullptr || path->make_current();
+}
+
+/// Before anything is there.
+void ChainSystem::require_gpu_memory() const {
+    std::int64_t needed = gpu_reserve;
+    for (auto const& group : groups_) needed += cuda::memory_needed(*group, scene_, backend_, communicator_).sum();
+    refuse_cuda(communicator_, name_of(backend_), cuda::too_little_memory(needed, cuda::free_memory(communicator_)), without_memory);
 }
 
 void ChainSystem::make_current() {

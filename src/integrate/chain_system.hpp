@@ -104,6 +104,7 @@ class ChainSystem {
 
   private:
     bool is_current() noexcept;
+    void require_gpu_memory() const;
     void find_bead_groups();
     std::unique_ptr<ChainSolver> make_solver(ChainGroup const&) const;
     void make_openmm();

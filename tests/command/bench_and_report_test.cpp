@@ -16,6 +16,21 @@ TEST(Bench, ListNamesTheBenchmarks) {
     EXPECT_NE(e.out.find("\nfigures "), std::string::npos) << e.out;
 }
 
+TEST(Bench, PlanComparesPredictionsWithWhatIsMeasured) {
+    Ended const e = catena({"bench", "plan", "--sizes", "20,300", "--joints", "link,planar", "--json", "-"});
+    expect_good(e);
+    Json const json = e.json();
+    ASSERT_EQ(json.at("results").size(), 6U);  // beads, bodies and beads on links; planar
+    for (Json const& row : json.at("results")) {
+        EXPECT_EQ(row.at("valid"), true);
+        EXPECT_GE(row.at("slower_by").get<double>(), 0);
+        for (Json const& each : row.at("arrangements")) {
+            EXPECT_GT(each.at("ratio").get<double>(), 0);
+            EXPECT_LE(each.at("residual").get<double>(), each.at("residual_bound").get<double>());
+        }
+    }
+}
+
 TEST(Bench, FiguresStandBesideTheChapters) {
     TemporaryFolder const folder;
     Ended const e = catena({"bench", "figures", "--sizes", "2,8,16", "--repeat", "3", "--output", folder / "figures"});

@@ -47,7 +47,7 @@ TEST(Plan, SaysWhatRunsAndWhatIsLeftOut) {
     Ended const e = catena({"plan", input("random-revolute.yaml"), "--backend", "serial", "--handles", "full"});
     expect_good(e);
     for (std::string const part : {"serial (asked for)", "6x6, every direction", "runs of 1, 1000 of them, then 10 levels",
-                                   "left out\n  - ", "no prediction of times in this version"})
+                                   "left out\n  - ", "predicted times of one evaluation", "serial *", "memory, each rank"})
         EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
 }
 
@@ -59,9 +59,42 @@ TEST(Plan, JsonNamesTreeAndSweeps) {
     EXPECT_EQ(group.at("bodies_of_ranks"), nlohmann::json({100}));
     EXPECT_EQ(json.at("dynamics").at("matrix_sweeps_a_step"), 1);
     EXPECT_EQ(json.at("output").at("frames"), 101);
-    EXPECT_TRUE(json.at("predicted_seconds").is_null());
+    for (char const* const arrangement : {"segments", "serial"})
+        EXPECT_GT(json.at("predicted_seconds").at(arrangement).at("evaluation").get<double>(), 0);
+    EXPECT_GT(json.at("memory_bytes_per_rank").at("gpu").get<double>(), 0);
     auto const langevin = catena({"plan", input("freely-jointed-trimer.yaml"), "--json", "-"}).json();
     EXPECT_EQ(langevin.at("dynamics").at("matrix_sweeps_a_step"), 2);
+}
+
+TEST(Plan, ExplainsWhatIsSavedAndMeasuresWhatWasPredicted) {
+    auto const json = catena({"plan", input("random-revolute.yaml"), "--backend", "segments", "--set",
+                              "chains[0].generator.random.bodies=200", "--explain", "--measure", "--json", "-"})
+                          .json();
+    EXPECT_GE(json.at("savings").size(), 4U);
+    for (auto const& each : json.at("savings")) {
+        bool const projection = each.at("left_out").get<std::string>().find("of 6 directions") != std::string::npos;
+        if (!projection) continue;
+        EXPECT_GT(each.at("seconds").get<double>(), 0);
+    }
+    EXPECT_GT(json.at("measured_seconds").at("matrix sweep").get<double>(), 0);
+    EXPECT_GT(json.at("measured_seconds").at("ratio").get<double>(), 0);
+}
+
+TEST(Plan, AutoIsSaidOnceWithItsReason) {
+    for (std::string const command : {"plan", "solve"}) {
+        Ended const e = catena({command, input("random-revolute.yaml"), "--threads", "2"});
+        expect_good(e);
+        EXPECT_EQ(count(e.out, "auto: "), 1U) << e.out;
+    }
+    EXPECT_EQ(catena({"solve", input("arm.yaml"), "--backend", "segments", "--json", "-"}).json().at("backend_reason"), "asked for");
+}
+
+/// Where home cannot be written, nothing is kept and nothing else is different.
+TEST(Plan, WorksWithoutAPlaceForItsCache) {
+    Words words{program(), "plan", input("arm.yaml")};
+    Ended const e = run_program(words, "", {"XDG_CACHE_HOME=/proc/nowhere"});
+    expect_good(e);
+    EXPECT_NE(e.out.find("predicted times"), std::string::npos) << e.out;
 }
 
 }  // namespace

@@ -1,0 +1,29 @@
+// How much memory a GPU must have for a group of chains. Known without a GPU: the objects that would be there are made of memory that is
+// only counted.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "chain/chain_group.hpp"
+
+namespace catena::cuda {
+
+struct DeviceMemory {
+    std::int64_t bytes = 0;      // for as long as the group is there
+    std::int64_t transient = 0;  // at most, while a field comes or goes
+    int allocations = 0;
+    std::int64_t sum() const { return bytes + transient; }
+    DeviceMemory& operator+=(DeviceMemory const& other);
+};
+
+/// Of this rank, with cuda or cuda-levels. Collective.
+DeviceMemory memory_needed(ChainGroup const&, Scene const&, Backend, Communicator const&);
+
+/// Bytes that are free on the GPU chosen last, or this rank's part of them where ranks of a host share it.
+std::int64_t free_memory(Communicator const&);
+
+/// Empty where it is enough, else "2.5 GiB of GPU memory are needed and 1.0 GiB are free".
+std::string too_little_memory(std::int64_t needed, std::int64_t free);
+
+}  // namespace catena::cuda

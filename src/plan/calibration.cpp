@@ -1,0 +1,58 @@
+#include "plan/calibration.hpp"
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace catena::plan {
+namespace {
+
+using nlohmann::json;
+
+template <std::size_t N>
+json json_of(std::map<std::string, Curve<N>> const& curves) {
+    json all = json::object();
+    for (auto const& [name, curve] : curves)
+        for (auto const& [bodies, seconds] : curve.points()) all[name].push_back({bodies, seconds});
+    return all;
+}
+
+template <std::size_t N>
+void read_curves(json const& from, std::map<std::string, Curve<N>>& to) {
+    for (auto const& [name, points] : from.items())
+        for (json const& point : points) {
+            auto const bodies = point.at(0).get<std::int64_t>();
+            auto const seconds = point.at(1).get<std::array<double, N>>();
+            bool good = bodies > 0 && point.at(1).size() == N;
+            for (double const s : seconds) good = good && s >= 0 && s < 1e6;  // a NaN is neither
+            if (!good) throw std::runtime_error("no times of " + name);
+            to[name].add(bodies, seconds);
+        }
+}
+
+template <std::size_t N>
+std::size_t count(std::map<std::string, Curve<N>> const& curves) {
+    std::size_t sum = 0;
+    for (auto const& [name, curve] : curves) sum += curve.points().size();
+    return sum;
+}
+
+}  // namespace
+
+PhaseCurve& Calibration::of(Family const& family, Arrangement const& arrangement) {
+    return phases_[family.name() + " | " + arrangement.name()];
+}
+
+LevelCurve& Calibration::of(Family const& family, Place place, int threads) {
+    return levels_[family.name() + " | " + (place == Place::gpu ? "GPU" : "host, " + std::to_string(threads))];
+}
+
+std::size_t Calibration::points() const { return count(phases_) + count(levels_); }
+
+json Calibration::json() const { return {{"phases", json_of(phases_)}, {"levels", json_of(levels_)}}; }
+
+void Calibration::read(nlohmann::json const& from) {
+    read_curves(from.at("phases"), phases_);
+    read_curves(from.at("levels"), levels_);
+}
+
+}  // namespace catena::plan

@@ -1,0 +1,119 @@
+#include "plan/choice.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cuda/memory.hpp"
+#include "mpi/first_rank.hpp"
+#include "plan/cache.hpp"
+
+namespace catena::plan {
+namespace {
+
+/// Of chains that are measured before a computation starts: a fraction of a second in all.
+constexpr std::int64_t largest_at_start = 16384;
+
+/// Why a GPU is not for `auto`, besides there being none. OpenMM computes on another platform with it, with another rounding.
+std::string no_gpu_for(Scene const& scene, Machine const& machine) {
+    if (!machine.no_gpu.empty()) return machine.no_gpu;
+    bool const other_forces = scene.forces.openmm && scene.forces.openmm->platform.empty();
+    return other_forces ? "with the GPU OpenMM's platform would be another: name it in forces.openmm.platform" : "";
+}
+
+std::string text_of(Prediction const& p) {
+    return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(), 1e3 * p.seconds[typical_evaluation])
+                              : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
+}
+
+/// A GPU that would be chosen must hold the scene.
+void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<Share> const& shares, Machine const& machine) {
+    Arrangement const best = quickest(predictions).arrangement;
+    if (!uses_gpu(best.backend)) return;
+    double needed = 0;
+    for (Share const& share : shares) needed += machine.gpu_memory(share.family, share.bodies);
+    for (Prediction& p : predictions)
+        if (p.arrangement == best)
+            p.unusable = cuda::too_little_memory(static_cast<std::int64_t>(needed), static_cast<std::int64_t>(machine.free_gpu_memory()));
+}
+
+Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks) {
+    std::string const no_gpu = no_gpu_for(scene, planner.machine());
+    std::string const without = no_gpu.empty() ? "" : "; no GPU: " + no_gpu;
+    std::vector<Arrangement> usable = planner.machine().alike;
+    if (!no_gpu.empty()) std::erase_if(usable, [](Arrangement const& a) { return uses_gpu(a.backend); });
+    if (usable.size() == 1) return {usable.front(), {}, "auto: one core" + without};
+    std::vector<Share> const shares = shares_of(scene, axes, ranks);
+    std::vector<Prediction> predictions;
+    for (Arrangement const& each : usable) predictions.push_back(planner.predict(shares, each));
+    refuse_what_does_not_fit(predictions, shares, planner.machine());
+    Prediction const& best = quickest(predictions);
+    std::string reason = "auto: predicted " + text_of(best);
+    for (Prediction const& p : predictions)
+        if (&p != &best) reason += ", " + text_of(p);
+    return {best.arrangement, {}, reason + without};
+}
+
+Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks) {
+    LevelPlan const levels = planner.plan_levels(shares_of(scene, axes, ranks));
+    GpuLevels const best = levels.best();
+    return {{Backend::cuda_levels, planner.machine().threads},
+            best,
+            fmt::format("levels auto: {},{} of {} predicted {:.3g} ms, all {:.3g} ms, none {:.3g} ms", best.up, best.down, levels.levels(),
+                        1e3 * levels.seconds(best), 1e3 * levels.seconds({}), 1e3 * levels.seconds({0, 0}))};
+}
+
+bool levels_are_open(SolverSpec const& solver) {
+    return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto";
+}
+
+}  // namespace
+
+bool leaves_open(Scene const& scene) { return scene.solver.backend == Backend::automatic || levels_are_open(scene.solver); }
+
+Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
+    SolverSpec const& solver = scene.solver;
+    if (solver.backend == Backend::automatic) return choose_backend(scene, axes, planner, ranks);
+    if (levels_are_open(solver) && planner.machine().no_gpu.empty()) return choose_levels(scene, axes, planner, ranks);
+    return {{solver.backend, solver.threads}, solver.levels_on_gpu(), "asked for"};
+}
+
+Choice choose(Scene const& scene, Axes axes, Communicator const& communicator) {
+    Choice choice{{scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
+    if (!leaves_open(scene)) return choice;
+    with_planner(communicator, scene.solver.threads, largest_at_start,
+                 [&](Planner& planner) { choice = choose(scene, axes, planner, communicator.size()); });
+    share(communicator, choice);
+    return choice;
+}
+
+void with_planner(Communicator const& communicator, int threads, std::int64_t largest, std::function<void(Planner&)> const& action) {
+    Machine machine = this_machine(communicator, threads);
+    // Every rank needs a GPU, or none gets one.
+    if (communicator.max(machine.no_gpu.empty() ? 0 : 1) > 0) without_gpu(machine, "not every rank has one");
+    on_first_rank(communicator, [&] {
+        Planner planner(machine, read_cache(machine), largest);
+        action(planner);
+        if (planner.learned()) write_cache(machine, planner.calibration());
+    });
+}
+
+void share(Communicator const& communicator, Choice& choice) {
+    std::int64_t numbers[] = {static_cast<std::int64_t>(choice.arrangement.backend), choice.arrangement.threads, choice.levels.up,
+                              choice.levels.down, std::ssize(choice.reason)};
+    communicator.broadcast(std::as_writable_bytes(std::span(numbers)));
+    choice.arrangement = {static_cast<Backend>(numbers[0]), static_cast<int>(numbers[1])};
+    choice.levels = {static_cast<int>(numbers[2]), static_cast<int>(numbers[3])};
+    choice.reason.resize(static_cast<std::size_t>(numbers[4]));
+    communicator.broadcast(std::as_writable_bytes(std::span(choice.reason)));
+}
+
+Scene with_choice(Scene scene, Choice const& choice) {
+    if (!leaves_open(scene)) return scene;
+    scene.solver.backend = choice.arrangement.backend;
+    scene.solver.threads = choice.arrangement.threads;
+    if (levels_are_open(scene.solver)) scene.solver.gpu_levels = std::to_string(choice.levels.up) + "," + std::to_string(choice.levels.down);
+    return scene;
+}
+
+}  // namespace catena::plan

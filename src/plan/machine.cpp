@@ -1,0 +1,76 @@
+#include "plan/machine.hpp"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+
+#include "cuda/memory.hpp"
+#include "cuda/solver.hpp"
+#include "report/hardware.hpp"
+
+namespace catena::plan {
+namespace {
+
+/// Of the program that runs: another build is another file.
+std::string build() {
+    struct stat file {};
+    if (::stat("/proc/self/exe", &file) != 0) return "unknown";
+    return std::to_string(file.st_size) + " bytes of " + std::to_string(file.st_mtim.tv_sec) + "." + std::to_string(file.st_mtim.tv_nsec);
+}
+
+/// 2, 4, 8, ... and all; where so many are asked for, these alone.
+std::vector<int> numbers_of_threads(int all, bool asked) {
+    std::vector<int> numbers;
+    for (int threads = 2; threads < all && !asked; threads *= 2) numbers.push_back(threads);
+    if (all > 1) numbers.push_back(all);
+    return numbers;
+}
+
+/// Counted for a chain that is small enough to be made at once; a longer one takes in proportion.
+double gpu_memory_of(Family const& family, std::int64_t bodies) {
+    std::int64_t constexpr largest = 16384;
+    std::int64_t const counted = std::min(bodies, largest);
+    Scene const scene = sample(family, counted);
+    auto const alone = serial_communicator();
+    auto const groups = make_groups(scene, family.axes, family.handles, false, *alone);
+    double const bytes = static_cast<double>(cuda::memory_needed(*groups.front(), scene, Backend::cuda, *alone).sum());
+    return bytes * static_cast<double>(bodies) / static_cast<double>(counted);
+}
+
+}  // namespace
+
+Machine this_machine(Communicator const& communicator, int threads) {
+    int const cores = cores_of_rank(communicator);
+    Machine m;
+    m.threads = openmp_is_built() ? (threads > 0 ? threads : cores) : 1;
+    m.no_gpu = cuda::why_not();
+    m.alike.push_back({Backend::segments, 1});
+    for (int const number : numbers_of_threads(m.threads, threads > 0)) m.alike.push_back({Backend::openmp, number});
+    if (m.no_gpu.empty()) m.alike.push_back({Backend::cuda, m.threads});
+    m.others.push_back({Backend::serial, 1});
+    m.identity = processor_name() + ", " + std::to_string(cores) + " of " + std::to_string(processor_threads()) + " threads, " +
+                 std::to_string(communicator.ranks_on_host()) + " ranks; " + (m.no_gpu.empty() ? cuda::device_name() : "no GPU") + "; catena " +
+                 CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", " + build();
+    m.measure = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
+        Scene const scene = arranged(sample(family, bodies), arrangement);
+        auto const alone = serial_communicator();
+        ChainSystem system(scene, family.axes, *alone);
+        return measure_phases(system);
+    };
+    m.measure_levels = [](Family const& family, std::int64_t bodies, Place place, int of_host) {
+        auto const executor = openmp_is_built() ? openmp_executor(of_host) : serial_executor();
+        return measure_level_costs(family, bodies, place == Place::gpu ? cuda::make_levels : dca::host_levels(*executor));
+    };
+    m.gpu_memory = gpu_memory_of;
+    m.free_gpu_memory = [ranks = communicator.ranks_on_host()] {
+        return static_cast<double>(cuda::free_memory(*serial_communicator())) / ranks;
+    };
+    return m;
+}
+
+void without_gpu(Machine& machine, std::string const& reason) {
+    if (machine.no_gpu.empty()) machine.no_gpu = reason;
+    std::erase_if(machine.alike, [](Arrangement const& a) { return uses_gpu(a.backend); });
+}
+
+}  // namespace catena::plan

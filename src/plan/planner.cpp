@@ -1,0 +1,109 @@
+#include "plan/planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace catena::plan {
+namespace {
+
+/// Sizes that are measured: `first`, and then each `step` times the one before.
+struct Sizes {
+    std::int64_t first, step;
+    /// The two that are nearest to `bodies` from below and above, or the two largest.
+    std::pair<std::int64_t, std::int64_t> around(std::int64_t bodies, std::int64_t largest) const {
+        std::int64_t low = first;
+        while (low * step < bodies && low * step * step <= largest) low *= step;
+        return {low, std::min(low * step, std::max(low, largest))};
+    }
+    std::vector<std::int64_t> up_to(std::int64_t bodies, std::int64_t largest) const {
+        std::vector<std::int64_t> all;
+        for (std::int64_t n = first; n <= largest; n *= step) {
+            all.push_back(n);
+            if (n >= bodies) break;
+        }
+        return all;
+    }
+};
+constexpr Sizes of_evaluations{16, 4}, of_levels{2, 8};
+
+}  // namespace
+
+PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
+    PhaseCurve& curve = calibration_.of(family, arrangement);
+    auto const [low, high] = of_evaluations.around(bodies, largest_);
+    for (std::int64_t const n : {low, high})
+        if (!curve.has(n)) curve.add(n, machine_.measure(family, n, arrangement));
+    return curve;
+}
+
+LevelCurve const& Planner::levels_of(Family const& family, Place place, std::int64_t bodies) {
+    LevelCurve& curve = calibration_.of(family, place, machine_.threads);
+    for (std::int64_t const n : of_levels.up_to(bodies, largest_))
+        if (!curve.has(n)) curve.add(n, machine_.measure_levels(family, n, place, machine_.threads));
+    return curve;
+}
+
+Prediction Planner::predict(std::vector<Share> const& shares, Arrangement const& arrangement) {
+    Prediction found{arrangement, {}, true, {}};
+    try {
+        for (Share const& share : shares) {
+            PhaseSeconds const own = phases_of(share.family, arrangement, share.bodies).at(share.bodies);
+            for (std::size_t p = 0; p < phases; ++p) found.seconds[p] += own[p];
+        }
+    } catch (std::exception const& error) {
+        if (!uses_gpu(arrangement.backend)) throw;
+        found.unusable = error.what();  // no kernels for this GPU, no memory left on it
+    }
+    return found;
+}
+
+std::vector<Prediction> Planner::predict(std::vector<Share> const& shares) {
+    std::vector<Prediction> all;
+    for (Arrangement const& arrangement : machine_.alike) all.push_back(predict(shares, arrangement));
+    for (Arrangement const& arrangement : machine_.others) {
+        all.push_back(predict(shares, arrangement));
+        all.back().alike = false;
+    }
+    return all;
+}
+
+LevelPlan Planner::plan_levels(std::vector<Share> const& shares, Place gpu) {
+    std::vector<LevelledShare> levelled;
+    for (Share const& share : shares)
+        levelled.push_back(
+            {share, levels_of(share.family, Place::host, share.bodies), levels_of(share.family, gpu, share.bodies)});
+    return LevelPlan(levelled);
+}
+
+Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& levels, GpuLevels cut) {
+    // What is not the tree's is the host's, with its threads.
+    Arrangement const host = machine_.threads > 1 ? Arrangement{Backend::openmp, machine_.threads} : Arrangement{};
+    Prediction found = predict(shares, host);
+    found.arrangement = {Backend::cuda_levels, machine_.threads};
+    found.alike = false;
+    found.seconds[matrix_sweep] = found.seconds[bias_sweep] = std::nan("");
+    found.seconds[evaluation] = found.seconds[typical_evaluation] = found.seconds[kinematics] + levels.seconds(cut);
+    return found;
+}
+
+void Planner::measure_everything() {
+    for (Family const& family : all_families()) {
+        for (std::int64_t const n : of_evaluations.up_to(largest_, largest_))
+            for (auto const* list : {&machine_.alike, &machine_.others})
+                for (Arrangement const& arrangement : *list) phases_of(family, arrangement, n);
+        levels_of(family, Place::host, largest_);
+        if (machine_.no_gpu.empty()) levels_of(family, Place::gpu, largest_);
+    }
+}
+
+Prediction const& quickest(std::vector<Prediction> const& predictions) {
+    double constexpr worth_it = 0.95;  // fewer threads are left to others
+    Prediction const* best = nullptr;
+    for (Prediction const& p : predictions) {
+        if (!p.alike || !p.unusable.empty()) continue;
+        if (!best || p.seconds[typical_evaluation] < worth_it * best->seconds[typical_evaluation]) best = &p;
+    }
+    return *best;
+}
+
+}  // namespace catena::plan

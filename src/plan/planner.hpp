@@ -1,0 +1,56 @@
+// Predicts how long an evaluation of a scene takes on every arrangement of a machine, from what was measured there and, where that is not
+// enough, from what it measures now.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "plan/level_plan.hpp"
+#include "plan/machine.hpp"
+
+namespace catena::plan {
+
+struct Prediction {
+    Arrangement arrangement;
+    PhaseSeconds seconds{};  // of all groups; exchange between ranks and forces from outside are not in it
+    bool alike = true;       // the same bits as the others that are
+    std::string unusable;    // why there is none; empty where there is
+};
+
+class Planner {
+  public:
+    /// Measures chains of at most `largest` bodies.
+    Planner(Machine machine, Calibration known, std::int64_t largest)
+        : machine_(std::move(machine)), calibration_(std::move(known)), known_(calibration_.points()), largest_(largest) {}
+
+    Prediction predict(std::vector<Share> const&, Arrangement const&);
+    /// Of those that give the same bits, and of the others.
+    std::vector<Prediction> predict(std::vector<Share> const&);
+    /// Precondition: there is a GPU, or `gpu` is the host's part too (to see what the host would gain by itself: nothing).
+    LevelPlan plan_levels(std::vector<Share> const&, Place gpu = Place::gpu);
+    /// Of cuda-levels, cut so.
+    Prediction predict(std::vector<Share> const&, LevelPlan const&, GpuLevels);
+    /// Measures every family at every size.
+    void measure_everything();
+
+    Machine const& machine() const { return machine_; }
+    Calibration const& calibration() const { return calibration_; }
+    /// Whether something was measured that had not been known.
+    bool learned() const { return calibration_.points() > known_; }
+
+  private:
+    PhaseCurve const& phases_of(Family const&, Arrangement const&, std::int64_t bodies);
+    LevelCurve const& levels_of(Family const&, Place, std::int64_t bodies);
+
+    Machine machine_;
+    Calibration calibration_;
+    std::size_t known_;
+    std::int64_t largest_;
+};
+
+/// The quickest of those that give the same bits; an earlier one where the later ones gain next to nothing. Precondition: one of them can be
+/// used.
+Prediction const& quickest(std::vector<Prediction> const&);
+
+}  // namespace catena::plan
