@@ -149,6 +149,12 @@ class CountingSpace : public HostAccess {
         }
     };
 
+    struct Blocks {
+        explicit Blocks(ChainGroup const&) {}
+    };
+    bool pays_by_blocks(ChainGroup const&) const { return false; }
+    template <class Action>
+    void each_block(Blocks const&, Action const&) const {}
     template <class Action>
     void for_each(std::int64_t, Action const&) const {}
     template <class T, class Action>
