@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One run over several nodes, a few ranks with many threads on each; goes back to the queue before its time is up and goes on from its checkpoint.
+# One run over several nodes, a few ranks with many threads on each; goes back to the queue before its time is up and goes on.
 # Submit from Catena's folder: sbatch jobs/slurm-nodes.sh SCENE FOLDER [options of catena run]
 #SBATCH --job-name=catena
 #SBATCH --nodes=4

@@ -102,8 +102,8 @@ cluster_tests() {
     need_packages cluster-packages slurmctld slurmd slurm-client munge iproute2 procps || true
     check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 || true
     check killed-at-writes "$python" tests/cluster/killed_at_write.py --stride 1 || true
-    check two-hosts "$python" tests/cluster/two_hosts.py || true
-    check slurm tests/cluster/slurm.sh || true
+    check two-hosts as_root "$python" tests/cluster/two_hosts.py || true
+    check slurm as_root tests/cluster/slurm.sh || true
     for name in killed-ranks killed-at-writes two-hosts slurm; do grep -hE '^(passed|FAILED|NOT RUN)' "$logs/$name.log" || true; done
 }
 

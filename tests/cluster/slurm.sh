@@ -92,8 +92,8 @@ TEXT
 
 start_slurm
 cd "$work"
-echo "-- a job of one minute, told 30 s before its end at the latest"
-number=$(sbatch --parsable --nodes=1 --ntasks=2 --time=1 --signal=B:USR1@30 --output="$work/long.out" "$root/jobs/slurm-one-node.sh" scene.yaml long)
+echo "-- a job of one minute, told 50 s before its end at the latest"
+number=$(sbatch --parsable --nodes=1 --ntasks=2 --time=1 --signal=B:USR1@50 --output="$work/long.out" "$root/jobs/slurm-one-node.sh" scene.yaml long)
 wait_for 90 "the requeued job" is "$number" Restarts 1
 grep -h 'catena: stopped by SIGUSR1\|goes back to the queue' long.out
 scontrol update JobId="$number" TimeLimit=60
@@ -103,6 +103,12 @@ echo "-- goes on at $(date +%T)"
 wait_for 900 "its end" is "$number" JobState COMPLETED
 "$CATENA_PROGRAM" run scene.yaml --output whole --quiet
 "$python" "$root/tests/cluster/compare_runs.py" whole long
+
+echo "-- several threads a rank"
+sbatch --wait --quiet --nodes=1 --ntasks-per-node=1 --cpus-per-task=2 --time=10 --output="$work/threads.out" "$root/jobs/slurm-nodes.sh" \
+    scene.yaml threads --steps 500
+"$CATENA_PROGRAM" run scene.yaml --output threads-alone --steps 500 --backend openmp --threads 2 --quiet
+"$python" "$root/tests/cluster/compare_runs.py" threads-alone threads
 
 echo "-- an array of two"
 array=$(sbatch --parsable --array=1-2 --ntasks=1 --time=10 --output="$work/array-%a.out" "$root/jobs/slurm-array.sh" scene.yaml each --steps 500)
