@@ -123,8 +123,8 @@ class Progress {
 };
 
 std::string hdf5_version();  // "HDF5 1.10.8" or "none"
-/// For programs, before they initialise MPI: an HDF5 that starts later closes its files once more when MPI ends, and crashes on those that a
-/// full disk kept open.
+/// For programs, before they initialise MPI: an HDF5 that starts later closes its files once more when MPI ends, and crashes on those that
+/// a full disk kept open.
 void start_hdf5();
 
 }  // namespace catena
