@@ -100,7 +100,7 @@ cluster_tests() {
     local name
     say "cluster"
     need_packages cluster-packages slurmctld slurmd slurm-client munge iproute2 procps || true
-    check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 || true
+    check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 --steps 3000 || true
     check killed-at-writes "$python" tests/cluster/killed_at_write.py --stride 1 || true
     check two-hosts as_root "$python" tests/cluster/two_hosts.py || true
     check slurm as_root tests/cluster/slurm.sh || true

@@ -22,7 +22,7 @@ title: beads and bodies, to be disturbed
 chains:
   - {name: beads, velocities: thermal, generator: {freely_jointed: {beads: 600, length: 0.38}}}
   - {name: bodies, base: free, velocities: thermal, generator: {random: {bodies: 120, joint: spherical, seed: 1}}}
-dynamics: {integrator: g-baoab, step: 0.002, steps: 3000, friction: 1, seed: 5}
+dynamics: {integrator: g-baoab, step: 0.002, steps: 1000, friction: 1, seed: 5}
 output: {every: 7, checkpoint_every: 10, velocities: true}
 """
 

@@ -1,5 +1,5 @@
 """One of three ranks is killed at a random moment: the run ends within 10 s and says so, the checkpoint is whole, and what is resumed from
-it is bit for bit the undisturbed run. Usage: killed_rank.py [--times N] [--seed S]"""
+it is bit for bit the undisturbed run. Usage: killed_rank.py [--times N] [--steps N] [--seed S]"""
 import os
 import random
 import signal
@@ -45,9 +45,9 @@ def check(runs, number, seconds, draw):
 
 
 def main():
-    options = arguments(__doc__, times=5, seed=1)
+    options = arguments(__doc__, times=5, steps=1000, seed=1)
     draw = random.Random(options.seed)
-    with Runs(options) as runs:
+    with Runs(options, settings=[f"dynamics.steps={options.steps}"]) as runs:
         runs.complete(1, "whole")
         start = time.monotonic()
         runs.complete(RANKS, "timed")
