@@ -105,6 +105,6 @@ mpi_environment() {
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
     export OMPI_MCA_btl_vader_single_copy_mechanism=none   # containers forbid it, with a banner a rank
     export OMPI_MCA_oob_tcp_keepalive_time=5 OMPI_MCA_oob_tcp_keepalive_intvl=2 OMPI_MCA_oob_tcp_keepalive_probes=3
-    export OMPI_MCA_odls_base_sigkill_timeout=4            # seconds between SIGTERM and SIGKILL: a last checkpoint fits in
+    export OMPI_MCA_odls_base_sigkill_timeout=3            # seconds between SIGTERM and SIGKILL: a last checkpoint fits in
     mpirun=(mpirun --bind-to none --oversubscribe -q)
 }

@@ -49,7 +49,7 @@ class Runs:
         self.launcher = [word for word in options.mpirun.split(",") if word and word != "-q"]  # its own words are looked for
         self.environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                             "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
-                            "OMPI_MCA_odls_base_sigkill_timeout": "4",  # as jobs/common.sh does
+                            "OMPI_MCA_odls_base_sigkill_timeout": "3",  # as jobs/common.sh does
                             "OMPI_MCA_mpi_yield_when_idle": "1"}  # more ranks than cores
         self.settings = [word for setting in settings for word in ("--set", setting)]
         self.scene_text = scene
