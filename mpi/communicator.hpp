@@ -11,6 +11,16 @@
 
 namespace catena {
 
+/// Messages between two ranks, both of which know the length.
+struct Outgoing {
+    int to;
+    std::span<std::byte const> bytes;
+};
+struct Incoming {
+    int from;
+    std::span<std::byte> bytes;
+};
+
 class Communicator {
   public:
     virtual ~Communicator() = default;
@@ -29,6 +39,9 @@ class Communicator {
     virtual void broadcast(std::span<std::byte> data) const = 0;
     /// Sends to rank `to` and receives from rank `from`; a negative rank means nobody. Both sides know the length.
     virtual void exchange(std::span<std::byte const> send, int to, std::span<std::byte> receive, int from) const = 0;
+    /// Sends and receives all of these at once, at most one message from a rank to another one. Collective: ranks that have none call it
+    /// too. As written here round by round, which nothing but exchange() is needed for.
+    virtual void exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const;
     /// Largest value over the ranks (exact in any order). NaN counts as the largest.
     virtual double max(double value) const = 0;
     virtual std::int64_t sum(std::int64_t value) const = 0;

@@ -163,6 +163,26 @@ class MpiCommunicator final : public Communicator {
         }
     }
 
+    void exchange_all(std::span<Outgoing const> out, std::span<Incoming const> in) const override {
+        ++rounds_;
+        std::vector<MPI_Request> requests;
+        std::vector<std::size_t> expected;  // bytes of the receives, which come first
+        for (Incoming const& m : in)
+            for_each_piece(m.bytes, [&](std::span<std::byte> piece) {
+                expected.push_back(piece.size());
+                check(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.from, 0, world_, &requests.emplace_back()),
+                      "MPI_Irecv");
+            });
+        for (Outgoing const& m : out)
+            for_each_piece(m.bytes, [&](std::span<std::byte const> piece) {
+                check(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.to, 0, world_, &requests.emplace_back()),
+                      "MPI_Isend");
+            });
+        std::vector<MPI_Status> statuses(requests.size());
+        check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data()), "MPI_Waitall");
+        for (std::size_t i = 0; i < expected.size(); ++i) require_length(statuses[i], expected[i]);
+    }
+
     double max(double value) const override { return from_ordered(all_reduced(ordered(value), MPI_MAX)); }
     std::int64_t sum(std::int64_t value) const override { return all_reduced(value, MPI_SUM); }
 
@@ -206,6 +226,12 @@ class MpiCommunicator final : public Communicator {
 
     bool in_place(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
         return !own.empty() && own.data() == blocks.of(all, rank_).data();
+    }
+
+    template <class Byte, class Action>
+    void for_each_piece(std::span<Byte> bytes, Action action) const {
+        for (; !bytes.empty(); bytes = bytes.subspan(std::min(bytes.size(), largest_message_)))
+            action(bytes.first(std::min(bytes.size(), largest_message_)));
     }
 
     void broadcast_in_pieces(std::span<std::byte> data, int root) const {

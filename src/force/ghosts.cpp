@@ -1,91 +1,48 @@
 #include "force/ghosts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <unordered_map>
+
+#include "force/grid.hpp"
 
 namespace catena {
 
-namespace {
-
-using Cell = std::array<std::int64_t, 3>;
-
-struct CellHash {
-    std::size_t operator()(Cell const& c) const {
-        std::uint64_t h = 0;
-        for (std::int64_t i : c) h = (h ^ static_cast<std::uint64_t>(i)) * 0x9e3779b97f4a7c15u, h ^= h >> 29;
-        return h;
+std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
+                                   std::optional<Vec3> const& box) {
+    Grid const grid(radius, box);
+    CellMap cells;
+    for (std::int64_t i = 0; i < std::ssize(others); ++i) cells[grid.cell(others[i])].push_back(i);
+    auto const holds_a_near_one = [&](Cell const& cell, Vec3 const& point) {
+        auto const found = cells.find(cell);
+        return found != cells.end() && std::any_of(found->second.begin(), found->second.end(), [&](std::int64_t i) {
+                   return grid.squared_distance(point, others[i]) < radius * radius;
+               });
+    };
+    std::vector<std::int64_t> near;
+    for (std::int64_t k = 0; k < std::ssize(points); ++k) {
+        bool is_near = false;
+        grid.around(grid.cell(points[k]), [&](Cell const& cell) { is_near = is_near || holds_a_near_one(cell, points[k]); });
+        if (is_near) near.push_back(k);
     }
-};
-
-/// Cells with edges of at least `radius`: what is near a point lies in its cell or in one of the 26 around it.
-class Grid {
-  public:
-    Grid(double radius, std::optional<Vec3> const& box) : box_(box) {
-        for (int i = 0; i < 3; ++i) {
-            count_[i] = box ? std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((*box)[i] / radius))) : 0;
-            edge_[i] = box ? (*box)[i] / static_cast<double>(count_[i]) : radius;
-        }
-    }
-
-    Cell cell(Vec3 const& x) const {
-        Cell c{};
-        for (int i = 0; i < 3; ++i) c[i] = wrapped(static_cast<std::int64_t>(std::floor(x[i] / edge_[i])), i);
-        return c;
-    }
-
-    template <class Visit>
-    void around(Cell const& c, Visit visit) const {
-        for (std::int64_t x = -1; x <= 1; ++x)
-            for (std::int64_t y = -1; y <= 1; ++y)
-                for (std::int64_t z = -1; z <= 1; ++z) visit(Cell{wrapped(c[0] + x, 0), wrapped(c[1] + y, 1), wrapped(c[2] + z, 2)});
-    }
-
-    double squared_distance(Vec3 const& a, Vec3 const& b) const {
-        Vec3 d = a - b;
-        if (box_)
-            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::round(d[i] / (*box_)[i]);
-        return dot(d, d);
-    }
-
-  private:
-    std::int64_t wrapped(std::int64_t c, int axis) const {
-        if (count_[axis] == 0) return c;
-        std::int64_t const r = c % count_[axis];
-        return r < 0 ? r + count_[axis] : r;
-    }
-
-    std::optional<Vec3> box_;
-    Vec3 edge_{};
-    Cell count_{};
-};
-
-}  // namespace
+    return near;
+}
 
 std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,
                                     std::optional<Vec3> const& box) {
-    std::vector<std::int64_t> ghosts;
-    if (own.empty()) return ghosts;
-    Grid const grid(radius, box);
     std::vector<bool> is_own(positions.size(), false);
-    std::unordered_map<Cell, std::vector<std::int64_t>, CellHash> near;  // own beads in and around each cell
+    std::vector<Vec3> inside, outside;
     for (std::int64_t const k : own) {
         is_own[k] = true;
-        grid.around(grid.cell(positions[k]), [&](Cell const& c) {
-            auto& beads = near[c];
-            if (beads.empty() || beads.back() != k) beads.push_back(k);
-        });
+        inside.push_back(positions[k]);
     }
+    std::vector<std::int64_t> bead;  // of `outside`
     for (std::int64_t k = 0; k < std::ssize(positions); ++k) {
         if (is_own[k]) continue;
-        auto const beads = near.find(grid.cell(positions[k]));
-        if (beads == near.end()) continue;
-        bool const is_near = std::any_of(beads->second.begin(), beads->second.end(), [&](std::int64_t inside) {
-            return grid.squared_distance(positions[k], positions[inside]) < radius * radius;
-        });
-        if (is_near) ghosts.push_back(k);
+        outside.push_back(positions[k]);
+        bead.push_back(k);
     }
+    std::vector<std::int64_t> ghosts = near_any(outside, inside, radius, box);
+    for (std::int64_t& k : ghosts) k = bead[k];
     return ghosts;
 }
 

@@ -1,4 +1,4 @@
-// Which beads of other ranks a rank needs: those near its own. No OpenMM here.
+// Which beads lie near others: the search that every list of ghosts is made by. No OpenMM here, and no messages.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,12 @@
 
 namespace catena {
 
-/// Beads that are not among `own` and lie within `radius` of one of these, ascending. `box`: edges of the periodic box (nearest images).
-/// Preconditions: radius > 0, positions finite.
+/// Indices, ascending, of the `points` that lie within `radius` of one of `others`. `box`: edges of the periodic box (nearest images).
+/// What is near one of `points` is found from either side alike. Preconditions: radius > 0, positions finite.
+std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
+                                   std::optional<Vec3> const& box);
+
+/// Beads that are not among `own` and lie within `radius` of one of these, ascending.
 std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,
                                     std::optional<Vec3> const& box);
 

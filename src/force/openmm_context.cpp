@@ -1,6 +1,5 @@
 #include "force/openmm_context.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -21,23 +20,21 @@ Placement placement_for(OpenMM::System const& system) {
     return images ? Placement::wrapped : Placement::shifted;
 }
 
-ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, std::vector<std::int64_t> beads, OpenMmPlatform const& platform,
-                           std::optional<Vec3> const& box)
-    : beads_(std::move(beads)),
-      box_(box),
+ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box)
+    : box_(box),
       placement_(placement_for(*system)),
       system_(std::move(system)),
       context_(std::make_unique<OpenMM::Context>(*system_, integrator_, *platform.platform, platform.properties)),
-      positions_(beads_.size()) {}
+      positions_(static_cast<std::size_t>(system_->getNumParticles())) {}
 
-void ForceContext::set_positions(std::span<Vec3 const> all) {
+void ForceContext::set_positions(std::span<Vec3 const> positions, std::size_t centred) {
     Vec3 origin = Vec3::zero();
-    if (placement_ == Placement::shifted) {
-        for (std::int64_t bead : beads_) origin = origin + all[bead];
-        origin = (1.0 / static_cast<double>(std::max<std::int64_t>(1, size()))) * origin;
+    if (placement_ == Placement::shifted && centred > 0) {
+        for (std::size_t i = 0; i < centred; ++i) origin = origin + positions[i];
+        origin = (1.0 / static_cast<double>(centred)) * origin;
     }
-    for (std::size_t i = 0; i < beads_.size(); ++i) {
-        Vec3 x = all[beads_[i]] - origin;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+        Vec3 x = positions[i] - origin;
         if (placement_ == Placement::wrapped)
             for (int c = 0; c < 3; ++c) x[c] -= (*box_)[c] * std::floor(x[c] / (*box_)[c]);
         positions_[i] = {x[0], x[1], x[2]};

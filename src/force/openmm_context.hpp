@@ -26,15 +26,13 @@ Placement placement_for(OpenMM::System const&);
 
 class ForceContext {
   public:
-    /// Particle i is bead `beads[i]`. Throws what OpenMM throws if it refuses the forces.
-    ForceContext(std::shared_ptr<OpenMM::System const> system, std::vector<std::int64_t> beads, OpenMmPlatform const& platform,
-                 std::optional<Vec3> const& box);
+    /// Throws what OpenMM throws if it refuses the forces.
+    ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box);
 
-    std::int64_t size() const { return static_cast<std::int64_t>(beads_.size()); }
-    std::vector<std::int64_t> const& beads() const { return beads_; }
+    std::int64_t size() const { return std::ssize(positions_); }
 
-    /// `all`: positions of all beads, nm, W.
-    void set_positions(std::span<Vec3 const> all);
+    /// Of its particles, nm, W. Where all may be shifted, the middle of the first `centred` goes to the origin.
+    void set_positions(std::span<Vec3 const> positions, std::size_t centred);
     /// Forces on particle i = 0 .. size - 1, kJ/mol/nm, W.
     std::vector<OpenMM::Vec3> forces();
     Placement placement() const { return placement_; }
@@ -43,7 +41,6 @@ class ForceContext {
     double energy(int group);
 
   private:
-    std::vector<std::int64_t> beads_;
     std::optional<Vec3> box_;
     Placement placement_;
     std::shared_ptr<OpenMM::System const> system_;

@@ -37,32 +37,33 @@ class OpenMmForces final : public OpenMmForce {
     std::vector<std::string> description() const override;
     std::string platform() const override { return platform_.name(); }
     std::string path() const override { return path_.name(); }
-    std::int64_t largest_context() const override { return rank_.largest_context(); }
-    std::int64_t rebuilds() const override { return rank_.rebuilds(); }
+    void renew_ghosts() override { rank_->renew_ghosts(); }
+    GhostTraffic traffic() const override { return rank_->traffic(); }
+    std::int64_t largest_context() const override { return rank_->largest_context(); }
+    std::int64_t contexts() const override { return rank_->contexts(); }
+    Interval last_gathering() const override { return gathering_; }
 
   private:
     std::int64_t first() const { return first_of_rank_[communicator_.rank()]; }
     std::int64_t own_count() const { return first_of_rank_[communicator_.rank() + 1] - first(); }
-    void gather(ConstView<3> positions);
+    std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const;
     void evaluate() noexcept;
     void wait();
-    void compute_energies(std::vector<double>& values);
 
     Communicator const& communicator_;
-    std::vector<std::int64_t> first_of_rank_, bytes_of_rank_;
+    std::vector<std::int64_t> first_of_rank_;
     bool replicate_, overlap_;
     OpenMmModel model_;
     OpenMmPlatform platform_;
     std::optional<Vec3> box_;  // where the forces are periodic
     std::vector<std::int64_t> by_rank_;
-    RankForces rank_;
+    std::unique_ptr<RankForces> rank_;
     PathChoice path_;
     std::unique_ptr<DevicePath> device_;
-    std::unique_ptr<ForceContext> energy_context_;  // every bead, on rank 0 of several
-    std::vector<Vec3> own_, all_, ordered_, forces_;
+    std::vector<Vec3> own_, forces_;
     bool under_way_ = false, evaluated_ = false;
     double begun_ = 0;
-    Interval interval_;
+    Interval gathering_, interval_;
     std::exception_ptr error_;
     std::unique_ptr<Worker> worker_;  // last: its thread ends before what it uses
 };
@@ -102,14 +103,11 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
       platform_(choose_platform(spec, beads, communicator, chains.device)),
       box_(box_of(model_, beads)),
       by_rank_(beads.by_rank),
-      rank_(model_, platform_, beads.beads_of(communicator.rank()), communicator.size() == 1 || spec.replicate, box_),
+      rank_(make_rank_forces(spec, beads)),
       path_(spec.path, platform_.on_cpu() && spec.overlap, why_no_device(spec, platform_, communicator, chains), beads.scene_file),
       own_(static_cast<std::size_t>(own_count())),
-      all_(static_cast<std::size_t>(beads.size())),
       forces_(own_.size()) {
-    for (int r = 0; r < communicator.size(); ++r)
-        bytes_of_rank_.push_back((first_of_rank_[r + 1] - first_of_rank_[r]) * static_cast<std::int64_t>(sizeof(Vec3)));
-    ForceContext* const whole = rank_.whole_context();
+    ForceContext* const whole = rank_->whole_context();
     if (!path_.on_device() || whole == nullptr) return;
     DevicePathPlan plan;
     std::vector<int> particle_of_bead(model_.bead_of_particle.size());
@@ -122,22 +120,15 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
     device_ = cuda::make_device_path(whole->context(), std::move(plan));
 }
 
-void OpenMmForces::gather(ConstView<3> positions) {
-    for (std::int64_t k = 0; k < own_count(); ++k) own_[k] = positions.load(k);
-    if (communicator_.size() == 1)
-        all_ = own_;
-    else
-        communicator_.all_gather(std::as_bytes(std::span(own_)), std::as_writable_bytes(std::span(all_)), bytes_of_rank_);
-    if (by_rank_.empty()) return;
-    ordered_.resize(all_.size());
-    for (std::size_t i = 0; i < all_.size(); ++i) ordered_[static_cast<std::size_t>(by_rank_[i])] = all_[i];
-    std::swap(all_, ordered_);
+std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const {
+    RankPlan const plan{model_, platform_, beads, communicator_, box_, spec.audit};
+    return communicator_.size() == 1 || spec.replicate ? make_whole_forces(plan) : make_split_forces(plan);
 }
 
 void OpenMmForces::evaluate() noexcept {
     interval_.begin = now();
     try {
-        rank_.evaluate(all_, forces_);
+        rank_->evaluate(forces_);
     } catch (...) {
         error_ = std::current_exception();
     }
@@ -147,7 +138,9 @@ void OpenMmForces::evaluate() noexcept {
 void OpenMmForces::begin(ConstView<3> positions) {
     wait();
     begun_ = now();
-    gather(positions);
+    for (std::int64_t k = 0; k < own_count(); ++k) own_[k] = positions.load(k);
+    rank_->gather(own_);
+    gathering_ = {begun_, now()};
     path_.settle(communicator_);
     error_ = nullptr;
     under_way_ = evaluated_ = true;
@@ -179,27 +172,17 @@ void OpenMmForces::finish(View<3> forces) {
     path_.note(now() - begun_);
 }
 
-void OpenMmForces::compute_energies(std::vector<double>& values) {
-    ForceContext* context = rank_.whole_context();
-    if (context == nullptr) {
-        if (!energy_context_) energy_context_ = std::make_unique<ForceContext>(model_.system, model_.bead_of_particle, platform_, box_);
-        context = energy_context_.get();
-    }
-    if (!device_) context->set_positions(all_);  // else they are there
-    for (std::size_t i = 0; i < values.size(); ++i) values[i] = context->energy(static_cast<int>(i));
-}
-
 std::vector<EnergyTerm> OpenMmForces::energies() {
     wait();
     if (!evaluated_ && !device_) throw ComputationError("OpenMM's energies were asked for before it was given positions");
     std::vector<double> values(model_.terms.size());
     std::string failure;
-    if (communicator_.rank() == 0) {
-        try {
-            compute_energies(values);
-        } catch (std::exception const& e) {
-            failure = e.what();
-        }
+    try {
+        if (ForceContext* const context = rank_->every_bead())
+            for (std::size_t i = 0; i < values.size(); ++i) values[i] = context->energy(static_cast<int>(i));
+    } catch (std::exception const& e) {
+        if (communicator_.rank() != 0) throw;
+        failure = e.what();
     }
     char failed = failure.empty() ? 0 : 1;
     communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
@@ -212,7 +195,7 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
 }
 
 void OpenMmForces::forces_again(View<3> forces) {
-    auto const again = rank_.whole_context()->forces();
+    auto const again = rank_->whole_context()->forces();
     std::vector<Vec3> of_bead(again.size());
     for (std::size_t p = 0; p < again.size(); ++p)
         of_bead[static_cast<std::size_t>(model_.bead_of_particle[p])] = {{again[p][0], again[p][1], again[p][2]}};
@@ -234,8 +217,8 @@ std::vector<std::string> OpenMmForces::description() const {
         lines.push_back(fmt::format("warning: {} threads share {} cores of this rank", platform_.threads, cores));
     if (communicator_.size() > 1 && replicate_) lines.push_back("replicated: every rank computes the whole System");
     if (communicator_.size() > 1 && !replicate_ && own_count() > 0)
-        lines.push_back(std::isfinite(rank_.reach())
-                            ? fmt::format("split: own beads and those within {} + {} nm on each rank", rank_.reach(), rank_.skin())
+        lines.push_back(std::isfinite(rank_->reach())
+                            ? fmt::format("split: own beads and those within {} + {} nm on each rank", rank_->reach(), rank_->skin())
                             : "split: every bead on each rank (a force has no cutoff)");
     for (auto const& failure : load_openmm_plugins()) lines.push_back("plugin not loaded: " + failure);
     return lines;

@@ -11,6 +11,7 @@
 
 #include "chain/field.hpp"
 #include "force/device_path.hpp"
+#include "force/ghost_exchange.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 
@@ -79,9 +80,15 @@ class OpenMmForce {
     virtual std::string platform() const = 0;
     /// The path that runs: "device", "host" or "inline".
     virtual std::string path() const = 0;
-    /// Largest number of beads that this rank's Context has held, ghosts included, and how often it was built.
+    /// Lists of ghosts are made anew at the next evaluation. On every rank or none.
+    virtual void renew_ghosts() = 0;
+    /// What this rank sent and holds where the forces are split over ranks; nothing elsewhere.
+    virtual GhostTraffic traffic() const = 0;
+    /// When positions were brought to this rank for the last evaluation.
+    virtual Interval last_gathering() const = 0;
+    /// Largest number of particles that this rank's Context has held, ghosts and spares included, and how many Contexts it made.
     virtual std::int64_t largest_context() const = 0;
-    virtual std::int64_t rebuilds() const = 0;
+    virtual std::int64_t contexts() const = 0;
 };
 
 /// Throws InputError when the scene's terms cannot be had (unknown residue, missing platform, unreadable XML, a force that cannot be split

@@ -1,4 +1,5 @@
-// What one rank computes: the forces on its own beads, from a Context that holds them and whatever acts on them.
+// What one rank computes: the forces on its own beads, from a Context that holds whatever acts on them. For files that see OpenMM's
+// headers.
 #pragma once
 
 #include <cstdint>
@@ -8,50 +9,59 @@
 #include <span>
 #include <vector>
 
+#include "force/ghost_exchange.hpp"
 #include "force/openmm_context.hpp"
 #include "force/openmm_model.hpp"
+#include "mpi/communicator.hpp"
 
 namespace catena {
 
 class RankForces {
   public:
-    /// The rank owns the beads `own`. `whole`: its Context holds every bead (one rank, or `replicate`); else its own beads and ghosts:
-    /// every bead within reach + skin, renewed when a bead has moved so far that one might be missing. A rank without beads builds nothing.
-    /// `box`: edges of the box where the forces are periodic. Throws what OpenMM throws if it refuses the forces.
-    RankForces(OpenMmModel const& model, OpenMmPlatform const& platform, std::vector<std::int64_t> own, bool whole,
-               std::optional<Vec3> const& box);
-
-    /// Forces on own beads, in the order of `own`, at the positions of all beads. Throws ComputationError and what OpenMM throws.
-    void evaluate(std::span<Vec3 const> all, std::span<Vec3> own_forces);
-
+    virtual ~RankForces() = default;
+    /// Brings the positions that this rank needs; `own`: those of its own beads, in the order of BeadSystem::by_rank. Collective, on the
+    /// thread that may send messages.
+    virtual void gather(std::span<Vec3 const> own) = 0;
+    /// Forces on own beads at the positions gathered last, on any thread: it sends no messages. Throws ComputationError and what OpenMM
+    /// throws.
+    virtual void evaluate(std::span<Vec3> own_forces) = 0;
+    /// A Context of every bead at the positions gathered last on rank 0, nullptr on others: for energies. Collective, but that rank 0 may
+    /// throw what OpenMM throws.
+    virtual ForceContext* every_bead() = 0;
     /// The Context with every particle of the model in its order; nullptr if this rank has none.
-    ForceContext* whole_context() { return whole_ ? context_.get() : nullptr; }
+    virtual ForceContext* whole_context() { return nullptr; }
 
-    std::int64_t largest_context() const { return largest_; }
-    std::int64_t rebuilds() const { return rebuilds_; }
-    double skin() const { return skin_; }
-    double reach() const { return reach_; }
+    /// Lists of ghosts are made anew by the next gather(), here as on every other rank.
+    virtual void renew_ghosts() {}
+    virtual GhostTraffic traffic() const { return {}; }
+    /// Particles of the largest Context so far, and how many were made.
+    virtual std::int64_t largest_context() const = 0;
+    virtual std::int64_t contexts() const = 0;
+    /// How far forces reach, and by how much more ghosts' lists do, nm; where nothing is split, or forces have no end, infinite and 0.
+    virtual double reach() const { return std::numeric_limits<double>::infinity(); }
+    virtual double skin() const { return 0; }
 
-    /// Part of the reach by which the ghosts' list is wider: a list lasts until a bead has moved half of that.
+    /// Part of the reach by which the ghosts' list is wider.
     static double constexpr skin_of_reach = 0.125;
-
-  private:
-    bool list_is_good(std::span<Vec3 const> all) const;
-    void rebuild(std::span<Vec3 const> all);
-    std::vector<std::int64_t> ghost_beads(std::span<Vec3 const> all) const;
-    std::unique_ptr<ForceContext> context_for(std::vector<std::int64_t> beads) const;
-
-    OpenMmModel const& model_;
-    OpenMmPlatform const& platform_;
-    std::vector<std::int64_t> own_;
-    bool whole_;
-    std::optional<Vec3> box_;
-    std::vector<int> particle_of_bead_;
-    std::vector<std::int64_t> partners_;  // beads of other ranks that share a bonded term with own ones
-    double reach_ = std::numeric_limits<double>::infinity(), skin_ = 0;
-    std::unique_ptr<ForceContext> context_;
-    std::vector<Vec3> listed_;  // positions of all beads when the Context was made
-    std::int64_t largest_ = 0, rebuilds_ = 0;
 };
+
+/// What the ranks' shares are made from. A rank without beads builds nothing.
+struct RankPlan {
+    OpenMmModel const& model;
+    OpenMmPlatform const& platform;
+    BeadSystem const& beads;
+    Communicator const& communicator;
+    std::optional<Vec3> box;  // edges of the box where the forces are periodic
+    bool audit = false;       // compares the ghosts with a search among all beads at every evaluation
+};
+
+/// A Context with every bead on each rank: one rank, or `replicate`. Throws what OpenMM throws if it refuses the forces.
+std::unique_ptr<RankForces> make_whole_forces(RankPlan const&);
+/// One with the rank's own beads and their ghosts: every bead within reach + skin, and the partners of own ones in bonded terms. Throws
+/// what OpenMM throws if it refuses the forces. Precondition: every force can be split.
+std::unique_ptr<RankForces> make_split_forces(RankPlan const&);
+
+/// Throws ComputationError where one of `vectors` is not finite. `bead`: which each belongs to. `what`: "the position".
+void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> bead, char const* what);
 
 }  // namespace catena

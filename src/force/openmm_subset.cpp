@@ -38,19 +38,19 @@ class NoTerm : public TermFilter {
     bool keep(std::initializer_list<int*>) override { return false; }
 };
 
-/// Keeps the terms that touch an own particle, with the subset's numbers.
+/// Keeps the terms that touch an own particle, with the subset's numbers. Exchangeable particles have no terms.
 class Renumbering : public TermFilter {
   public:
-    Renumbering(int particle_count, std::vector<int> const& particles, int own_count)
-        : particles_(particles), own_count_(own_count), index_(particle_count, -1) {
-        for (int i = 0; i < static_cast<int>(particles.size()); ++i) index_[particles[i]] = i;
+    Renumbering(int particle_count, Subset const& subset)
+        : particles_(subset.particles), own_count_(subset.own), index_(particle_count, -1) {
+        for (int i = 0; i < subset.fixed; ++i) index_[particles_[i]] = i;
     }
     bool keep(std::initializer_list<int*> particles) override {
         bool const touches =
             std::any_of(particles.begin(), particles.end(), [&](int const* p) { return index_[*p] >= 0 && index_[*p] < own_count_; });
         return touches && keep_pair(particles);
     }
-    /// Whether all are in the subset.
+    /// Whether all are in the subset for good.
     bool keep_pair(std::initializer_list<int*> particles) const {
         if (std::any_of(particles.begin(), particles.end(), [&](int const* p) { return index_[*p] < 0; })) return false;
         for (int* p : particles) *p = index_[*p];
@@ -61,7 +61,7 @@ class Renumbering : public TermFilter {
   private:
     std::vector<int> const& particles_;
     int own_count_;
-    std::vector<int> index_;  // in the subset; -1: not in it
+    std::vector<int> index_;  // in the subset; -1: not in it for good
 };
 
 template <class Source>
@@ -76,6 +76,14 @@ void collect_exceptions(NonbondedForce const& from, TermFilter& filter) {
         int a, b;
         double charge, sigma, epsilon;
         from.getExceptionParameters(i, a, b, charge, sigma, epsilon);
+        filter.keep({&a, &b});
+    }
+}
+
+void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
+    for (int i = 0; i < from.getNumExclusions(); ++i) {
+        int a, b;
+        from.getExclusionParticles(i, a, b);
         filter.keep({&a, &b});
     }
 }
@@ -180,6 +188,24 @@ std::unique_ptr<Force> copy_force(Force const& from, Renumbering& subset) {
     return copy_bonded(from, subset);
 }
 
+void exchange_parameters(Subset const& subset, CustomNonbondedForce const& from, CustomNonbondedForce& to, Context& context) {
+    std::vector<double> parameters;
+    for (int k = subset.fixed; k < static_cast<int>(subset.particles.size()); ++k) {
+        from.getParticleParameters(subset.particles[k], parameters);
+        to.setParticleParameters(k, parameters);
+    }
+    to.updateParametersInContext(context);
+}
+
+void exchange_parameters(Subset const& subset, NonbondedForce const& from, NonbondedForce& to, Context& context) {
+    double charge, sigma, epsilon;
+    for (int k = subset.fixed; k < static_cast<int>(subset.particles.size()); ++k) {
+        from.getParticleParameters(subset.particles[k], charge, sigma, epsilon);
+        to.setParticleParameters(k, charge, sigma, epsilon);
+    }
+    to.updateParametersInContext(context);
+}
+
 /// How far one force reaches; negative: it cannot be split.
 double reach_of(Force const& force) {
     double constexpr everywhere = std::numeric_limits<double>::infinity();
@@ -209,26 +235,49 @@ std::vector<int> bonded_partners(System const& system, std::vector<int> const& o
     PartnerCollector collector(system.getNumParticles(), own);
     for (int i = 0; i < system.getNumForces(); ++i) {
         if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i))) collect_exceptions(*pairs, collector);
+        if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i))) collect_exclusions(*pairs, collector);
         copy_bonded(system.getForce(i), collector);
     }
     return collector.partners();
 }
 
-std::unique_ptr<System> subset_of(System const& whole, std::vector<int> const& particles, int own_count) {
-    auto subset = std::make_unique<System>();
+bool can_exchange_particles(System const& system) {
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i));
+            pairs && pairs->getNumInteractionGroups() > 0)
+            return false;
+        if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i));
+            pairs && pairs->getNumParticleParameterOffsets() > 0)
+            return false;
+    }
+    return true;
+}
+
+std::unique_ptr<System> system_of(Subset const& subset, System const& whole) {
+    auto system = std::make_unique<System>();
     Vec3 a, b, c;
     whole.getDefaultPeriodicBoxVectors(a, b, c);
-    subset->setDefaultPeriodicBoxVectors(a, b, c);
-    for (int p : particles) subset->addParticle(whole.getParticleMass(p));
-    Renumbering renumbering(whole.getNumParticles(), particles, own_count);
+    system->setDefaultPeriodicBoxVectors(a, b, c);
+    for (int p : subset.particles) system->addParticle(whole.getParticleMass(p));
+    Renumbering renumbering(whole.getNumParticles(), subset);
     for (int i = 0; i < whole.getNumForces(); ++i) {
         Force const& from = whole.getForce(i);
         auto to = copy_force(from, renumbering);
         to->setForceGroup(from.getForceGroup());
         to->setName(from.getName());
-        subset->addForce(to.release());
+        system->addForce(to.release());
     }
-    return subset;
+    return system;
+}
+
+void exchange_particles(Subset const& subset, System const& whole, System& system, Context& context) {
+    for (int i = 0; i < whole.getNumForces(); ++i) {
+        Force const& from = whole.getForce(i);
+        if (auto const* custom = dynamic_cast<CustomNonbondedForce const*>(&from))
+            exchange_parameters(subset, *custom, dynamic_cast<CustomNonbondedForce&>(system.getForce(i)), context);
+        else if (auto const* charges = dynamic_cast<NonbondedForce const*>(&from))
+            exchange_parameters(subset, *charges, dynamic_cast<NonbondedForce&>(system.getForce(i)), context);
+    }
 }
 
 }  // namespace catena

@@ -15,11 +15,26 @@ bool can_be_split(OpenMM::Force const&);
 /// How far nonbonded forces reach: 0 without any, infinite where one has no cutoff. Precondition: every force can be split.
 double reach_of(OpenMM::System const&);
 
-/// Particles, ascending, that share a bonded term or an exception with one of `own` and are not among them.
+/// Particles, ascending, that share a bonded term, an exception or an exclusion with one of `own` and are not among them.
 std::vector<int> bonded_partners(OpenMM::System const&, std::vector<int> const& own);
 
-/// The System of `particles`, in this order, with the forces that act on the first `own_count` of them complete: bonded terms that touch
-/// one of these, and all pairs. Force groups and names stay. Precondition: what shares a bonded term with them is among `particles`.
-std::unique_ptr<OpenMM::System> subset_of(OpenMM::System const&, std::vector<int> const& particles, int own_count);
+/// Particles of another System: the first `own` of them with all the forces that act on them, the first `fixed` for good, those after
+/// exchangeable.
+struct Subset {
+    std::vector<int> particles;
+    int own = 0, fixed = 0;
+};
+
+/// Whether particles of a Subset's System can be exchanged: parameters can, members of interaction groups and of offsets cannot.
+bool can_exchange_particles(OpenMM::System const&);
+
+/// The System of the subset's particles, in this order: bonded terms that touch own ones, and all pairs, but that exchangeable particles
+/// have no exclusions. Force groups and names stay. Precondition: what shares a bonded term with own particles is among the fixed ones, as
+/// is, where some are exchangeable, what shares an exclusion.
+std::unique_ptr<OpenMM::System> system_of(Subset const&, OpenMM::System const& whole);
+
+/// Gives the exchangeable particles of `system`, made for a subset of that shape, the parameters that those of this one have in `whole`,
+/// and so in its `context`.
+void exchange_particles(Subset const&, OpenMM::System const& whole, OpenMM::System& system, OpenMM::Context& context);
 
 }  // namespace catena

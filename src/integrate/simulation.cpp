@@ -276,7 +276,7 @@ class Run {
                            {"matrix_sweep_seconds", matrix},
                            {"matrix_sweep_hidden", matrix > 0 ? system_.hidden_seconds() / matrix : 0.0},
                            {"largest_context", openmm->largest_context()},
-                           {"rebuilds", openmm->rebuilds()}};
+                           {"contexts", openmm->contexts()}};
         }
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;

@@ -153,6 +153,7 @@ struct OpenMmSpec {
     std::string path = "auto";  // auto | device (positions and forces stay on the GPU) | host (worker thread) | inline
     bool overlap = true;        // the chains' own work goes on while forces are computed (paths device and host)
     bool replicate = false;
+    bool audit = false;             // compares the ghosts with a search among all beads at every evaluation
     std::vector<int> force_groups;  // empty: all
 };
 

@@ -65,7 +65,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
     Fields const fields(node, {"builder", "system", "topology", "map", "temperature", "ionic_strength", "ph", "switch_width", "platform",
-                               "precision", "threads", "device", "path", "overlap", "replicate", "force_groups"});
+                               "precision", "threads", "device", "path", "overlap", "replicate", "audit", "force_groups"});
     if (si) fail(node, "OpenMM's forces in SI units", "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);
@@ -85,6 +85,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
     });
     take(fields, "overlap", spec.overlap, truth);
     take(fields, "replicate", spec.replicate, truth);
+    take(fields, "audit", spec.audit, truth);
     if (Node const* const groups = fields.find("force_groups"))
         for (Node const& group : list(*groups).items) spec.force_groups.push_back(static_cast<int>(whole(group, 0, 31)));
     return spec;

@@ -57,6 +57,16 @@ TEST(Ghosts, InABoxTheyAreNearestImages) {
                     << radius << ' ' << box[0] << ' ' << first;
 }
 
+/// Ranks find what is near each other's beads from either side: the two must agree on every pair.
+TEST(Ghosts, AreFoundFromEitherSideAlike) {
+    auto const here = scattered(150, 9, 4), there = scattered(150, 9, 5);
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{5, 6, 20}}}})
+        for (std::size_t k = 0; k < here.size(); ++k)
+            for (std::size_t i = 0; i < there.size(); ++i)
+                EXPECT_EQ(near_any({&here[k], 1}, {&there[i], 1}, 2.0, box).size(),
+                          near_any({&there[i], 1}, {&here[k], 1}, 2.0, box).size());
+}
+
 TEST(Ghosts, DisplacementIsTheLargest) {
     auto const from = scattered(50, 1, 3);
     auto to = from;

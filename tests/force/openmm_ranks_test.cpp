@@ -16,8 +16,11 @@ double constexpr same = 1e-12;
 
 class Ranks : public ::testing::Test {
   protected:
-    /// Evaluations along a walk of all beads; with `rebuilt`, some rank's list must have been made anew on the way.
-    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, bool rebuilt) {
+    /// What must come of the lists on several ranks: made anew on the way or not, and on some rank without some bead of the scene.
+    enum class Lists { last, are_made_anew, are_made_anew_of_all_beads };
+
+    /// Evaluations along a walk of all beads.
+    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists) {
         on_ranks([&](Communicator const& communicator) {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
@@ -33,11 +36,11 @@ class Ranks : public ::testing::Test {
                 if (i % 2 == 0) expect_same_energies(*force, *whole);
                 shake(positions, stride, 100 + i);
             }
-            bool const anew = force->rebuilds() > 1 && force->rebuilds() < evaluations;
-            EXPECT_EQ(communicator.max(anew ? 1 : 0) == 1, rebuilt && communicator.size() > 1)
-                << force->rebuilds() << " on " << communicator.size() << " ranks";
+            std::int64_t const made = force->traffic().rebuilds;
+            bool const anew = made > 1 && made < evaluations;
+            EXPECT_EQ(anew, lists != Lists::last && communicator.size() > 1) << made << " on " << communicator.size() << " ranks";
             double const least = -communicator.max(-static_cast<double>(force->largest_context()));
-            if (rebuilt && communicator.size() > 1) {
+            if (lists == Lists::are_made_anew && communicator.size() > 1) {
                 EXPECT_LT(least, static_cast<double>(beads.size()));
             }
         });
@@ -60,15 +63,16 @@ class Ranks : public ::testing::Test {
 };
 
 TEST_F(Ranks, Calvados2) {
-    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, true);
+    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, Calvados2InABox) {
-    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, true);
+    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
-    compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1, false);
+    compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1,
+            Lists::are_made_anew_of_all_beads);
 }
 
 /// Nobody has moved but one chain, from far away to the other: its beads were no ghosts.
@@ -94,22 +98,22 @@ TEST_F(Ranks, AChainThatComesFromAfar) {
 TEST_F(Ranks, OnAWorkerThread) {
     OpenMmSpec spec = on_reference();
     spec.path = "host";
-    compare(spec, proteins({random_sequence(150, 9)}), 0.1, true);
+    compare(spec, proteins({random_sequence(150, 9)}), 0.1, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, FewerBeadsThanRanks) {
-    compare(on_reference(), proteins({"K"}), 0.1, false);
-    compare(on_reference(), proteins({"KD", "E"}), 0.1, false);
+    compare(on_reference(), proteins({"K"}), 0.1, Lists::last);
+    compare(on_reference(), proteins({"KD", "E"}), 0.1, Lists::last);
 }
 
 TEST_F(Ranks, EveryForce) {
     BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
-    compare(of_system(*every_force(beads), "every.xml"), beads, 0.03, true);
+    compare(of_system(*every_force(beads), "every.xml"), beads, 0.03, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, EveryForceInABox) {
     BeadSystem const beads = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
-    compare(of_system(*every_force(beads), "every-box.xml"), beads, 0.03, true);
+    compare(of_system(*every_force(beads), "every-box.xml"), beads, 0.03, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, BondedForcesAlone) {
@@ -118,7 +122,7 @@ TEST_F(Ranks, BondedForcesAlone) {
     auto* bonds = new OpenMM::CustomBondForce("r^2");
     for (int i = 0; i + 2 < 60; ++i) bonds->addBond(i, i + 2);
     system->addForce(bonds);
-    compare(of_system(*system, "bonded.xml"), beads, 0.1, false);
+    compare(of_system(*system, "bonded.xml"), beads, 0.1, Lists::last);
 }
 
 TEST_F(Ranks, WithoutACutoff) {
@@ -127,7 +131,7 @@ TEST_F(Ranks, WithoutACutoff) {
     auto* pairs = new OpenMM::CustomNonbondedForce("1/r");
     for (int i = 0; i < 60; ++i) pairs->addParticle();
     system->addForce(pairs);
-    compare(of_system(*system, "everywhere.xml"), beads, 0.1, false);
+    compare(of_system(*system, "everywhere.xml"), beads, 0.1, Lists::last);
 }
 
 TEST_F(Ranks, Replicated) {
@@ -141,7 +145,7 @@ TEST_F(Ranks, Replicated) {
     system->addForce(charges);
     OpenMmSpec spec = of_system(*system, "pme.xml");
     spec.replicate = true;
-    compare(spec, beads, 0.05, false);
+    compare(spec, beads, 0.05, Lists::last);
     spec.replicate = false;
     on_ranks([&](Communicator const& communicator) {
         if (communicator.size() == 1) return;
@@ -160,7 +164,7 @@ TEST_F(Ranks, ChainsInAnotherOrderThanTheirParticles) {
     std::swap(scene.chain_name[0], scene.chain_name[1]);
     OpenMmSpec spec = of_system(*every_force(in_system), "order.xml");
     spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
-    compare(spec, scene, 0.03, true);
+    compare(spec, scene, 0.03, Lists::are_made_anew);
 
     // The same forces as in the System's own order.
     auto const serial = serial_communicator();

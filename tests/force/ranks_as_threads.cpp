@@ -101,7 +101,7 @@ void on_threads(int ranks, std::function<void(Communicator const&)> const& body)
 }  // namespace
 
 void on_ranks(std::function<void(Communicator const&)> const& body) {
-    for (int const ranks : {1, 2, 3, 6}) on_threads(ranks, body);
+    for (int const ranks : {1, 2, 3, 4, 6}) on_threads(ranks, body);
 }
 
 }  // namespace catena::testing

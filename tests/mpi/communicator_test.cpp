@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 
@@ -122,6 +124,37 @@ TEST_P(CommunicatorTest, ExchangeAroundARing) {
     std::vector<std::int64_t> receive(4, -1);
     ranks().exchange(readable(send), (rank + 1) % size, writable(receive), (rank + size - 1) % size);
     EXPECT_EQ(receive, std::vector<std::int64_t>(4, (rank + size - 1) % size));
+}
+
+/// Rank r sends 3 r + s numbers to rank s, but nothing where r + s is a multiple of 4.
+void exchange_with_everybody(std::function<void(std::span<Outgoing const>, std::span<Incoming const>)> const& exchange_all, int rank,
+                             int size) {
+    auto const length = [](int from, int to) { return (from + to) % 4 == 0 ? 0 : static_cast<std::size_t>(3 * from + to); };
+    std::vector<std::vector<std::int64_t>> sent(static_cast<std::size_t>(size)), received(static_cast<std::size_t>(size));
+    std::vector<Outgoing> out;
+    std::vector<Incoming> in;
+    for (int other = 0; other < size; ++other) {
+        auto const o = static_cast<std::size_t>(other);
+        if (other == rank || (rank + other) % 4 == 0) continue;
+        sent[o].assign(length(rank, other), 100 * rank + other);
+        received[o].assign(length(other, rank), -1);
+        out.push_back({other, readable(sent[o])});
+        in.push_back({other, writable(received[o])});
+    }
+    std::reverse(out.begin(), out.end());  // in any order
+    exchange_all(out, in);
+    for (int other = 0; other < size; ++other)
+        EXPECT_EQ(received[static_cast<std::size_t>(other)],
+                  std::vector<std::int64_t>(other == rank ? 0 : length(other, rank), 100 * other + rank));
+}
+
+TEST_P(CommunicatorTest, ExchangeOfAllAtOnce) {
+    exchange_with_everybody([&](auto out, auto in) { ranks().exchange_all(out, in); }, ranks().rank(), ranks().size());
+    ranks().exchange_all({}, {});
+}
+
+TEST_P(CommunicatorTest, ExchangeOfAllRoundByRound) {
+    exchange_with_everybody([&](auto out, auto in) { ranks().Communicator::exchange_all(out, in); }, ranks().rank(), ranks().size());
 }
 
 TEST_P(CommunicatorTest, MaxIsExactAndKnowsNegativesInfinitiesAndNaN) {

@@ -1,0 +1,81 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "error.hpp"
+#include "force/openmm_rank.hpp"
+
+namespace catena {
+
+namespace {
+
+class WholeForces final : public RankForces {
+  public:
+    explicit WholeForces(RankPlan const& plan)
+        : model_(plan.model), platform_(plan.platform), communicator_(plan.communicator), box_(plan.box) {
+        BeadSystem const& beads = plan.beads;
+        std::vector<std::int64_t> particle_of_bead(model_.bead_of_particle.size());
+        for (std::size_t p = 0; p < particle_of_bead.size(); ++p)
+            particle_of_bead[model_.bead_of_particle[p]] = static_cast<std::int64_t>(p);
+        for (int rank = 0; rank < communicator_.size(); ++rank) {
+            std::vector<std::int64_t> const of_rank = beads.beads_of(rank);
+            bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
+            for (std::int64_t const bead : of_rank) particle_.push_back(particle_of_bead[bead]);
+        }
+        first_ = beads.first_of_rank[communicator_.rank()];
+        if (first_ < beads.first_of_rank[communicator_.rank() + 1]) make_context();
+    }
+
+    void gather(std::span<Vec3 const> own) override {
+        std::vector<Vec3> all(particle_.size());
+        communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)), bytes_of_rank_);
+        positions_.resize(all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) positions_[particle_[i]] = all[i];
+    }
+
+    void evaluate(std::span<Vec3> own_forces) override {
+        if (own_forces.empty()) return;
+        check_finite(positions_, model_.bead_of_particle, "the position");
+        context_->set_positions(positions_, positions_.size());
+        std::vector<Vec3> all;
+        for (OpenMM::Vec3 const& f : context_->forces()) all.push_back({{f[0], f[1], f[2]}});
+        check_finite(all, model_.bead_of_particle, "OpenMM's force");
+        for (std::size_t k = 0; k < own_forces.size(); ++k) own_forces[k] = all[particle_[first_ + k]];
+    }
+
+    ForceContext* every_bead() override {
+        if (communicator_.rank() != 0) return nullptr;
+        if (!context_) make_context();
+        if (!positions_.empty()) context_->set_positions(positions_, positions_.size());  // else they are on a GPU
+        return context_.get();
+    }
+    ForceContext* whole_context() override { return context_.get(); }
+    std::int64_t largest_context() const override { return context_ ? context_->size() : 0; }
+    std::int64_t contexts() const override { return context_ ? 1 : 0; }
+
+  private:
+    void make_context() { context_ = std::make_unique<ForceContext>(model_.system, platform_, box_); }
+
+    OpenMmModel const& model_;
+    OpenMmPlatform const& platform_;
+    Communicator const& communicator_;
+    std::optional<Vec3> box_;
+    std::vector<std::int64_t> particle_, bytes_of_rank_;  // of beads in the order of by_rank
+    std::int64_t first_ = 0;
+    std::unique_ptr<ForceContext> context_;
+    std::vector<Vec3> positions_;  // of particles
+};
+
+}  // namespace
+
+void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> bead, char const* what) {
+    for (std::size_t k = 0; k < vectors.size(); ++k)
+        for (int c = 0; c < 3; ++c)
+            if (!std::isfinite(vectors[k][c]))
+                throw ComputationError(
+                    fmt::format("{} of bead {} is not finite: take a smaller step, or a start without overlaps", what, bead[k] + 1));
+}
+
+std::unique_ptr<RankForces> make_whole_forces(RankPlan const& plan) { return std::make_unique<WholeForces>(plan); }
+
+}  // namespace catena
