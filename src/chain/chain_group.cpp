@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "chain/chain_order.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
@@ -376,9 +377,14 @@ std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes ax
                                                      Communicator const& communicator) {
     std::map<int, std::vector<int>> chains;
     for (std::size_t i = 0; i < scene.chains.size(); ++i) chains[group_of(scene.chains[i], axes, handles)].push_back(static_cast<int>(i));
+    // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the order.
+    bool const together = scene.forces.openmm && communicator.size() > 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
-    for (auto const& [kind, members] : chains)
+    for (auto& [kind, members] : chains) {
+        ChainSpec const& any = scene.chains[members.front()];
+        if (together && (any.is_beads() || any.is_linked())) members = compact_order(placed_chains(scene, members), communicator.size());
         groups.push_back(std::make_unique<ChainGroup>(make_group(scene, members, axes, handles, pairwise, communicator)));
+    }
     return groups;
 }
 

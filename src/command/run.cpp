@@ -21,6 +21,20 @@ double number(nlohmann::json const& object, char const* key) {
     return found == object.end() || !found->is_number() ? NAN : found->get<double>();
 }
 
+double mean(nlohmann::json const& list) {
+    double sum = 0;
+    for (auto const& value : list) sum += value.get<double>();
+    return sum / static_cast<double>(list.size());
+}
+
+std::string ghosts_text(nlohmann::json const& ghosts) {
+    return fmt::format("{:.4g} for {:.4g} own beads on a rank, lists made {} in {}; {:.3g} messages, {:.4g} bytes a step and rank",
+                       mean(ghosts.at("ghosts")), mean(ghosts.at("own_beads")),
+                       counted(ghosts.at("rebuilds").get<std::int64_t>(), "time", "times"),
+                       counted(ghosts.at("evaluations").get<std::int64_t>(), "evaluation", "evaluations"),
+                       mean(ghosts.at("messages_a_step")), mean(ghosts.at("bytes_a_step")));
+}
+
 std::string text_of(Scene const& scene, nlohmann::json const& s) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
@@ -37,6 +51,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));
         text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces", 100 * number(*forces, "matrix_sweep_hidden")));
+        if (auto const ghosts = forces->find("ghosts"); ghosts != forces->end()) text.entry("ghosts", ghosts_text(*ghosts));
         for (auto const& line : forces->at("description")) {
             std::string const words = line.get<std::string>();
             if (words.starts_with("warning:") || words.find("not device:") != std::string::npos) text.note(words);

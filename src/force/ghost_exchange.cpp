@@ -234,27 +234,33 @@ void GhostExchange::exchange(std::vector<Outgoing> const& out, std::vector<Incom
     for (Outgoing const& m : out) traffic_.bytes += std::ssize(m.bytes);
 }
 
+std::vector<Vec3> GhostExchange::all_positions(std::span<Vec3 const> own) const {
+    std::vector<std::int64_t> bytes;
+    for (int rank = 0; rank < communicator_.size(); ++rank)
+        bytes.push_back((plan_.first_of_rank[rank + 1] - plan_.first_of_rank[rank]) * static_cast<std::int64_t>(sizeof(Vec3)));
+    std::vector<Vec3> by_rank(place_.size()), all(place_.size());
+    communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(by_rank)), bytes);
+    for (std::size_t bead = 0; bead < all.size(); ++bead) all[bead] = by_rank[place_[bead]];
+    return all;
+}
+
 void GhostExchange::audit(std::span<Vec3 const> own) const {
-    auto const blocks = blocks_of_ranks(communicator_, std::vector<Vec3>(own.begin(), own.end()));
-    std::vector<Vec3> all(place_.size());
-    std::int64_t place = 0;
-    for (auto const& block : blocks)
-        for (Vec3 const& x : block) all[plan_.by_rank.empty() ? place : plan_.by_rank[place]] = x, ++place;
+    std::vector<Vec3> const all = all_positions(own);
     std::vector<std::int64_t> own_beads;
     for (std::int64_t k = 0; k < own_count(); ++k) own_beads.push_back(own_bead(k));
-
     std::set<std::int64_t> const known(beads_.begin(), beads_.end());
-    double missed = 0, stale = 0;  // a bead's number from 1
+    double const no_bead = -1, count = static_cast<double>(all.size());
+    double worst = no_bead;  // a stale ghost's bead, or `count` + a missed one
+    for (std::size_t i = 0; i < beads_.size(); ++i)
+        if (!std::equal(positions_[i].data, positions_[i].data + 3, all[beads_[i]].data))
+            worst = std::max(worst, static_cast<double>(beads_[i]));
     if (plan_.reach > 0)
         for (std::int64_t const bead : ghosts_of(all, own_beads, plan_.reach, plan_.box))
-            if (!known.contains(bead)) missed = static_cast<double>(bead + 1);
-    for (std::size_t i = 0; i < beads_.size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            if (positions_[i][c] != all[beads_[i]][c]) stale = static_cast<double>(beads_[i] + 1);
-    missed = communicator_.max(missed);
-    stale = communicator_.max(stale);
-    if (missed > 0) throw SharedError(fmt::format("forces.openmm.audit: bead {:.0f} is felt on a rank that has no ghost of it", missed));
-    if (stale > 0) throw SharedError(fmt::format("forces.openmm.audit: a ghost of bead {:.0f} is not where the bead is", stale));
+            if (!known.contains(bead)) worst = count + static_cast<double>(bead);
+    worst = communicator_.max(worst);
+    if (worst >= count)
+        throw SharedError(fmt::format("forces.openmm.audit: bead {:.0f} is felt on a rank that has no ghost of it", worst - count + 1));
+    if (worst > no_bead) throw SharedError(fmt::format("forces.openmm.audit: a ghost of bead {:.0f} is not where the bead is", worst + 1));
 }
 
 }  // namespace catena

@@ -73,6 +73,7 @@ class GhostExchange {
     std::int64_t own_bead(std::int64_t k) const { return plan_.by_rank.empty() ? first() + k : plan_.by_rank[first() + k]; }
     int owner(std::int64_t bead) const;
 
+    std::vector<Vec3> all_positions(std::span<Vec3 const> own) const;
     void share_partners();
     bool must_rebuild(std::span<Vec3 const> own);
     void rebuild(std::span<Vec3 const> own);

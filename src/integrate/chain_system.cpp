@@ -249,8 +249,9 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     note("matrix sweep", "catena", begun, assembled);
     note_overlap(start, begun, assembled, simple, finished);
     if (!openmm_) return;
-    Interval const ran = openmm_->last_evaluation();
+    Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
     note("hand over positions", "catena", start, begun);
+    if (communicator_.size() > 1) note("exchange of positions", "messages", brought.begin, brought.end);
     note("wait for forces", "catena", simple, finished);
     note("forces", "openmm", ran.begin, ran.end);
 }
@@ -282,10 +283,12 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
     matrix_seconds_ += assembled - begun;
     seconds_["matrix sweep"] += assembled - begun;
     if (!openmm_) return;
-    Interval const ran = openmm_->last_evaluation();
+    Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
+    double const exchange = communicator_.size() > 1 ? brought.end - brought.begin : 0.0;
     hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
     seconds_["forces"] += ran.end - ran.begin;
-    seconds_["waiting for forces"] += (finished - waits) + (begun - start);
+    seconds_["waiting for forces"] += (finished - waits) + (begun - start) - exchange;
+    if (communicator_.size() > 1) seconds_["exchange"] += exchange;
 }
 
 void ChainSystem::begin_openmm(bool timed) {

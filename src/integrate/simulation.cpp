@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
+#include "integrate/force_summary.hpp"
 #include "integrate/run_folder.hpp"
 #include "integrate/sites.hpp"
 #include "integrate/start_velocities.hpp"
@@ -78,6 +79,7 @@ class Run {
             bool const writes = n % scene_.output.every == 0;
             bool const due = n == last_ || (scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first);
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
+            if (due && system_.openmm()) system_.openmm()->renew_ghosts();  // as after a restart from here
             at_step(n, [&] { stepper_->prepare(timeline); });
             if (n == first) open(n);  // nothing is written or replaced before the first step has its forces
             if (writes) output(n);
@@ -158,6 +160,8 @@ class Run {
     void at_step(std::int64_t n, Action const& action) {
         try {
             action();
+        } catch (SharedError const& error) {
+            throw SharedError("at step " + std::to_string(n) + ": " + error.what());
         } catch (ComputationError const& error) {
             throw ComputationError("at step " + std::to_string(n) + ": " + error.what());
         }
@@ -222,7 +226,7 @@ class Run {
     json finish(std::int64_t first) {
         bool const valid = worst_error_ <= scene_.dynamics.constraint_tolerance;
         std::vector<std::string> const texts = gather_texts(communicator_, timeline_json(timelines_).dump());
-        json const summary = summarise(first, valid);
+        json const summary = summarise(first, valid, summary_of_forces(system_, last_ - first));
         json timeline{{"ranks", json::array()}};
         for (std::size_t rank = 0; rank < texts.size(); ++rank)
             timeline["ranks"].push_back({{"rank", rank}, {"steps", json::parse(texts[rank])}});
@@ -230,7 +234,7 @@ class Run {
         return root_ ? summary : json{{"valid", valid}};
     }
 
-    json summarise(std::int64_t first, bool valid) {
+    json summarise(std::int64_t first, bool valid, json const& forces) {
         double const steps = static_cast<double>(last_ - first);
         json s{{"title", scene_.title},
                {"scene", scene_.file},
@@ -267,17 +271,7 @@ class Run {
         bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(), [](auto const& g) { return g->has_tips(); });
         if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
             s["constraints"] = {{"largest_error", worst_error_}, {"tolerance", scene_.dynamics.constraint_tolerance}};
-        if (OpenMmForce const* openmm = system_.openmm()) {
-            double const matrix = system_.matrix_seconds();
-            s["forces"] = {{"openmm", openmm_version()},
-                           {"platform", openmm->platform()},
-                           {"path", openmm->path()},
-                           {"description", openmm->description()},
-                           {"matrix_sweep_seconds", matrix},
-                           {"matrix_sweep_hidden", matrix > 0 ? system_.hidden_seconds() / matrix : 0.0},
-                           {"largest_context", openmm->largest_context()},
-                           {"contexts", openmm->contexts()}};
-        }
+        if (system_.openmm()) s["forces"] = forces;
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;
         for (std::size_t i = 0; i < last_row_.size(); ++i) s["last_observables"][observables_->columns()[i]] = last_row_[i];

@@ -1,0 +1,81 @@
+// Whole runs with OpenMM's double-precision platform on several ranks: replicated they are the run on one rank, bit for bit; with ghosts
+// no pair is missed, and a restart is the undisturbed run.
+#include <cmath>
+
+#include "tests/integrate/whole_run.hpp"
+
+namespace catena::test {
+namespace {
+
+std::string scene_with(std::string const& box, std::string const& openmm) {
+    return "units: md\n"
+           "chains: [{name: short, count: 9, sequence: MKDEGFYRSAKD, model: calvados2, conformation: self_avoiding, velocities: thermal},\n"
+           "         {name: long, sequence: MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHG, model: calvados2, conformation: "
+           "self_avoiding, velocities: thermal}]\n"
+           "box: " +
+           box + "\nforces: {openmm: {builder: calvados2, platform: Reference, path: inline, " + openmm +
+           "}}\n"
+           "dynamics: {integrator: g-baoab, step: 0.01, steps: 40, temperature: 300, friction: 0.1, seed: 4}\n"
+           "output: {every: 7, checkpoint_every: 10}\n";
+}
+
+std::string const boxes[] = {"{periodic: [40, 14, 14]}", "none"};
+
+class OpenMmRuns : public WholeRun {
+  protected:
+    nlohmann::json run_with(Communicator const& communicator, std::string const& name, std::string const& openmm, std::int64_t steps,
+                            std::string const& restart = "") {
+        RunOptions options;
+        options.output = folder_ + "/" + name;
+        options.steps = steps;
+        options.restart = restart.empty() ? "" : folder_ + "/" + restart;
+        options.quiet = true;
+        return run_simulation(parse_scene(scene_with(GetParam().text, openmm), "scene.yaml"), communicator, options);
+    }
+    Communicator const& world_ = catena::testing::world();
+};
+
+TEST_P(OpenMmRuns, ReplicatedTheyAreTheRunOnOneRank) {
+    run_with(world_, "all", "replicate: true", 20);
+    if (world_.rank() == 0) {
+        run_with(*serial_communicator(), "one", "replicate: true", 20);
+        EXPECT_EQ(arrays("all"), arrays("one"));
+    }
+    world_.barrier();
+}
+
+TEST_P(OpenMmRuns, WithGhostsARestartIsTheUndisturbedRun) {
+    run_with(world_, "whole", "audit: true", 40);
+    nlohmann::json const half = run_with(world_, "parts", "audit: true", 20);
+    run_with(world_, "parts", "audit: true", 40, "parts/checkpoint.h5");
+    if (world_.rank() != 0) return;
+    EXPECT_EQ(arrays("whole"), arrays("parts"));
+    if (world_.size() == 1) return;
+    auto const& ghosts = half.at("forces").at("ghosts");
+    EXPECT_EQ(ghosts.at("evaluations"), 21);
+    EXPECT_GE(ghosts.at("rebuilds").get<int>(), 3);  // at the start and at two checkpoints
+    EXPECT_LT(ghosts.at("rebuilds").get<int>(), 15);
+    EXPECT_EQ(std::ssize(ghosts.at("bytes_a_step")), world_.size());
+    std::int64_t own = 0;
+    for (auto const& beads : ghosts.at("own_beads")) own += beads.get<std::int64_t>();
+    EXPECT_EQ(own, 9 * 12 + 51);
+}
+
+/// Forces differ by rounding, which 20 steps leave small.
+TEST_P(OpenMmRuns, WithGhostsTheyAreTheRunOnOneRankButForRounding) {
+    double constexpr growth = 1e4, eps = 0x1p-53;
+    run_with(world_, "all", "threads: 1", 20);
+    if (world_.rank() == 0) {
+        run_with(*serial_communicator(), "one", "threads: 1", 20);
+        std::vector<double> const x = arrays("all").at("position"), expected = arrays("one").at("position");
+        ASSERT_EQ(x.size(), expected.size());
+        for (std::size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], expected[i], growth * eps * (1 + std::abs(expected[i])));
+    }
+    world_.barrier();
+}
+
+RunScene const in_boxes[] = {{"InABox", boxes[0]}, {"InTheOpen", boxes[1]}};
+INSTANTIATE_TEST_SUITE_P(Boxes, OpenMmRuns, ::testing::ValuesIn(in_boxes), [](auto const& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace catena::test
