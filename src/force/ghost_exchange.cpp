@@ -92,7 +92,7 @@ void GhostExchange::rebuild(std::span<Vec3 const> own) {
     listed_.assign(own.begin(), own.end());
     ++traffic_.rebuilds;
     traffic_.ghosts = std::ssize(beads_);
-    traffic_.largest_number_of_ghosts = std::max(traffic_.largest_number_of_ghosts, traffic_.ghosts);
+    traffic_.most_ghosts = std::max(traffic_.most_ghosts, traffic_.ghosts);
 }
 
 std::vector<std::vector<Cell>> GhostExchange::cells_of_ranks(CellMap const& own) const {

@@ -13,18 +13,11 @@
 #include <vector>
 
 #include "dca/linear.hpp"
+#include "force/ghost_traffic.hpp"
 #include "force/grid.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena {
-
-/// What one rank has sent and holds.
-struct GhostTraffic {
-    std::int64_t updates = 0, rebuilds = 0;
-    std::int64_t messages = 0, bytes = 0;  // sent to other ranks with positions, lists' making included
-    std::int64_t ghosts = 0;               // now
-    std::int64_t largest_number_of_ghosts = 0;
-};
 
 class GhostExchange {
   public:

@@ -11,7 +11,7 @@
 
 #include "chain/field.hpp"
 #include "force/device_path.hpp"
-#include "force/ghost_exchange.hpp"
+#include "force/ghost_traffic.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 

@@ -32,7 +32,7 @@ json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, s
             {"rebuilds", traffic.rebuilds},
             {"own_beads", own},
             {"ghosts", of_ranks(communicator, traffic.ghosts)},
-            {"most_ghosts", of_ranks(communicator, traffic.largest_number_of_ghosts)},
+            {"most_ghosts", of_ranks(communicator, traffic.most_ghosts)},
             {"contexts", of_ranks(communicator, system.openmm()->contexts())},
             {"messages_a_step", a_step(traffic.messages)},
             {"bytes_a_step", a_step(traffic.bytes)}};

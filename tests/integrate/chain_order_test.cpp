@@ -37,10 +37,10 @@ TEST(CompactOrder, OnOneRankIsTheScenes) {
     EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
 }
 
-/// Eight ranks get an eighth of a cube each, six a third of half of it: sides follow, to a few chains' distance.
+/// Eight ranks get an eighth of a cube each, six parts of two shapes: sides follow, to a few chains' distance.
 TEST(CompactOrder, RanksGetBlocksOfSpace) {
     double constexpr edge = 10, a_few_chains = 0.15 * edge;
-    for (auto const& [ranks, longest] : {std::pair{2, edge}, {4, edge}, {6, edge / 2}, {8, edge / 2}}) {
+    for (auto const& [ranks, longest] : {std::pair{2, edge}, {4, edge}, {6, edge}, {8, edge / 2}}) {
         std::vector<PlacedChain> chains = scattered(4000, {{edge, edge, edge}});
         for (PlacedChain& chain : chains) chain.bodies = 20;
         std::vector<int> const order = compact_order(chains, ranks);

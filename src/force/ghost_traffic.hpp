@@ -1,0 +1,14 @@
+// What a rank holds of other ranks' beads and has sent them of its own.
+#pragma once
+
+#include <cstdint>
+
+namespace catena {
+
+struct GhostTraffic {
+    std::int64_t updates = 0, rebuilds = 0;    // of ghosts' positions, and of their lists
+    std::int64_t messages = 0, bytes = 0;      // sent from rank to rank, for the lists too; collectives not counted
+    std::int64_t ghosts = 0, most_ghosts = 0;  // now, and of all lists so far
+};
+
+}  // namespace catena
