@@ -167,7 +167,7 @@ void GhostExchange::find_place_aside(Grid const& grid, CellSet const& felt, std:
         Cell farthest = *std::max_element(felt.begin(), felt.end());
         farthest[0] += 2;
         aside_ = grid.middle(farthest);
-        aside_step_ = grid.edge()[0];
+        aside_length_ = grid.edge()[0];
         return;
     }
     Cell const& count = grid.cells();
@@ -183,10 +183,13 @@ void GhostExchange::find_place_aside(Grid const& grid, CellSet const& felt, std:
     aside_length_ = plan_.skin / 2;  // own beads may come nearer by the other half
 }
 
+/// Where there is room, out of each other's reach in a cube: a row would be so long that OpenMM could not sort own beads among them.
 Vec3 GhostExchange::aside(std::int64_t i, std::int64_t count) const {
-    double const along =
-        plan_.box ? aside_length_ * (static_cast<double>(i) / static_cast<double>(count) - 0.5) : aside_step_ * static_cast<double>(i);
-    return aside_ + Vec3{{along, 0, 0}};
+    if (plan_.box) return aside_ + Vec3{{aside_length_ * (static_cast<double>(i) / static_cast<double>(count) - 0.5), 0, 0}};
+    auto const side = static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(count))));
+    Vec3 place = aside_;
+    for (int c = 0; c < 3; ++c, i /= side) place[c] += aside_length_ * static_cast<double>(i % side);
+    return place;
 }
 
 void GhostExchange::take(ListsOfRank lists) {

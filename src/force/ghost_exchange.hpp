@@ -86,7 +86,7 @@ class GhostExchange {
     std::vector<std::int64_t> beads_;
     std::vector<Vec3> positions_, listed_;  // of ghosts; of own beads when the lists were made
     Vec3 aside_ = Vec3::zero();
-    double aside_step_ = 0, aside_length_ = 0;  // along x, where space has no end, and where it has
+    double aside_length_ = 0;  // from one place to the next where space has no end, in all along x where it has
     bool has_partners_ = false, renew_ = true;
     GhostTraffic traffic_;
 };

@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "cuda/solver.hpp"
+#include "force/openmm_force.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
 
@@ -49,6 +50,19 @@ TEST(Ranks, AFailureThatEveryRankMeetsIsOneLineAndStatusOne) {
         catena_on(3, {"run", input("spherical-chain.yaml"), "--set", "dynamics.step=50", "--steps", "2", "--quiet"}, folder.path());
     EXPECT_EQ(e.status, 1);
     EXPECT_EQ(count(e.err, "catena: "), 1U) << e.err;
+}
+
+TEST(Ranks, TheRunSaysWhatGhostsCost) {
+    if (openmm_version() == "none") GTEST_SKIP() << "NOT RUN: built without OpenMM";
+    TemporaryFolder const folder;
+    Ended const e = catena_on(
+        3, {"run", input("alpha-synuclein.yaml"), "--steps", "20", "--set", "forces.openmm.audit=true", "--output", folder / "run"});
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("own beads on a rank, lists made"), std::string::npos) << e.out;
+    auto const ghosts = nlohmann::json::parse(std::ifstream(folder / "run/summary.json")).at("forces").at("ghosts");
+    EXPECT_EQ(ghosts.at("evaluations"), 21);
+    for (char const* const key : {"own_beads", "ghosts", "most_ghosts", "contexts", "messages_a_step", "bytes_a_step"})
+        EXPECT_EQ(ghosts.at(key).size(), 3U) << key;
 }
 
 TEST(Ranks, AFullDiskOnRankZeroEndsAllInGoodOrder) {
