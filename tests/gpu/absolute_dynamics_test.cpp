@@ -52,7 +52,8 @@ Scene carrying_bodies() {
     return scene_of({chain});
 }
 Scene free_beads() {
-    return scene_from("chains: [{name: a, count: 3, base: free, generator: {freely_jointed: {beads: 100, length: 0.38}}}]");
+    return scene_from(
+        "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: {beads: 100, length: 0.38}}}]");
 }
 Scene held_beads() {
     return scene_from(
