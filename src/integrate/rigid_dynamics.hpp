@@ -84,16 +84,9 @@ class RigidDynamics final : public AbsoluteDynamics {
           bias_(group.size + 1, group.directions),
           joint_force_(group.size + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
-          tip_force_(group.has_tips() ? group.size : 0, group.directions) {
-        RigidStart const start = place_bodies(group, scene, communicator);
-        fill(space_, position_, start.position);
-        fill(space_, velocity_, start.velocity);
-        fill(space_, omega_, start.omega);
-        fill(space_, orientation_, start.orientation);
-        tip_ = held_tips(group,
-                         [&](std::int64_t k) { return start.position[k] + to_matrix(as_quaternion(start.orientation[k])) * group.r2[k]; });
-        tips_ = List<HeldTip>(tip_);
-    }
+          tip_force_(group.has_tips() ? group.size : 0, group.directions),
+          tip_(start(scene)),
+          tips_(tip_) {}
 
     void update_configuration() override {
         if (given_.springs) exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
@@ -217,6 +210,16 @@ class RigidDynamics final : public AbsoluteDynamics {
     }
 
   private:
+    /// Sets the state where the scene starts. Returns where the tips are held there.
+    std::vector<HeldTip> start(Scene const& scene) {
+        RigidStart const at = place_bodies(group_, scene, communicator_);
+        fill(space_, position_, at.position);
+        fill(space_, velocity_, at.velocity);
+        fill(space_, omega_, at.omega);
+        fill(space_, orientation_, at.orientation);
+        return held_tips(group_,
+                         [&](std::int64_t k) { return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k]; });
+    }
     ConfigurationView configuration() const { return {direction_.view(), orientation_.view(), tip_direction_.view(), {}, {}}; }
     LoadsView loads() { return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)}; }
     /// The solver adds what follows from angular velocities.
@@ -292,12 +295,10 @@ class RigidDynamics final : public AbsoluteDynamics {
     BodyLoads given_;
     PrincipalFrames principal_;
     std::vector<LocalPiece> piece_;
-    std::vector<HeldTip> tip_;
     double reach_;
     BodyLoadsIn<Space> loads_;
     CarriedBeadsIn<Space> beads_;
     List<LocalPiece> pieces_;
-    List<HeldTip> tips_;
     List<std::uint8_t> is_first_, is_last_;
     List<JointType> joint_;
     List<std::int32_t> jointed_tip_;
@@ -311,6 +312,8 @@ class RigidDynamics final : public AbsoluteDynamics {
     FieldOf<3> observed_velocity_, observed_omega_, force_, torque_, momentum_, moment_, acceleration_, alpha_, inboard_end_, outboard_end_,
         joint_torque_, direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    std::vector<HeldTip> tip_;
+    List<HeldTip> tips_;
 };
 
 }  // namespace catena
