@@ -1,6 +1,5 @@
-#include "cuda/bead_dynamics.hpp"
-
 #include "cuda/device_solver.cuh"
+#include "cuda/dynamics.hpp"
 #include "integrate/bead_dynamics.hpp"
 
 namespace catena::cuda {

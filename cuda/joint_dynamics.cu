@@ -1,6 +1,5 @@
-#include "cuda/joint_dynamics.hpp"
-
 #include "cuda/device_solver.cuh"
+#include "cuda/dynamics.hpp"
 #include "integrate/joint_dynamics_in.hpp"
 
 namespace catena::cuda {

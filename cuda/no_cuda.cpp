@@ -1,5 +1,4 @@
-#include "cuda/bead_dynamics.hpp"
-#include "cuda/joint_dynamics.hpp"
+#include "cuda/dynamics.hpp"
 #include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
@@ -16,10 +15,12 @@ std::string device_name() { throw ComputationError(why_not()); }
 
 std::string choose_device(Communicator const&) { return why_not(); }
 std::int64_t free_memory(Communicator const&) { throw ComputationError(why_not()); }
-std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&) { throw ComputationError(why_not()); }
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
+    throw ComputationError(why_not());
+}
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
     throw ComputationError(why_not());
 }
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Communicator const&) {

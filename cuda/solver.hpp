@@ -1,4 +1,4 @@
-// The tree solver on a GPU, behind the host's interface: configuration and loads go up, accelerations and forces come back.
+// The GPU that a rank uses, and the pairwise tree's levels there.
 #pragma once
 
 #include <memory>
@@ -19,11 +19,7 @@ std::string device_name();
 /// kernels for it in this build, CUDA's own words). Precondition: there is a GPU.
 std::string choose_device(Communicator const&);
 
-/// The same tree and the same operations as make_tree_solver's, on the GPU chosen last, which must be current in every thread that
-/// calls the solver.
-std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const&, Communicator const&);
-
-/// A part of the pairwise tree's levels there (a dca::LevelPartMaker), under the same condition.
+/// A part of the pairwise tree's levels on the GPU chosen last (a dca::LevelPartMaker), which must be current in every thread that uses it.
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&);
 
 }  // namespace catena::cuda

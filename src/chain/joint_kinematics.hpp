@@ -37,17 +37,11 @@ struct MotionFields {
         if (!group.moving_meeting()) return;
         r2 = typename Space::template FieldOf<3>(group.size);
         axes2 = typename Space::template FieldOf<9>(group.size);
-        space.edit(r2, [&](View<3> view) { copy(group.r2.view(), view); });
-        space.edit(axes2, [&](View<9> view) { copy(group.axes2.view(), view); });
+        fill(space, r2, group.r2);
+        fill(space, axes2, group.axes2);
     }
     MotionView view() {
         return {joint_turn.view(), orientation.view(), omega.view(), origin.view(), velocity.view(), r2.view(), axes2.view()};
-    }
-
-  private:
-    template <int D>
-    static void copy(ConstView<D> from, View<D> to) {
-        for (std::int64_t k = 0; k < from.size; ++k) to.store(k, from.load(k));
     }
 };
 using BodyMotion = MotionFields<HostSpace>;

@@ -46,7 +46,7 @@ void add_common(CLI::App& command, Words& words) {
         ->type_name("KIND");
     command
         .add_option("--threads", c.threads,
-                    "threads a rank of openmp, and of what cuda and cuda-levels leave to the host (0: its cores over its ranks)")
+                    "threads a rank of openmp, and of what cuda-levels leaves to the host (0: its cores over its ranks)")
         ->type_name("N");
     command
         .add_option(

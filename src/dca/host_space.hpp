@@ -193,4 +193,12 @@ class HostSpace : public HostAccess {
     Executor const* executor_;
 };
 
+/// Gives a field of a space the values of the host's.
+template <class Space, class FieldOfSpace, int D>
+void fill(Space const& space, FieldOfSpace& field, Field<D> const& host) {
+    space.edit(field, [&](View<D> view) {
+        for (std::int64_t k = 0; k < host.size(); ++k) view.store(k, host[k]);
+    });
+}
+
 }  // namespace catena

@@ -50,13 +50,15 @@ class DirectionsField {
     std::vector<double> data_;
 };
 
-/// The part of a bead chain on this rank.
-struct BeadPiece {
-    std::int64_t first = 0;     // local bead
+/// The part of a chain in absolute coordinates on this rank.
+struct LocalPiece {
+    std::int64_t first = 0;     // local body
     std::int64_t in_scene = 0;  // its index over the scene
-    Vec3 anchor;                // of a chain on a link to the ground
+    Vec3 anchor;                // of a chain that begins at the ground, on a link or a joint there; W
+    /// Local body k's index over the scene, which its noise goes by.
+    CATENA_HD std::uint64_t body_of(std::int64_t k) const { return static_cast<std::uint64_t>(in_scene + k - first); }
 };
-CATENA_HD BeadPiece const& piece_of(BeadPiece const* piece, std::int64_t pieces, std::int64_t k) {
+CATENA_HD LocalPiece const& piece_of(LocalPiece const* piece, std::int64_t pieces, std::int64_t k) {
     std::int64_t low = 0, high = pieces;
     while (high - low > 1) {
         std::int64_t const middle = (low + high) / 2;
@@ -79,7 +81,7 @@ struct ConfigurationView {
     ConstView<9> axes2;
     /// Beads, for assemble_and_solve() alone, instead of directions: positions with their halo, W, and the pieces they belong to.
     ConstView<3> position{};
-    BeadPiece const* piece = nullptr;
+    LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
 };
 

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "chain/chain_group.hpp"
-#include "dca/philox.hpp"
 #include "dca/solver.hpp"
 #include "integrate/carried_beads.hpp"
 #include "integrate/constrained_step.hpp"
+#include "integrate/link_geometry.hpp"
 
 namespace catena {
 
@@ -41,10 +41,26 @@ inline double larger(double a, double b) { return b > a || b != b ? b : a; }
 /// A residual over the size of its terms.
 inline double relative(double difference, double terms) { return terms == 0 ? 0.0 : std::abs(difference) / terms; }
 
-/// A field over last bodies; absent where the group has no jointed tips.
-inline DirectionsView of_tips(ChainGroup const& group, DirectionsField& field) {
+/// A field over last bodies, of any space; absent where the group has no jointed tips.
+template <class Directions>
+DirectionsView of_tips(ChainGroup const& group, Directions& field) {
     return group.has_tips() ? field.view() : DirectionsView{};
 }
+
+/// The group's chains on this rank.
+std::vector<LocalPiece> local_pieces(ChainGroup const&, Scene const&);
+/// And where they are held; `end(k)`: where the outboard end of last body k starts, W.
+template <class End>
+std::vector<HeldTip> held_tips(ChainGroup const& group, End const& end) {
+    std::vector<HeldTip> tips;
+    for (LocalTip const& tip : group.tips) {
+        Vec3 const start = end(tip.body), anchor = tip.joint.type == JointType::link ? *tip.joint.anchor : start;
+        tips.push_back({tip.body, anchor, tip.joint.length > 0 ? tip.joint.length : norm(anchor - start)});
+    }
+    return tips;
+}
+/// No springs.
+PotentialEnergy potential_in(Vec3 const& gravity, ChainGroup const&, Field<3> const& position);
 
 /// A named array of the state, `width` numbers a body.
 struct StateArray {
@@ -107,11 +123,9 @@ class AbsoluteDynamics : public BeadHost {
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
                                                      std::unique_ptr<ChainSolver>);
-std::unique_ptr<AbsoluteDynamics> make_spherical_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                                                          std::unique_ptr<ChainSolver>);
-
-std::unique_ptr<AbsoluteDynamics> make_linked_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                                                       std::unique_ptr<ChainSolver>);
+/// Rigid bodies on spherical joints, or on links among point beads.
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
+                                                      std::unique_ptr<ChainSolver>);
 
 /// One array of the given name; throws ComputationError if it is not there.
 StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);

@@ -9,29 +9,22 @@
 
 namespace catena {
 
-/// A link from a chain's last bead to the ground.
-struct BeadTip {
-    std::int64_t bead = 0;
-    Vec3 anchor;
-    double length = 0;
-};
-
 struct BeadChains {
     std::int64_t size = 0;
     std::uint8_t const *is_first = nullptr, *has_link = nullptr;  // of its chain; an inboard link
     ConstView<1> mass, inverse_mass, length;
-    BeadPiece const* piece = nullptr;
+    LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
-    BeadTip const* tip = nullptr;
+    HeldTip const* tip = nullptr;
     View<3> position, velocity, observed, force, momentum, change, direction, tip_direction;
     DirectionsView bias, tip_bias;  // the link's direction comes first; full handles' other directions stay 0
 
-    CATENA_HD BeadPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
+    CATENA_HD LocalPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
     /// k = size: the first bead of the next rank, where the chain goes on there.
     CATENA_HD bool linked(std::int64_t k) const { return k >= size || has_link[k] != 0; }
     CATENA_HD bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
     CATENA_HD Vec3 link(std::int64_t k) const { return position.load(k) - (to_ground(k) ? piece_of(k).anchor : position.load(k - 1)); }
-    CATENA_HD Vec3 tip_link(std::int64_t i) const { return tip[i].anchor - position.load(tip[i].bead); }
+    CATENA_HD Vec3 tip_link(std::int64_t i) const { return tip[i].anchor - position.load(tip[i].body); }
 
     CATENA_HD void set_direction(std::int64_t k) const {
         Vec3 const d = linked(k) ? link(k) : Vec3::zero();
@@ -39,7 +32,7 @@ struct BeadChains {
     }
     CATENA_HD void set_tip_direction(std::int64_t i) const {
         Vec3 const d = tip_link(i);
-        tip_direction.store(tip[i].bead, (1.0 / norm(d)) * d);
+        tip_direction.store(tip[i].body, (1.0 / norm(d)) * d);
     }
     CATENA_HD void fall(std::int64_t k, Vec3 const& gravity) const { force.store(k, mass.at(k, 0) * gravity); }
     CATENA_HD void set_momentum(std::int64_t k, double h) const {
@@ -50,7 +43,7 @@ struct BeadChains {
         bias.at(k, 0) = linked(k) ? excess(link(k), direction.load(k), length.at(k, 0)) : 0.0;
     }
     CATENA_HD void set_tip_excess(std::int64_t i) const {
-        tip_bias.at(tip[i].bead, 0) = excess(tip_link(i), tip_direction.load(tip[i].bead), tip[i].length);
+        tip_bias.at(tip[i].body, 0) = excess(tip_link(i), tip_direction.load(tip[i].body), tip[i].length);
     }
     CATENA_HD void close(std::int64_t k, double per_step) const {
         Vec3 const c = change.load(k);
@@ -58,8 +51,7 @@ struct BeadChains {
         velocity.store(k, plus_scaled(velocity.load(k), per_step, c));
     }
     CATENA_HD void thermalise(std::int64_t k, double keep, double spread, std::uint64_t seed, std::uint64_t step) const {
-        BeadPiece const& p = piece_of(k);
-        Vec3 const noise = normal3(seed, step, static_cast<std::uint64_t>(p.in_scene + k - p.first), NoiseStage::thermostat);
+        Vec3 const noise = normal3(seed, step, piece_of(k).body_of(k), NoiseStage::thermostat);
         velocity.store(k, plus_scaled(keep * velocity.load(k), spread * std::sqrt(inverse_mass.at(k, 0)), noise));
     }
     CATENA_HD double swing_of(std::int64_t k) const {
@@ -67,10 +59,10 @@ struct BeadChains {
         return swing(v, direction.load(k), length.at(k, 0));
     }
     CATENA_HD double tip_swing(std::int64_t i) const {
-        return swing(observed.load(tip[i].bead), tip_direction.load(tip[i].bead), tip[i].length);
+        return swing(observed.load(tip[i].body), tip_direction.load(tip[i].body), tip[i].length);
     }
     CATENA_HD void set_swing(std::int64_t k) const { bias.at(k, 0) = linked(k) ? swing_of(k) : 0.0; }
-    CATENA_HD void set_tip_swing(std::int64_t i) const { tip_bias.at(tip[i].bead, 0) = tip_swing(i); }
+    CATENA_HD void set_tip_swing(std::int64_t i) const { tip_bias.at(tip[i].body, 0) = tip_swing(i); }
     /// Of a link's length, relative.
     CATENA_HD double error(std::int64_t k) const { return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0; }
     CATENA_HD double tip_error(std::int64_t i) const { return std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length; }

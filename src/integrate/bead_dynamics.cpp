@@ -1,37 +1,11 @@
 #include "integrate/bead_dynamics.hpp"
 
-#include <algorithm>
-
-#include "error.hpp"
-
 namespace catena {
-
-StateArray const& array_named(std::vector<StateArray> const& arrays, std::string const& name) {
-    auto const found = std::find_if(arrays.begin(), arrays.end(), [&](StateArray const& a) { return a.name == name; });
-    if (found == arrays.end()) throw ComputationError("the state lacks the array " + name);
-    return *found;
-}
 
 std::vector<std::uint8_t> links_of(ChainGroup const& group) {
     std::vector<std::uint8_t> links;
     for (std::int64_t k = 0; k < group.size; ++k) links.push_back(group.joint[k] == JointType::link ? 1 : 0);
     return links;
-}
-
-std::vector<BeadPiece> bead_pieces(ChainGroup const& group, Scene const& scene) {
-    std::vector<BeadPiece> pieces;
-    for (dca::Piece const& piece : group.pieces)
-        pieces.push_back({piece.local, group.scene_index(piece.local), scene.chains[group.chain[piece.chain]].beads.anchor});
-    return pieces;
-}
-
-std::vector<BeadTip> bead_tips(ChainGroup const& group, Scene const& scene) {
-    std::vector<BeadTip> tips;
-    for (LocalTip const& tip : group.tips) {
-        Vec3 const last = scene.chains[group.scene_chain(tip.body)].beads.position.back(), anchor = *tip.joint.anchor;
-        tips.push_back({tip.body, anchor, tip.joint.length > 0 ? tip.joint.length : norm(anchor - last)});
-    }
-    return tips;
 }
 
 void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity) {
@@ -64,7 +38,7 @@ BodyResults BeadSolution::results() const {
     return r;
 }
 
-double BeadSolution::residual(Communicator const& communicator, ConstView<3> velocity, std::vector<BeadTip> const& tips) const {
+double BeadSolution::residual(Communicator const& communicator, ConstView<3> velocity, std::vector<HeldTip> const& tips) const {
     Field<4> terms(group.size);  // acceleration and the size of what each force adds to it
     double worst = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
@@ -75,10 +49,10 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         terms.set(k, {{a[0], a[1], a[2], group.inverse_mass.view().at(k, 0) * size}});
     }
     exchange_from_inboard(communicator, group, terms.view());
-    for (BeadTip const& tip : tips) {
-        Vec3 const u = tip_direction.load(tip.bead);
-        double const turning = swing(velocity.load(tip.bead), u, tip.length);
-        worst = larger(worst, relative(turning - dot(u, acceleration.load(tip.bead)), terms[tip.bead][3] + turning));
+    for (HeldTip const& tip : tips) {
+        Vec3 const u = tip_direction.load(tip.body);
+        double const turning = swing(velocity.load(tip.body), u, tip.length);
+        worst = larger(worst, relative(turning - dot(u, acceleration.load(tip.body)), terms[tip.body][3] + turning));
     }
     for (std::int64_t k = 0; k < group.size; ++k) {
         if (group.joint[k] != JointType::link) continue;

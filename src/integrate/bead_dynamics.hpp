@@ -10,10 +10,8 @@
 
 namespace catena {
 
-/// Links and pieces of the group's chains on this rank.
+/// Links of the group's chains on this rank.
 std::vector<std::uint8_t> links_of(ChainGroup const&);
-std::vector<BeadPiece> bead_pieces(ChainGroup const&, Scene const&);
-std::vector<BeadTip> bead_tips(ChainGroup const&, Scene const&);
 /// Where they start.
 void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity);
 
@@ -25,7 +23,7 @@ struct BeadSolution {
     Vec3 outboard_force(std::int64_t k) const;
     BodyResults results() const;
     /// `velocity`: of the evaluation, with its halo. Collective.
-    double residual(Communicator const&, ConstView<3> velocity, std::vector<BeadTip> const&) const;
+    double residual(Communicator const&, ConstView<3> velocity, std::vector<HeldTip> const&) const;
 };
 
 template <class Space>
@@ -42,8 +40,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
           solver_(std::move(solver)),
           gravity_(scene.forces.gravity),
           links_(links_of(group)),
-          piece_(bead_pieces(group, scene)),
-          tip_(bead_tips(group, scene)),
+          piece_(local_pieces(group, scene)),
+          tip_(held_tips(group, [&](std::int64_t k) { return scene.chains[group.scene_chain(k)].beads.position.back(); })),
           is_first_(group.is_first),
           has_link_(links_),
           pieces_(piece_),
@@ -143,8 +141,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         BeadChains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
-        solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(tip_bias_)},
-                       {{}, change_.view(), joint_force_.view(), of_tips(tip_force_)});
+        solver_->solve({{}, force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
+                       {{}, change_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
     }
     void evaluate_at_once() override {
         if (group_.has_tips() || !solver_->at_once()) return AbsoluteDynamics::evaluate_at_once();
@@ -165,13 +163,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         auto const& observed = space_.read(observed_);
         return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
     }
-    PotentialEnergy potential() override {
-        auto const& position = space_.read(position_);
-        PotentialEnergy e;
-        for (std::int64_t k = 0; k < group_.size; ++k) e.gravity.push_back(-group_.mass.view().at(k, 0) * dot(gravity_, position[k]));
-        e.springs.assign(static_cast<std::size_t>(group_.size), 0.0);
-        return e;
-    }
+    PotentialEnergy potential() override { return potential_in(gravity_, group_, space_.read(position_)); }
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
@@ -223,9 +215,6 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         return loads;
     }
     std::int64_t tips() const { return std::ssize(tip_); }
-    DirectionsView of_tips(typename Space::Directions& directions) const {
-        return group_.has_tips() ? directions.view() : DirectionsView{};
-    }
     BeadChains chains() {
         BeadChains c;
         c.size = group_.size;
@@ -246,7 +235,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         c.direction = direction_.view();
         c.tip_direction = tip_direction_.view();
         c.bias = bias_.view();
-        c.tip_bias = of_tips(tip_bias_);
+        c.tip_bias = of_tips(group_, tip_bias_);
         return c;
     }
     template <class Use>
@@ -264,11 +253,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     std::unique_ptr<ChainSolver> solver_;
     Vec3 gravity_;
     std::vector<std::uint8_t> links_;
-    std::vector<BeadPiece> piece_;
-    std::vector<BeadTip> tip_;
+    std::vector<LocalPiece> piece_;
+    std::vector<HeldTip> tip_;
     typename Space::template List<std::uint8_t> is_first_, has_link_;
-    typename Space::template List<BeadPiece> pieces_;
-    typename Space::template List<BeadTip> tips_;
+    typename Space::template List<LocalPiece> pieces_;
+    typename Space::template List<HeldTip> tips_;
     typename Space::template Fixed<1> mass_, inverse_mass_, length_;
     Field3 position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;

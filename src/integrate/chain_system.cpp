@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "chain/gather.hpp"
-#include "cuda/bead_dynamics.hpp"
-#include "cuda/joint_dynamics.hpp"
+#include "cuda/dynamics.hpp"
 #include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
@@ -54,31 +53,16 @@ int choose_threads(Scene const& scene, Communicator const& communicator) {
 ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
     : scene_(scene), communicator_(communicator), axes_(axes), backend_(choose_backend(scene, communicator)) {
     if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator), without_gpu);
-    // What the GPU does not do runs on all the host's threads.
-    bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
+    bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda_levels && openmp_is_built());
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator)) : serial_executor();
     groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator);
     if (uses_gpu(backend_)) require_gpu_memory();
     if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {
-        if (group->beads && backend_ == Backend::cuda) {
-            absolute_.push_back(cuda::make_bead_dynamics(*group, scene, communicator));
-            continue;
-        }
-        if (!group->beads && !group->linked && axes == Axes::joint && backend_ == Backend::cuda) {
-            joint_.push_back(cuda::make_joint_dynamics(*group, scene, communicator));
-            continue;
-        }
-        auto solver = make_solver(*group);
-        if (group->beads) {
-            absolute_.push_back(make_bead_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
-        } else if (group->linked) {
-            absolute_.push_back(make_linked_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
-        } else if (axes == Axes::world) {
-            absolute_.push_back(make_spherical_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
-        } else {
-            joint_.push_back(make_joint_dynamics(*group, scene, *executor_, communicator, std::move(solver)));
-        }
+        if (is_absolute(*group))
+            absolute_.push_back(make_absolute(*group));
+        else
+            joint_.push_back(make_joint(*group));
     }
     if (openmm_) find_bead_hosts();
 }
@@ -101,8 +85,19 @@ void ChainSystem::make_current() {
     if (!is_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
 }
 
+std::unique_ptr<AbsoluteDynamics> ChainSystem::make_absolute(ChainGroup const& group) const {
+    if (backend_ == Backend::cuda) {
+        auto const make = group.beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics;
+        return make(group, scene_, communicator_);
+    }
+    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
+    return make(group, scene_, *executor_, communicator_, make_solver(group));
+}
+std::unique_ptr<JointDynamics> ChainSystem::make_joint(ChainGroup const& group) const {
+    if (backend_ == Backend::cuda) return cuda::make_joint_dynamics(group, scene_, communicator_);
+    return make_joint_dynamics(group, scene_, *executor_, communicator_, make_solver(group));
+}
 std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) const {
-    if (backend_ == Backend::cuda) return cuda::make_tree_solver(group, communicator_);
     if (backend_ == Backend::cuda_levels)
         return dca::make_level_solver(group, communicator_, scene_.solver.levels_on_gpu(), cuda::make_levels, dca::host_levels(*executor_));
     return make_tree_solver(group, *executor_, communicator_);

@@ -15,7 +15,7 @@ namespace catena {
 
 /// What `auto` becomes. Throws where a GPU is asked for and some rank has none. Collective.
 Backend choose_backend(Scene const&, Communicator const&);
-/// Threads of this rank with openmp, and of what cuda leaves to the host: solver.threads, else the host's cores over its ranks.
+/// Threads of this rank with openmp, and of what cuda-levels leaves to the host: solver.threads, else the host's cores over its ranks.
 int choose_threads(Scene const&, Communicator const&);
 
 class ChainSystem {
@@ -106,6 +106,8 @@ class ChainSystem {
     bool is_current() noexcept;
     void require_gpu_memory() const;
     void find_bead_groups();
+    std::unique_ptr<AbsoluteDynamics> make_absolute(ChainGroup const&) const;
+    std::unique_ptr<JointDynamics> make_joint(ChainGroup const&) const;
     std::unique_ptr<ChainSolver> make_solver(ChainGroup const&) const;
     void make_openmm();
     void find_bead_hosts();

@@ -24,10 +24,7 @@ struct JointChains {
     ConstView<6> inertia;
     ConstView<3> fixed_r2;
     ConstView<9> fixed_axes2;
-    // Beads that bodies carry; absent where none does.
-    std::int64_t const* bead_offset = nullptr;
-    Vec3 const* bead_place = nullptr;
-    View<3> bead_position, bead_force;
+    CarriedBeadsView beads;
     // What a solution needs and finds.
     View<4> joint_load;  // known load of joint k on body k: torque along the joint's axes and force along its last one
     View<3> torque, force, alpha, acceleration;
@@ -55,13 +52,10 @@ struct JointChains {
     template <bool positions>
     CATENA_HD void set_motion(std::int64_t k) const {
         scan.set_motion<positions>(k);
-        if (!bead_offset) return set_loads(k);
+        if (!beads) return set_loads(k);
         Mat3 const axes = orientation(k);
-        Vec3 const centre = scan.motion.origin.load(k) - axes * r1(k);
-        for (std::int64_t i = bead_offset[k]; i < bead_offset[k + 1]; ++i) {
-            bead_position.store(i, centre + axes * bead_place[i]);
-            bead_force.store(i, Vec3::zero());
-        }
+        beads.put(k, scan.motion.origin.load(k) - axes * r1(k), axes);
+        beads.clear_forces(k);
     }
 
     // Loads.
@@ -132,15 +126,7 @@ struct JointChains {
     }
     /// From outside the chain and from carried beads.
     CATENA_HD Wrench wrench(std::int64_t k) const {
-        Wrench w{Vec3::zero(), Vec3::zero()};
-        if (bead_offset) {
-            Mat3 const axes = orientation(k);
-            for (std::int64_t i = bead_offset[k]; i < bead_offset[k + 1]; ++i) {
-                Vec3 const f = bead_force.load(i);
-                w.force = w.force + f;
-                w.torque = w.torque + cross(axes * bead_place[i], f);
-            }
-        }
+        Wrench w = beads ? beads.on_body(k, orientation(k)) : Wrench{Vec3::zero(), Vec3::zero()};
         if (given.wrenches) w = {w.torque + given.wrench_torque.load(k), w.force + given.wrench_force.load(k)};
         return w;
     }

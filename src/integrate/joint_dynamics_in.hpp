@@ -39,8 +39,7 @@ class JointDynamicsIn final : public JointDynamics {
           kinematics_(group, space, communicator),
           loads_(given_),
           tips_(tip_),
-          bead_offset_(group.bead_offset),
-          bead_place_(group.bead_place),
+          beads_(group, space),
           mass_(group.mass),
           inertia_(group.inertia),
           r2_(group.r2),
@@ -49,8 +48,6 @@ class JointDynamicsIn final : public JointDynamics {
           start_(group),
           sum_(group),
           motion_(group, space),
-          bead_position_(group.carried_beads()),
-          bead_force_(group.carried_beads()),
           joint_load_(given_.joint_loads ? group.size : 0),
           torque_(group.size),
           force_(has_forces_ ? group.size : 0),
@@ -79,10 +76,10 @@ class JointDynamicsIn final : public JointDynamics {
         return s;
     }
     void set_state(JointState const& s) override {
-        fill(state_.q, s.q);
-        fill(state_.qd, s.qd);
-        fill(state_.base_position, s.base_position);
-        fill(state_.base_velocity, s.base_velocity);
+        fill(space_, state_.q, s.q);
+        fill(space_, state_.qd, s.qd);
+        fill(space_, state_.base_position, s.base_position);
+        fill(space_, state_.base_velocity, s.base_velocity);
         relative_ = false;
     }
 
@@ -93,8 +90,9 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void solve() override {
         if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
-        solver_->solve({torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(tip_bias_)},
-                       {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(tip_force_)});
+        solver_->solve(
+            {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)},
+            {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
         exchange_ends();
     }
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
@@ -109,8 +107,8 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void carry_rates() override { set_rates(carried()); }
     void carry_rates(JointRates const& rates) override {
-        fill(carried_qdd_, rates.qdd);
-        fill(carried_base_acceleration_, rates.base_acceleration);
+        fill(space_, carried_qdd_, rates.qdd);
+        fill(space_, carried_base_acceleration_, rates.base_acceleration);
     }
     JointRates carried_rates() const override { return {space_.read(carried_qdd_), space_.read(carried_base_acceleration_)}; }
     void verlet_move(double h) override {
@@ -160,18 +158,9 @@ class JointDynamicsIn final : public JointDynamics {
         return communicator_.max(worst);
     }
 
-    View<3> bead_forces() override {
-        if (group_.carried_beads() == 0) return {};
-        forces_are_out_ = true;
-        return space_.pull(bead_force_, force_mirror_);
-    }
-    ConstView<3> bead_positions() override {
-        if (group_.carried_beads() == 0) return {};
-        return space_.pull(bead_position_, position_mirror_);
-    }
-    void take_bead_forces() override {
-        if (std::exchange(forces_are_out_, false)) space_.push(bead_force_, force_mirror_);
-    }
+    View<3> bead_forces() override { return beads_.bead_forces(); }
+    ConstView<3> bead_positions() override { return beads_.bead_positions(); }
+    void take_bead_forces() override { beads_.take_bead_forces(); }
     ChainSolver& solver() const override { return *solver_; }
     ChainGroup const& group() const override { return group_; }
 
@@ -243,15 +232,6 @@ class JointDynamicsIn final : public JointDynamics {
   private:
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
-    DirectionsView of_tips(typename Space::Directions& directions) const {
-        return group_.has_tips() ? directions.view() : DirectionsView{};
-    }
-    template <int D>
-    void fill(FieldOf<D>& field, Field<D> const& host) const {
-        space_.edit(field, [&](View<D> view) {
-            for (std::int64_t k = 0; k < host.size(); ++k) view.store(k, host[k]);
-        });
-    }
     JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view()}; }
     RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
     JointChains chains() {
@@ -266,10 +246,7 @@ class JointDynamicsIn final : public JointDynamics {
         c.inertia = inertia_.view();
         c.fixed_r2 = r2_.view();
         c.fixed_axes2 = axes2_.view();
-        c.bead_offset = group_.carried_in_scene ? bead_offset_.data() : nullptr;
-        c.bead_place = bead_place_.data();
-        c.bead_position = bead_position_.view();
-        c.bead_force = bead_force_.view();
+        c.beads = beads_.view();
         c.joint_load = joint_load_.view();
         c.torque = torque_.view();
         c.force = force_.view();
@@ -286,13 +263,13 @@ class JointDynamicsIn final : public JointDynamics {
         auto const &omega = space_.read(motion_.omega), &velocity = space_.read(motion_.velocity), &r2 = space_.read(motion_.r2);
         auto const& axes2 = space_.read(motion_.axes2);
         auto const &torque = space_.read(torque_), &force = space_.read(force_), &alpha = space_.read(alpha_),
-                   &acceleration = space_.read(acceleration_), &bead_force = space_.read(bead_force_);
+                   &acceleration = space_.read(acceleration_), &bead_force = space_.read(beads_.force());
         auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
                    &tip_force = space_.read(tip_force_);
         return use(JointSolution{group_, given_, joint_turn.view(), orientation.view(), omega.view(), velocity.view(), r2.view(),
                                  axes2.view(), torque.view(), has_forces_ ? force.view() : ConstView<3>{}, alpha.view(),
-                                 acceleration.view(), group_.carried_beads() > 0 ? bead_force.view() : ConstView<3>{}, bias.view(),
-                                 joint_force.view(), tip_bias.view(), tip_force.view()});
+                                 acceleration.view(), beads_.any() ? bead_force.view() : ConstView<3>{}, bias.view(), joint_force.view(),
+                                 tip_bias.view(), tip_force.view()});
     }
 
     ChainGroup const& group_;
@@ -308,22 +285,18 @@ class JointDynamicsIn final : public JointDynamics {
     JointKinematics<Space> kinematics_;
     BodyLoadsIn<Space> loads_;
     List<JointedTip> tips_;
-    List<std::int64_t> bead_offset_;
-    List<Vec3> bead_place_;
+    CarriedBeadsIn<Space> beads_;
     Fixed<1> mass_;
     Fixed<6> inertia_;
     Fixed<3> r2_;
     Fixed<9> axes2_;
     JointCoordinates<Space> state_, start_, sum_;
     MotionFields<Space> motion_;
-    FieldOf<3> bead_position_, bead_force_;
     FieldOf<4> joint_load_;
     FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
-    typename Space::template Mirror<3> position_mirror_, force_mirror_;
-    bool forces_are_out_ = false;
 };
 
 }  // namespace catena

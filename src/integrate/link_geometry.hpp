@@ -2,10 +2,18 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "dca/linear.hpp"
 
 namespace catena {
+
+/// Where a chain's last bead or body is held: by a link to the ground or a joint there.
+struct HeldTip {
+    std::int64_t body = 0;  // local
+    Vec3 anchor;            // W
+    double length = 0;      // of the link
+};
 
 /// How far a link d is too long along its direction u at the step's start: the s with |d - s u| = length.
 CATENA_HD double excess(Vec3 const& d, Vec3 const& u, double length) {

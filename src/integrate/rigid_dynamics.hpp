@@ -1,102 +1,319 @@
-// Chains of rigid bodies in absolute coordinates: what bodies on spherical joints and bodies on links have in common.
+// Chains of rigid bodies in absolute coordinates, on spherical joints or on links among point beads, in any Space: their state stays there.
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
+#include <cmath>
 
+#include "dca/host_space.hpp"
 #include "integrate/absolute_dynamics.hpp"
-#include "integrate/body_loads.hpp"
-#include "integrate/rotor.hpp"
+#include "integrate/rigid_chains.hpp"
+#include "integrate/rigid_solution.hpp"
 
 namespace catena {
 
-/// Handle 1 of body k lies at x + R r1, handle 2 at x + R r2 (x: centre of mass). A point bead is a body without inertia that never turns.
-class RigidDynamics : public AbsoluteDynamics {
+/// Where the bodies of the group start. Collective.
+struct RigidStart {
+    Field<3> position, velocity, omega;
+    Field<4> orientation;
+};
+RigidStart place_bodies(ChainGroup const&, Scene const&, Communicator const&);
+
+/// Of all bodies: quaternions of the axes in B, and the moments about them; a point bead: none.
+struct PrincipalFrames {
+    Field<4> axes;
+    Field<3> moment;
+};
+PrincipalFrames principal_frames(ChainGroup const&);
+
+/// Longest distance of a joint from its bodies' centres, or a body's radius of gyration. The same on every rank; collective.
+double reach_of_joints(ChainGroup const&, Communicator const&);
+
+template <class Space>
+class RigidDynamics final : public AbsoluteDynamics {
+    template <int D>
+    using FieldOf = typename Space::template FieldOf<D>;
+    template <int D>
+    using Fixed = typename Space::template Fixed<D>;
+    template <class T>
+    using List = typename Space::template List<T>;
+
   public:
+    /// `solver` takes views of the same space.
+    RigidDynamics(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
+                  std::unique_ptr<ChainSolver> solver)
+        : group_(group),
+          space_(space),
+          communicator_(communicator),
+          solver_(std::move(solver)),
+          given_(make_body_loads(group, scene)),
+          principal_(principal_frames(group)),
+          piece_(local_pieces(group, scene)),
+          reach_(group.linked ? 1.0 : reach_of_joints(group, communicator)),
+          loads_(given_),
+          beads_(group, space),
+          pieces_(piece_),
+          is_first_(group.is_first),
+          is_last_(group.is_last),
+          joint_(group.joint),
+          jointed_tip_(group.jointed_tip),
+          mass_(group.mass),
+          inverse_mass_(group.inverse_mass),
+          length_(group.length),
+          inertia_(group.inertia),
+          r1_(group.r1),
+          r2_(group.r2),
+          joint_frame_(group.joint_rotation),
+          principal_axes_(principal_.axes),
+          principal_moment_(principal_.moment),
+          position_(group.size),
+          velocity_(group.size),
+          omega_(group.size),
+          orientation_(group.size),
+          observed_velocity_(group.size),
+          observed_omega_(group.size),
+          force_(group.size),
+          torque_(group.size),
+          momentum_(group.size),
+          moment_(group.size),
+          acceleration_(group.size),
+          alpha_(group.size),
+          inboard_end_(group.size),
+          outboard_end_(group.size),
+          joint_torque_(given_.joint_loads ? group.size : 0),
+          direction_(group.linked ? group.size : 0),
+          tip_direction_(group.linked && group.has_tips() ? group.size : 0),
+          bias_(group.size + 1, group.directions),
+          joint_force_(group.size + 1, group.directions),
+          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_force_(group.has_tips() ? group.size : 0, group.directions),
+          tip_(start(scene)),
+          tips_(tip_) {}
+
+    void update_configuration() override {
+        if (given_.springs) exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
+        if (!group_.linked) return;
+        set_ends();
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_directions(k); });
+        exchange_from_outboard(communicator_, group_, direction_.view(), space_);
+    }
     void assemble_matrices() override { solver_->assemble_matrices(configuration()); }
-    void set_simple_forces() override;
-    View<3> bead_forces() override { return carried_.forces(); }
-    ConstView<3> bead_positions() override;
-    void take_bead_forces() override;
+    void set_simple_forces() override {
+        RigidChains const c = chains();
+        if (given_.joint_loads) {
+            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_joint_torque(k); });
+            exchange_from_outboard(communicator_, group_, joint_torque_.view(), space_);
+        }
+        space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_forces(k); });
+    }
+    View<3> bead_forces() override { return beads_.bead_forces(); }
+    ConstView<3> bead_positions() override {
+        if (beads_.any()) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.put_beads(k); });
+        return beads_.bead_positions();
+    }
+    void take_bead_forces() override {
+        beads_.take_bead_forces();
+        if (beads_.any()) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.take_bead_forces(k); });
+    }
 
     void kick(double h) override { project(h, velocity_.view(), omega_.view()); }
     void observe(double h) override { project(h, observed_velocity_.view(), observed_omega_.view()); }
     /// Impulses along the joints at the start enter momenta before the drift, and the free rotor runs again in every sweep
     /// (formulas, "Rigid bodies under RATTLE").
-    void drift(double h, int sweeps) override;
-    void thermostat(Thermostat const&, std::uint64_t step) override;
-    void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override;
+    void drift(double h, int sweeps) override {
+        RigidChains const c = chains();
+        for (int sweep = 0; sweep <= sweeps; ++sweep) {
+            DriftSweep const s{h, sweep == 0, sweep == sweeps};
+            space_.for_each(group_.size, [c, s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
+            if (s.last) return;
+            exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+            space_.for_each(group_.size, [c, scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.set_openings(k, scale); });
+            solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
+        }
+    }
+    void thermostat(Thermostat const& t, std::uint64_t step) override {
+        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular}, 0, group_.size);
+        kick(0.0);
+    }
+    void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
+        for (dca::Piece const& piece : group_.pieces)
+            if (of_chain[piece.chain]) add_noise({{0.0, std::sqrt(kt), seed}}, piece.local, piece.count);
+        kick(0.0);
+    }
 
-    std::vector<StateArray> state() const override;
-    void set_state(std::vector<StateArray> const&) override;
-    std::vector<StateArray> observed_state() const override;
-    void evaluate() override;
-    void evaluate_at_once() override;
-    std::vector<double> time_at_once(int chained, int repeat) override;
-    BodyResults results() const override;
-    double residual() override;
+    double constraint_error() override {
+        solver_->check();
+        set_ends();
+        return communicator_.max(
+            space_.largest(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); }));
+    }
 
+    std::vector<StateArray> state() const override {
+        solver_->check();
+        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view()),
+                to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(omega_).view())};
+    }
+    void set_state(std::vector<StateArray> const& arrays) override {
+        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
+        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
+        space_.edit(orientation_, [&](View<4> view) { from_array<4>(array_named(arrays, "orientation"), view); });
+        space_.edit(omega_, [&](View<3> view) { from_array<3>(array_named(arrays, "omega"), view); });
+    }
+    std::vector<StateArray> observed_state() const override {
+        return {to_array<3>("velocity", space_.read(observed_velocity_).view()), to_array<3>("omega", space_.read(observed_omega_).view())};
+    }
+
+    void evaluate() override {
+        set_loads();
+        solver_->solve(loads(), found());
+    }
+    void evaluate_at_once() override {
+        set_loads();
+        solver_->assemble_and_solve(configuration(), loads_at_once(), found());
+    }
+    std::vector<double> time_at_once(int chained, int repeat) override {
+        AccelerationsView out = found();
+        out.joint_force = {};
+        return solver_->time_evaluations(configuration(), loads_at_once(), out, chained, repeat);
+    }
+    BodyResults results() const override {
+        solver_->check();
+        return with_solution([](RigidSolution const& s) { return s.results(); });
+    }
+    double residual() override {
+        solver_->check();
+        return with_solution([&](RigidSolution const& s) { return s.residual(communicator_); });
+    }
+    PotentialEnergy potential() override {
+        exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
+        return potential_of(group_, given_, space_.read(position_), space_.read(orientation_));
+    }
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
-  protected:
-    RigidDynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&, std::unique_ptr<ChainSolver>);
+    // Not private: nvcc takes lambdas for kernels from public members alone.
+    /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
+    void project(double h, View<3> velocity, View<3> omega) {
+        space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
+        solver_->solve({moment_.view(), momentum_.view(), {}, {}, {}}, {omega, velocity, {}, {}});
+    }
+    void add_noise(RigidNoise const& noise, std::int64_t first, std::int64_t count) {
+        space_.for_each(count, [c = chains(), noise, first] CATENA_LAMBDA(std::int64_t i) { c.add_noise(first + i, noise); });
+    }
+    void set_ends() {
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_ends(k); });
+        exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+    }
+    void set_loads() {
+        RigidChains const c = chains();
+        space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_moment(k); });
+        if (group_.linked) exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+        space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_turnings(k); });
+    }
 
-    virtual ConfigurationView configuration() = 0;
-    /// Biases of inboard joints and tips for a drift that ended at these poses: `scale` times how far each is open along its directions.
-    virtual void set_openings(double scale, Field<3> const& position, Field<4> const& orientation) = 0;
-    /// Biases of joints for accelerations: their velocity terms, less the centripetal ones of the bodies, at the velocities observed last.
-    virtual void set_velocity_biases() = 0;
-    /// Torques of joints on both their bodies, W: added to torque[k].
-    virtual void add_joint_torques() {}
-    /// Force of the inboard joint on body k, W; of the tip's joint on the ground.
-    virtual Vec3 joint_force(std::int64_t k) const = 0;
-    virtual Vec3 tip_force(std::int64_t k) const = 0;
-    /// How far the inboard joint of body k is from closing, given the accelerations of its handles (outboard less inboard), and the size of
-    /// its own terms.
-    virtual double closing(std::int64_t k, Vec3 const& difference, double terms) const = 0;
-    virtual double tip_closing(std::int64_t k, Vec3 const& difference, double terms) const = 0;
-
-    static Mat3 turn(Field<4> const& orientation, std::int64_t k) { return to_matrix(as_quaternion(orientation.view().load(k))); }
-    bool is_bead(std::int64_t k) const { return principal_[static_cast<std::size_t>(k)].moments[0] == 0; }
-    Vec3 outboard_force(std::int64_t k) const;
-    void set_outboard_points(Field<3> const& position, Field<4> const& orientation);
-    Vec3 inboard_point(std::int64_t k, Field<3> const& position, Field<4> const& orientation) const;
-    void set_bias(std::int64_t k, Vec3 const& value);
-    void set_tip_bias(std::int64_t k, Vec3 const& value);
-    /// Of handle 1 or 2 of body k at the velocities observed last, W.
-    Vec3 handle_velocity(std::int64_t k, Vec3 const& r) const;
+  private:
+    /// Sets the state where the scene starts. Returns where the tips are held there.
+    std::vector<HeldTip> start(Scene const& scene) {
+        RigidStart const at = place_bodies(group_, scene, communicator_);
+        fill(space_, position_, at.position);
+        fill(space_, velocity_, at.velocity);
+        fill(space_, omega_, at.omega);
+        fill(space_, orientation_, at.orientation);
+        return held_tips(group_,
+                         [&](std::int64_t k) { return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k]; });
+    }
+    ConfigurationView configuration() const { return {direction_.view(), orientation_.view(), tip_direction_.view(), {}, {}}; }
+    LoadsView loads() { return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)}; }
+    /// The solver adds what follows from angular velocities.
+    LoadsView loads_at_once() {
+        LoadsView l = loads();
+        if (group_.linked) return l;
+        l.torque = torque_.view();
+        l.gyroscopic = true;
+        l.bias = {};
+        return l;
+    }
+    AccelerationsView found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
+    RigidChains chains() {
+        RigidChains c;
+        c.linked = group_.linked;
+        c.reach = reach_;
+        c.is_first = is_first_.data();
+        c.is_last = is_last_.data();
+        c.joint = joint_.data();
+        c.jointed_tip = tip_.empty() ? nullptr : jointed_tip_.data();
+        c.tip = tips_.data();
+        c.piece = pieces_.data();
+        c.pieces = std::ssize(piece_);
+        c.mass = mass_.view();
+        c.inverse_mass = inverse_mass_.view();
+        c.length = length_.view();
+        c.inertia = inertia_.view();
+        c.r1 = r1_.view();
+        c.r2 = r2_.view();
+        c.joint_frame = joint_frame_.view();
+        c.principal_axes = principal_axes_.view();
+        c.principal_moment = principal_moment_.view();
+        c.given = loads_.view();
+        c.beads = beads_.view();
+        c.position = position_.view();
+        c.velocity = velocity_.view();
+        c.omega = omega_.view();
+        c.orientation = orientation_.view();
+        c.observed_velocity = observed_velocity_.view();
+        c.observed_omega = observed_omega_.view();
+        c.force = force_.view();
+        c.torque = torque_.view();
+        c.momentum = momentum_.view();
+        c.moment = moment_.view();
+        c.acceleration = acceleration_.view();
+        c.alpha = alpha_.view();
+        c.inboard_end = inboard_end_.view();
+        c.outboard_end = outboard_end_.view();
+        c.joint_torque = joint_torque_.view();
+        c.direction = direction_.view();
+        c.tip_direction = tip_direction_.view();
+        c.bias = bias_.view();
+        c.tip_bias = tip_bias_.view();
+        return c;
+    }
+    template <class Use>
+    auto with_solution(Use const& use) const {
+        auto const& orientation = space_.read(orientation_);
+        auto const &omega = space_.read(observed_omega_), &force = space_.read(force_), &torque = space_.read(torque_),
+                   &moment = space_.read(moment_), &alpha = space_.read(alpha_), &acceleration = space_.read(acceleration_),
+                   &direction = space_.read(direction_), &tip_direction = space_.read(tip_direction_);
+        auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
+                   &tip_force = space_.read(tip_force_);
+        return use(RigidSolution{group_, orientation.view(), omega.view(), force.view(), torque.view(), moment.view(), alpha.view(),
+                                 acceleration.view(), direction.view(), tip_direction.view(), bias.view(), joint_force.view(),
+                                 tip_bias.view(), tip_force.view()});
+    }
 
     ChainGroup const& group_;
-    Executor const& executor_;
+    Space space_;
     Communicator const& communicator_;
     std::unique_ptr<ChainSolver> solver_;
     BodyLoads given_;
-    std::vector<PrincipalFrame> principal_;
-    Field<3> position_, velocity_, omega_;
-    Field<4> orientation_;
-    Field<3> observed_velocity_, observed_omega_, force_, torque_;
-    Field<3> momentum_, angular_momentum_, acceleration_, alpha_;
-    Field<3> trial_position_, trial_omega_;
-    Field<4> trial_orientation_;
-    Field<3> outboard_point_;  // handle 2, W; halo from inboard
-    DirectionsField bias_, joint_force_, tip_bias_, tip_force_;
-    CarriedBeadForces carried_;
-
-  private:
-    void set_momenta_and_biases();
-    LoadsView loads();
-    LoadsView loads_at_once();
-    AccelerationsView found();
-    struct HandleAcceleration {
-        Vec3 value;
-        double terms;
-    };
-    void project(double h, View<3> velocity, View<3> omega);
-    void add_noise(std::int64_t k, double c, double spread, std::uint64_t seed, std::uint64_t step, NoiseStage linear, NoiseStage angular);
-    HandleAcceleration handle_acceleration(std::int64_t k, Vec3 const& r) const;
-    double newton_euler_residual(std::int64_t k) const;
+    PrincipalFrames principal_;
+    std::vector<LocalPiece> piece_;
+    double reach_;
+    BodyLoadsIn<Space> loads_;
+    CarriedBeadsIn<Space> beads_;
+    List<LocalPiece> pieces_;
+    List<std::uint8_t> is_first_, is_last_;
+    List<JointType> joint_;
+    List<std::int32_t> jointed_tip_;
+    Fixed<1> mass_, inverse_mass_, length_;
+    Fixed<6> inertia_;
+    Fixed<3> r1_, r2_;
+    Fixed<4> joint_frame_, principal_axes_;
+    Fixed<3> principal_moment_;
+    FieldOf<3> position_, velocity_, omega_;
+    FieldOf<4> orientation_;
+    FieldOf<3> observed_velocity_, observed_omega_, force_, torque_, momentum_, moment_, acceleration_, alpha_, inboard_end_, outboard_end_,
+        joint_torque_, direction_, tip_direction_;
+    typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    std::vector<HeldTip> tip_;
+    List<HeldTip> tips_;
 };
 
 }  // namespace catena

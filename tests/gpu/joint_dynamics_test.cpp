@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "cuda/joint_dynamics.hpp"
+#include "cuda/dynamics.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"

@@ -55,6 +55,21 @@ INSTANTIATE_TEST_SUITE_P(SharedChains, GpuRun,
                                            joint_chains("verlet_mixed_held", "mixed", held, "velocity-verlet")),
                          name_of_scene);
 
+/// Bodies in absolute coordinates with springs between those of different ranks.
+RunScene sprung_bodies(char const* name, char const* integrator) {
+    std::string bodies;
+    for (int k = 0; k < 60; ++k)
+        bodies +=
+            (k > 0 ? ", " : "") +
+            std::string("{mass: 1, com: [0.05, 0.02, -0.1], inertia: [0.01, 0.012, 0.015], joint: {type: spherical, translation: [0, 0, ") +
+            (k > 0 ? "-0.2" : "0") + "], stiffness: [1, 2, 3]}}";
+    return {name, "chains: [{name: a, base: fixed, bodies: [" + bodies + "]}]\nforces: {gravity: [0, 1, -2]}\ndynamics: {integrator: " +
+                      integrator + ", step: 0.002, steps: 40}\noutput: {every: 20, checkpoint_every: 20, joint_forces: true}\n"};
+}
+INSTANTIATE_TEST_SUITE_P(SharedBodies, GpuRun,
+                         ::testing::Values(sprung_bodies("rattle_springs", "rattle"), sprung_bodies("langevin_springs", "g-baoab")),
+                         name_of_scene);
+
 /// A long chain that ranks share, and so many short ones that the last rank holds one unit of it: levels of its tree are empty there.
 RunScene long_and_short(char const* name, int beads, int beads_of_short) {
     auto const chain = [](std::string const& head, int n) {

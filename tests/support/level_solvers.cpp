@@ -101,7 +101,7 @@ void evaluate(ChainGroup const& group, Scene const& scene, Executor const& execu
         dynamics->solve();
         return;
     }
-    auto const make = group.beads ? make_bead_dynamics : group.linked ? make_linked_dynamics : make_spherical_dynamics;
+    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
     auto const dynamics = make(group, scene, executor, communicator, std::move(solver));
     dynamics->update_configuration();
     dynamics->assemble_matrices();

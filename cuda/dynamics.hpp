@@ -1,0 +1,13 @@
+// Chains whose state stays on a GPU.
+#pragma once
+
+#include "integrate/joint_dynamics.hpp"
+
+namespace catena::cuda {
+
+// As the functions of these names in catena, on the GPU chosen last. The group and the communicator must outlive what they make.
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Communicator const&);
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Communicator const&);
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Communicator const&);
+
+}  // namespace catena::cuda

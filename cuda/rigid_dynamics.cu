@@ -1,0 +1,12 @@
+#include "cuda/device_solver.cuh"
+#include "cuda/dynamics.hpp"
+#include "integrate/rigid_dynamics.hpp"
+
+namespace catena::cuda {
+
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
+    DeviceSpace const space;
+    return std::make_unique<RigidDynamics<DeviceSpace>>(group, scene, space, communicator, make_device_solver(group, space, communicator));
+}
+
+}  // namespace catena::cuda
