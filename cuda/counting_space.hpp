@@ -149,10 +149,21 @@ class CountingSpace : public HostAccess {
         }
     };
 
-    struct Blocks {
-        explicit Blocks(ChainGroup const&) {}
+    /// At most, for neighbouring short chains share a block.
+    class Blocks {
+      public:
+        explicit Blocks(ChainGroup const& group) {
+            dca::BlockPlan const plan = dca::plan_blocks(group.schedule, last_bodies(group.tips), 1);
+            std::size_t merges = 0;
+            for (auto const& level : group.schedule.levels) merges += level.size();
+            Count::add(static_cast<std::int64_t>(group.schedule.runs.size() * sizeof(dca::Run)));
+            Count::add(static_cast<std::int64_t>(merges * sizeof(dca::Merge)));
+            Count::add(static_cast<std::int64_t>(plan.roots.size() * sizeof(dca::Root)));
+            for (auto const* ranges : {&plan.stage.run, &plan.stage.merge, &plan.stage.root, &plan.body, &plan.tip})
+                Count::add(static_cast<std::int64_t>(ranges->size() * sizeof(dca::Range)));
+        }
     };
-    bool pays_by_blocks(ChainGroup const&) const { return false; }
+    bool pays_by_blocks(ChainGroup const&) const { return true; }
     template <class Action>
     void each_block(Blocks const&, Action const&) const {}
     template <class Action>

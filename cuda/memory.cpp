@@ -10,6 +10,7 @@
 #include "dca/tree_solver.hpp"
 #include "integrate/bead_dynamics.hpp"
 #include "integrate/joint_dynamics_in.hpp"
+#include "integrate/rigid_dynamics.hpp"
 
 namespace catena::cuda {
 namespace {
@@ -63,11 +64,11 @@ void count_group(ChainGroup const& group, Scene const& scene, Backend backend, C
     if (backend == Backend::cuda_levels) return count_levels(group, scene);
     if (group.beads) {
         BeadDynamics<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
+        if (group.schedule.shared.empty()) CountingSpace::Blocks{group};  // made at the first step, where it pays
     } else if (!group.linked && group.axes == Axes::joint) {
         JointDynamicsIn<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
     } else {
-        tree_of(group, communicator);
-        CountingCrossing(group, CountingSpace());
+        RigidDynamics<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
     }
 }
 

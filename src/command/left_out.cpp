@@ -167,7 +167,7 @@ std::vector<LeftOut> left_out(Scene const& scene, ChainSystem const& system) {
     if (system.communicator().size() == 1) list.add("messages: there is one rank");
     if (!uses_gpu(system.backend()))
         list.add("GPU: " +
-                 (cuda::why_not().empty() ? "there is " + cuda::device_name() + "; ask for it by --backend cuda" : cuda::why_not()));
+                 (cuda::why_not().empty() ? "there is " + cuda::device_name() + ", which this backend does without" : cuda::why_not()));
     return list.lines();
 }
 

@@ -13,7 +13,7 @@
 
 namespace catena {
 
-/// What `auto` becomes. Throws where a GPU is asked for and some rank has none. Collective.
+/// What `auto` becomes where no planner has chosen (plan/choice.hpp). Throws where a GPU is asked for and some rank has none. Collective.
 Backend choose_backend(Scene const&, Communicator const&);
 /// Threads of this rank with openmp, and of what cuda-levels leaves to the host: solver.threads, else the host's cores over its ranks.
 int choose_threads(Scene const&, Communicator const&);

@@ -39,7 +39,7 @@ void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<
 
 Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     std::string const no_gpu = no_gpu_for(scene, planner.machine());
-    std::string const without = no_gpu.empty() ? "" : "; no GPU: " + no_gpu;
+    std::string const without = no_gpu.empty() ? "" : "; " + no_gpu;
     std::vector<Arrangement> usable = planner.machine().alike;
     if (!no_gpu.empty()) std::erase_if(usable, [](Arrangement const& a) { return uses_gpu(a.backend); });
     if (usable.size() == 1) return {usable.front(), {}, "auto: one core" + without};
@@ -63,9 +63,7 @@ Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks)
                         1e3 * levels.seconds(best), 1e3 * levels.seconds({}), 1e3 * levels.seconds({0, 0}))};
 }
 
-bool levels_are_open(SolverSpec const& solver) {
-    return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto";
-}
+bool levels_are_open(SolverSpec const& solver) { return solver.backend == Backend::cuda_levels && solver.gpu_levels == "auto"; }
 
 }  // namespace
 
@@ -112,7 +110,8 @@ Scene with_choice(Scene scene, Choice const& choice) {
     if (!leaves_open(scene)) return scene;
     scene.solver.backend = choice.arrangement.backend;
     scene.solver.threads = choice.arrangement.threads;
-    if (levels_are_open(scene.solver)) scene.solver.gpu_levels = std::to_string(choice.levels.up) + "," + std::to_string(choice.levels.down);
+    if (levels_are_open(scene.solver))
+        scene.solver.gpu_levels = std::to_string(choice.levels.up) + "," + std::to_string(choice.levels.down);
     return scene;
 }
 

@@ -18,8 +18,8 @@ struct Choice {
 /// Whether the scene leaves something to be chosen: the backend, or levels on the GPU.
 bool leaves_open(Scene const&);
 
-/// For the scene's evaluations, by this rank's planner. `auto` is only ever one of the arrangements that give the same bits, so that it never
-/// changes a result.
+/// For the scene's evaluations, by this rank's planner. `auto` is only ever one of the arrangements that give the same bits, so that it
+/// never changes a result.
 Choice choose(Scene const&, Axes, Planner&, int ranks);
 /// The same with this machine's planner, which knows what is in the cache and keeps there what it learns; nothing is measured where there
 /// is nothing to choose from. The same on every rank; collective.

@@ -46,8 +46,8 @@ class Curve {
         auto const steps = static_cast<double>(bodies - near->first);
         for (std::size_t i = 0; i < N; ++i) {
             double const proportional = near->second[i] / static_cast<double>(near->first);
-            double const slope = near == far ? proportional
-                                             : (far->second[i] - near->second[i]) / static_cast<double>(far->first - near->first);
+            double const slope =
+                near == far ? proportional : (far->second[i] - near->second[i]) / static_cast<double>(far->first - near->first);
             seconds[i] = near->second[i] + steps * std::max(0.0, steps < 0 ? std::min(slope, proportional) : slope);
         }
         return seconds;

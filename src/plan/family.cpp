@@ -12,10 +12,10 @@ namespace {
 using scene::HandleKind;
 using scene::RandomJoint;
 
-constexpr std::pair<RandomJoint, char const*> joint_names[] = {
-    {RandomJoint::link, "link"},           {RandomJoint::planar, "planar"},       {RandomJoint::spherical, "spherical"},
-    {RandomJoint::universal, "universal"}, {RandomJoint::revolute, "revolute"},   {RandomJoint::prismatic, "prismatic"},
-    {RandomJoint::weld, "weld"},           {RandomJoint::mixed, "mixed"}};
+constexpr std::pair<RandomJoint, char const*> joint_names[] = {{RandomJoint::link, "link"},           {RandomJoint::planar, "planar"},
+                                                               {RandomJoint::spherical, "spherical"}, {RandomJoint::universal, "universal"},
+                                                               {RandomJoint::revolute, "revolute"},   {RandomJoint::prismatic, "prismatic"},
+                                                               {RandomJoint::weld, "weld"},           {RandomJoint::mixed, "mixed"}};
 
 bool any_joint(ChainSpec const& chain, std::initializer_list<JointType> types) {
     auto const among = [&](JointType type) { return std::find(types.begin(), types.end(), type) != types.end(); };

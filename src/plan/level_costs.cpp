@@ -102,7 +102,7 @@ LevelSeconds measure_level_costs(Family const& family, std::int64_t bodies, dca:
         dynamics->solve();
         return probe.least();
     }
-    auto const make = group.beads ? make_bead_dynamics : group.linked ? make_linked_dynamics : make_spherical_dynamics;
+    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
     auto const dynamics = make(group, scene, *executor, *communicator, std::move(owned));
     dynamics->update_configuration();
     dynamics->set_simple_forces();

@@ -8,9 +8,19 @@ namespace catena::plan {
 
 /// Of a chain of n bodies: `bodies_up`, `bodies_down` of its bodies; `merges_up`, `merges_down` of one level of n / 2 merges; then what it
 /// takes that so many items come to the place or leave it: n bodies' views, n segments up, n forces down, n eliminated joints.
-enum LevelCost : std::size_t { bodies_up, bodies_down, merges_up, merges_down, views, segments_up, forces_down, joints_across, level_costs };
-inline constexpr std::array<char const*, level_costs> level_cost_names{"bodies up",   "bodies down", "merges up",   "merges down",
-                                                                       "views",       "segments up", "forces down", "joints across"};
+enum LevelCost : std::size_t {
+    bodies_up,
+    bodies_down,
+    merges_up,
+    merges_down,
+    views,
+    segments_up,
+    forces_down,
+    joints_across,
+    level_costs
+};
+inline constexpr std::array<char const*, level_costs> level_cost_names{"bodies up", "bodies down", "merges up",   "merges down",
+                                                                       "views",     "segments up", "forces down", "joints across"};
 using LevelSeconds = std::array<double, level_costs>;
 using LevelCurve = Curve<level_costs>;
 

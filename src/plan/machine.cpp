@@ -13,7 +13,7 @@ namespace {
 
 /// Of the program that runs: another build is another file.
 std::string build() {
-    struct stat file {};
+    struct stat file{};
     if (::stat("/proc/self/exe", &file) != 0) return "unknown";
     return std::to_string(file.st_size) + " bytes of " + std::to_string(file.st_mtim.tv_sec) + "." + std::to_string(file.st_mtim.tv_nsec);
 }
@@ -49,8 +49,8 @@ Machine this_machine(Communicator const& communicator, int threads) {
     if (m.no_gpu.empty()) m.alike.push_back({Backend::cuda, m.threads});
     m.others.push_back({Backend::serial, 1});
     m.identity = processor_name() + ", " + std::to_string(cores) + " of " + std::to_string(processor_threads()) + " threads, " +
-                 std::to_string(communicator.ranks_on_host()) + " ranks; " + (m.no_gpu.empty() ? cuda::device_name() : "no GPU") + "; catena " +
-                 CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", " + build();
+                 std::to_string(communicator.ranks_on_host()) + " ranks; " + (m.no_gpu.empty() ? cuda::device_name() : "no GPU") +
+                 "; catena " + CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", " + build();
     m.measure = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
         Scene const scene = arranged(sample(family, bodies), arrangement);
         auto const alone = serial_communicator();

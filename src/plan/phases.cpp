@@ -41,7 +41,8 @@ PhaseSeconds time_once(ChainSystem& system) {
 
 std::string Arrangement::name() const {
     std::string const text = name_of(backend);
-    return threads == 1 && backend != Backend::openmp ? text : text + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    return threads == 1 && backend != Backend::openmp ? text
+                                                      : text + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
 }
 
 Scene arranged(Scene scene, Arrangement const& arrangement) {

@@ -70,8 +70,7 @@ std::vector<Prediction> Planner::predict(std::vector<Share> const& shares) {
 LevelPlan Planner::plan_levels(std::vector<Share> const& shares, Place gpu) {
     std::vector<LevelledShare> levelled;
     for (Share const& share : shares)
-        levelled.push_back(
-            {share, levels_of(share.family, Place::host, share.bodies), levels_of(share.family, gpu, share.bodies)});
+        levelled.push_back({share, levels_of(share.family, Place::host, share.bodies), levels_of(share.family, gpu, share.bodies)});
     return LevelPlan(levelled);
 }
 

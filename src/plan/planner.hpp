@@ -49,8 +49,8 @@ class Planner {
     std::int64_t largest_;
 };
 
-/// The quickest of those that give the same bits; an earlier one where the later ones gain next to nothing. Precondition: one of them can be
-/// used.
+/// The quickest of those that give the same bits; an earlier one where the later ones gain next to nothing. Precondition: one of them can
+/// be used.
 Prediction const& quickest(std::vector<Prediction> const&);
 
 }  // namespace catena::plan

@@ -195,7 +195,7 @@ struct SolverSpec {
     int threads = 0;                  // 0: cores / ranks on this host
     std::string gpu_levels = "auto";  // as GpuLevels: auto, all, "K", "UP,DOWN"
 
-    /// `auto`: all, in this version.
+    /// `auto`, where no planner has chosen: all.
     GpuLevels levels_on_gpu() const;
     /// Whether the tree is the chapter's, of pairs from the leaves on.
     bool pairwise() const { return backend == Backend::serial || backend == Backend::cuda_levels; }

@@ -64,11 +64,17 @@ TEST(CommandLine, ReportTakesSeveralScenesOrNone) {
     EXPECT_TRUE(std::get<ReportRequest>(parsed({"report"})).scenes.empty());
 }
 
+TEST(CommandLine, AMachineIsCalibratedWithoutAScene) {
+    EXPECT_TRUE(std::get<PlanRequest>(parsed({"plan", "--calibrate"})).calibrate);
+    EXPECT_TRUE(std::get<PlanRequest>(parsed({"plan", "s.yaml", "--explain", "--measure"})).explain);
+    EXPECT_EQ(refusal({"plan", "--measure"}), "no scene is named (command line): write catena plan SCENE");
+}
+
 TEST(CommandLine, ACommandsNameIsNoSecondCommand) { EXPECT_EQ(std::get<CheckRequest>(parsed({"check", "run"})).scene, "run"); }
 
 TEST(CommandLine, LaterCommandsAndOptionsSaySo) {
     for (std::vector<char const*> const& words :
-         std::vector<std::vector<char const*>>{{"plan", "s.yaml", "--explain"}, {"report", "--suite", "stability"}, {"bench", "peers"}})
+         std::vector<std::vector<char const*>>{{"report", "--suite", "stability"}, {"bench", "peers"}})
         EXPECT_TRUE(refusal(words).starts_with("not in this version: ")) << refusal(words);
 }
 

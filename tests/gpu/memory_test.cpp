@@ -22,7 +22,9 @@ TEST_F(GpuMemoryTaken, IsWhatWasCounted) {
             SCOPED_TRACE(family.name() + ", " + name_of(backend));
             Scene scene = plan::sample(family, 300000);
             scene.solver.backend = backend;
-            { ChainSystem(scene, family.axes, *alone).evaluate(); }  // what kernels and streams take is there from now on
+            {
+                ChainSystem(scene, family.axes, *alone).evaluate();
+            }  // what kernels and streams take is there from now on
             std::int64_t const before = cuda::free_memory(*alone);
             ChainSystem system(scene, family.axes, *alone);
             system.evaluate();

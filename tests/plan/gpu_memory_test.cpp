@@ -27,7 +27,8 @@ TEST(GpuMemory, GrowsWithBodiesAndDirections) {
         }
 }
 
-/// By hand, of one number for each of 1000 bodies: with two halo bodies 1001 places after the first, whole tiles of 512 and one line before.
+/// By hand, of one number for each of 1000 bodies: with two halo bodies 1001 places after the first, whole tiles of 512 and one line
+/// before.
 TEST(GpuMemory, TransientIsTheWidestField) {
     std::int64_t const columns = 32 + 1024;
     EXPECT_EQ(needed({scene::RandomJoint::revolute}, 1000, Backend::cuda).transient, 9 * columns * 8);  // axes

@@ -18,9 +18,7 @@ inline plan::Machine told_machine(bool gpu) {
     if (!gpu) m.no_gpu = "there is no GPU";
     m.measure = [](plan::Family const&, std::int64_t bodies, Arrangement const& on) {
         auto const n = static_cast<double>(bodies);
-        double const t = on.backend == Backend::cuda ? 1e-4 + 1e-8 * n
-                         : on.threads > 1            ? 2e-5 + 1e-6 * n / on.threads
-                                                     : 1e-6 * n;
+        double const t = on.backend == Backend::cuda ? 1e-4 + 1e-8 * n : on.threads > 1 ? 2e-5 + 1e-6 * n / on.threads : 1e-6 * n;
         return plan::PhaseSeconds{0.2 * t, 0.5 * t, 0.3 * t, t, t};
     };
     m.measure_levels = [](plan::Family const&, std::int64_t bodies, plan::Place place, int) {
