@@ -102,6 +102,7 @@ cluster_tests() {
     need_packages cluster-packages slurmctld slurmd slurm-client munge iproute2 procps || true
     check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 --steps 3000 || true
     check killed-at-writes "$python" tests/cluster/killed_at_write.py --stride 1 || true
+    for script in stopped_run full_disk many_ranks; do check "${script//_/-}" "$python" "tests/cluster/$script.py" || true; done
     check two-hosts as_root "$python" tests/cluster/two_hosts.py || true
     check slurm as_root tests/cluster/slurm.sh || true
     for name in killed-ranks killed-at-writes two-hosts slurm; do grep -hE '^(passed|FAILED|NOT RUN)' "$logs/$name.log" || true; done

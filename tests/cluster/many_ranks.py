@@ -50,8 +50,8 @@ def check(options, integrator):
 
 
 def main():
-    options = arguments(__doc__, ranks=64)
-    good = [check(options, integrator) for integrator in SCENES]
+    options = arguments(__doc__, ranks=64, scenes=len(SCENES))
+    good = [check(options, integrator) for integrator in list(SCENES)[:options.scenes]]
     sys.exit(0 if all(good) else 1)
 
 

@@ -12,7 +12,7 @@ TEST(Errors, TheCommandLine) {
     expect_refused(catena({}), 2, "no command is named");
     expect_refused(catena({"slove", "x.yaml"}), 2, "did you mean `solve`?");
     expect_refused(catena({"solve", input("arm.yaml"), "--bakend", "serial"}), 2, "did you mean `--backend`?");
-    expect_refused(catena({"plan", input("arm.yaml"), "--ranks"}), 2, "not in this version: --ranks");
+    expect_refused(catena({"plan", input("arm.yaml"), "--ranks", "4"}), 2, "--ranks without --network");
     expect_refused(catena({"bench", "peers"}), 2, "not in this version: catena bench peers");
 }
 
