@@ -32,7 +32,7 @@ def to_all(number):
     return lambda _, ranks: [os.kill(rank, number) for rank in ranks]
 
 
-# Of SIGTERM and SIGINT Open MPI's launcher makes a status of its own.
+# Of SIGTERM and SIGINT Open MPI's launcher makes a status of its own, and lets the ranks run for some seconds first.
 CASES = {"SIGUSR1 to mpirun": (3, to_launcher(signal.SIGUSR1), (STOPPED,)),
          "SIGUSR1 to the last rank": (3, to_rank(signal.SIGUSR1, -1), (STOPPED,)),
          "SIGTERM to every rank": (3, to_all(signal.SIGTERM), (STOPPED,)),
@@ -58,7 +58,7 @@ def check(runs, case):
 
 
 def main():
-    options = arguments(__doc__, steps=4000, cases=len(CASES))
+    options = arguments(__doc__, steps=20000, cases=len(CASES))
     with Runs(options, settings=[f"dynamics.steps={options.steps}", "output.every=101", "output.checkpoint_every=1000"]) as runs:
         runs.complete(1, "whole")
         good = [check(runs, case) for case in list(CASES)[:options.cases]]
