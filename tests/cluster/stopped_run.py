@@ -33,9 +33,9 @@ def to_all(number):
 
 
 # Of SIGTERM and SIGINT Open MPI's launcher makes a status of its own, and lets the ranks run for some seconds first.
-CASES = {"SIGUSR1 to mpirun": (3, to_launcher(signal.SIGUSR1), (STOPPED,)),
+CASES = {"SIGTERM to every rank": (3, to_all(signal.SIGTERM), (STOPPED,)),
+         "SIGUSR1 to mpirun": (3, to_launcher(signal.SIGUSR1), (STOPPED,)),
          "SIGUSR1 to the last rank": (3, to_rank(signal.SIGUSR1, -1), (STOPPED,)),
-         "SIGTERM to every rank": (3, to_all(signal.SIGTERM), (STOPPED,)),
          "SIGINT to mpirun": (2, to_launcher(signal.SIGINT), (1, STOPPED)),
          "SIGTERM to mpirun": (2, to_launcher(signal.SIGTERM), (1, STOPPED)),
          "SIGINT to a single rank": (1, to_rank(signal.SIGINT, 0), (STOPPED,))}
