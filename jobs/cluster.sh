@@ -16,17 +16,19 @@ stopped=3  # how catena says that a signal stopped it and that its checkpoint is
 # run_catena SCENE FOLDER OPTION...: `catena run` over the job's ranks, from the folder's checkpoint where there is one. SIGUSR1 and SIGTERM
 # are handed on as SIGUSR1, at which catena writes a checkpoint. Returns catena's exit status.
 run_catena() {
-    local scene=$1 folder=$2 words launcher status=0
+    local scene=$1 folder=$2 words launcher='' status=0
     shift 2
+    trap '[ -z "$launcher" ] || kill -USR1 "$launcher" 2>/dev/null' USR1 TERM
     words=(run "$scene" --output "$folder" --threads "$threads")
     if [ -e "$folder/checkpoint.h5" ]; then
         words+=(--restart "$folder/checkpoint.h5")
+    elif [ -e "$folder/checkpoint.previous.h5" ]; then
+        words+=(--restart "$folder/checkpoint.previous.h5")
     elif [ "${SLURM_RESTART_COUNT:-0}" -gt 0 ]; then
         words+=(--overwrite)  # the run before ended before its first checkpoint
     fi
     "${mpirun[@]}" "$catena" "${words[@]}" "$@" &
     launcher=$!
-    trap 'kill -USR1 "$launcher" 2>/dev/null' USR1 TERM
     while kill -0 "$launcher" 2>/dev/null; do wait "$launcher" || true; done  # a signal ends the waiting, not the run
     wait "$launcher" || status=$?
     trap - USR1 TERM

@@ -96,6 +96,7 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
 }  // namespace
 
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
+    StopSignals const signals;
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
     plan::Choice const choice = plan::choose(given, axes, communicator);
     Scene const scene = with_choice(std::move(given), choice);
@@ -106,7 +107,6 @@ Outcome run_scene(Scene given, Communicator const& communicator, RunRequest cons
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;
-    StopSignals const signals;
     options.stop = StopSignals::noted;
     nlohmann::json const summary = run_simulation(scene, communicator, options);
     Outcome outcome;

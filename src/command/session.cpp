@@ -26,10 +26,13 @@ void say_error(std::string line) {
     std::fprintf(stderr, "catena: %s\n", line.c_str());
 }
 
+/// Longer than launchers let the other ranks live once one has given up (jobs/common.sh).
+constexpr std::chrono::seconds patience(4);
+
 /// With several ranks, an error that others may not know of ends all of them; rank 0, which may have met the same, has the first word.
 int fail(Communicator const& communicator, std::string const& line) {
     bool const alone = communicator.size() == 1;
-    if (!alone && communicator.rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    if (!alone && communicator.rank() != 0) std::this_thread::sleep_for(patience);
     say_error(line);
     if (!alone) communicator.abort(1);
     return 1;

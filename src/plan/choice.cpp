@@ -26,12 +26,13 @@ std::string text_of(Prediction const& p) {
                               : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
 }
 
-/// A GPU that would be chosen must hold the scene.
+/// A GPU that would be chosen must hold the scene, with room for what a sample chain does not show (lists of short chains, OpenMM).
 void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<Share> const& shares, Machine const& machine) {
     Arrangement const best = quickest(predictions).arrangement;
     if (!uses_gpu(best.backend)) return;
-    double needed = 0;
-    for (Share const& share : shares) needed += machine.gpu_memory(share.family, share.bodies);
+    double constexpr reserve = 1 << 28, margin = 1.25;
+    double needed = reserve;
+    for (Share const& share : shares) needed += margin * machine.gpu_memory(share.family, share.bodies);
     for (Prediction& p : predictions)
         if (p.arrangement == best)
             p.unusable = cuda::too_little_memory(static_cast<std::int64_t>(needed), static_cast<std::int64_t>(machine.free_gpu_memory()));

@@ -62,9 +62,7 @@ Machine this_machine(Communicator const& communicator, int threads) {
         return measure_level_costs(family, bodies, place == Place::gpu ? cuda::make_levels : dca::host_levels(*executor));
     };
     m.gpu_memory = gpu_memory_of;
-    m.free_gpu_memory = [ranks = communicator.ranks_on_host()] {
-        return static_cast<double>(cuda::free_memory(*serial_communicator())) / ranks;
-    };
+    m.free_gpu_memory = [&communicator] { return static_cast<double>(cuda::free_memory(communicator)); };
     return m;
 }
 
