@@ -220,7 +220,10 @@ class RigidDynamics final : public AbsoluteDynamics {
         return held_tips(group_,
                          [&](std::int64_t k) { return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k]; });
     }
-    ConfigurationView configuration() const { return {direction_.view(), orientation_.view(), tip_direction_.view(), {}, {}}; }
+    ConfigurationView configuration() const {
+        if (!group_.linked) return {{}, orientation_.view(), {}, {}, {}};
+        return {direction_.view(), orientation_.view(), group_.has_tips() ? ConstView<3>(tip_direction_.view()) : ConstView<3>{}, {}, {}};
+    }
     LoadsView loads() { return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)}; }
     /// The solver adds what follows from angular velocities.
     LoadsView loads_at_once() {

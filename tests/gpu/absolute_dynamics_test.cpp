@@ -53,7 +53,8 @@ Scene carrying_bodies() {
 }
 Scene free_beads() {
     return scene_from(
-        "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: {beads: 100, length: 0.38}}}]");
+        "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: {beads: 100, length: 0.38}}}]\n"
+        "dynamics: {integrator: rattle, step: 0.001, temperature: 300}");
 }
 Scene held_beads() {
     return scene_from(
@@ -95,8 +96,10 @@ class GpuAbsolute : public ::testing::TestWithParam<AbsoluteScene> {
         operation(*device_);
         for (auto const& [host, device] :
              {std::pair{host_->state(), device_->state()}, {host_->observed_state(), device_->observed_state()}})
-            for (std::size_t i = 0; i < host.size(); ++i)
+            for (std::size_t i = 0; i < host.size(); ++i) {
                 EXPECT_TRUE(same_bits(host[i].values, device[i].values)) << name << ": " << host[i].name;
+                for (double const v : host[i].values) ASSERT_TRUE(std::isfinite(v)) << name << ": " << host[i].name;
+            }
         EXPECT_EQ(host_->constraint_error(), device_->constraint_error()) << name;
     }
     std::unique_ptr<Communicator> communicator_ = serial_communicator();
@@ -121,15 +124,15 @@ TEST_P(GpuAbsolute, EachOperationLeavesTheBitsOfTheHost) {
             for (std::int64_t k = 0; k < force.size; ++k) force.store(k, plus_scaled(force.load(k), -0.5, position.load(k)));
             d.take_bead_forces();
         });
-        both("kick", [](AbsoluteDynamics& d) { d.kick(0.005); });
+        both("kick", [](AbsoluteDynamics& d) { d.kick(0.0005); });
         both("thermostat", [&](AbsoluteDynamics& d) { d.thermostat(thermostat_of(0.9, 2.5, 3), step); });
-        both("observation", [](AbsoluteDynamics& d) { d.observe(0.002); });
-        both("drift", [](AbsoluteDynamics& d) { d.drift(0.01, 0); });
-        both("drift and closing", [](AbsoluteDynamics& d) { d.drift(0.01, 1); });
-        both("drift, closed", [](AbsoluteDynamics& d) { d.drift(0.01, 4); });
+        both("observation", [](AbsoluteDynamics& d) { d.observe(0.0002); });
+        both("drift", [](AbsoluteDynamics& d) { d.drift(0.001, 0); });
+        both("drift and closing", [](AbsoluteDynamics& d) { d.drift(0.001, 1); });
+        both("drift, closed", [](AbsoluteDynamics& d) { d.drift(0.001, 4); });
     }
     ConstrainedStep step;
-    step.kick = step.drift = 0.01;
+    step.kick = step.drift = 0.001;
     step.sweeps = 4;
     step.thermostat = thermostat_of(0.9, 2.5, 3);
     for (; step.number < 4; ++step.number) {
