@@ -3,6 +3,7 @@
 
 #include "cuda/memory.hpp"
 #include "dca/host_space.hpp"
+#include "dca/parts.hpp"
 #include "dca/stages.hpp"
 
 namespace catena::cuda {
@@ -153,16 +154,15 @@ class CountingSpace : public HostAccess {
     class Blocks {
       public:
         explicit Blocks(ChainGroup const& group) {
-            dca::BlockPlan const plan = dca::plan_blocks(group.schedule, last_bodies(group.tips), 1);
-            std::size_t merges = 0;
-            for (auto const& level : group.schedule.levels) merges += level.size();
-            Count::add(static_cast<std::int64_t>(group.schedule.runs.size() * sizeof(dca::Run)));
-            Count::add(static_cast<std::int64_t>(merges * sizeof(dca::Merge)));
-            Count::add(static_cast<std::int64_t>(plan.roots.size() * sizeof(dca::Root)));
-            for (auto const* ranges : {&plan.stage.run, &plan.stage.merge, &plan.stage.root, &plan.body, &plan.tip})
-                Count::add(static_cast<std::int64_t>(ranges->size() * sizeof(dca::Range)));
+            dca::TeamPlan const plan = dca::plan_teams(group.pieces, 64);
+            Count::add(static_cast<std::int64_t>(plan.place.size() * sizeof(dca::PartPlace)));
+            Count::add(static_cast<std::int64_t>(plan.levels.size() * sizeof(std::int32_t)));
         }
     };
+    template <int K>
+    static constexpr bool has_blocks = K == 1;
+    template <int K>
+    static constexpr bool has_teams = has_blocks<K>;
     bool pays_by_blocks(ChainGroup const&) const { return true; }
     template <class Action>
     void each_block(Blocks const&, Action const&) const {}

@@ -1,93 +1,141 @@
-// A block of whole chains on a GPU: its threads do all that a step asks for on them, in one launch.
+// Whole chains that a block of threads carries through a step in registers, in one launch: the Team of dca/parts.hpp on a GPU.
 #pragma once
 
 #include <algorithm>
 
 #include "cuda/kernels.cuh"
+#include "dca/parts.hpp"
 
 namespace catena::cuda {
 
-/// As HostBlock, which says what its members promise. All threads of a block must come to each of them.
-struct DeviceBlock {
-    kernels::DeviceStage stage;
-    dca::Range const *body = nullptr, *tip = nullptr;
-
-    /// Neighbouring threads at neighbouring places.
-    template <class Action>
-    __device__ void each_body(Action const& action) const {
-        dca::Range const own = body[blockIdx.x];
-        auto constexpr steps = static_cast<std::uint32_t>(gpu_order::steps);
-        std::int64_t const first = own.begin / steps;
-        auto const rows = static_cast<std::uint32_t>((own.end + steps - 1) / steps - first);
-        for (std::uint32_t i = threadIdx.x; i < rows * steps; i += blockDim.x) {
-            std::int64_t const k = (first + i % rows) * steps + i / rows;
-            if (own.begin <= k && k < own.end) action(k);
-        }
-        __syncthreads();
-    }
-    template <class Action>
-    __device__ void each_tip(Action const& action) const {
-        dca::Range const own = tip[blockIdx.x];
-        for (std::int64_t i = own.begin + threadIdx.x; i < own.end; i += blockDim.x) action(i);
-        __syncthreads();
-    }
-    template <class Sweep>
-    __device__ void climb(Sweep const& sweep) const {
-        kernels::climb_stage(stage, sweep);
-        __syncthreads();
-    }
-    template <class Sweep>
-    __device__ void climb_and_descend(Sweep const& sweep) const {
-        kernels::climb_stage(stage, sweep);
-        __syncthreads();
-        kernels::descend_stage(stage, sweep);
-        __syncthreads();
-    }
+struct DeviceTeams {
+    dca::PartPlace const* place = nullptr;
+    std::int32_t const* levels = nullptr;  // of every block
 };
 
 namespace kernels {
 
-constexpr int threads_of_block = 256;
+constexpr int most_threads_of_team = 256;  // so many find registers for their beads
+
+/// In a block's shared memory: a segment and a force a run, and two places a thread.
+template <int K>
+class DeviceTeam {
+    using Largest = dca::SegmentMatrix<double, K>;
+    static constexpr int ends = 6;
+
+  public:
+    static constexpr std::size_t shared_bytes(int of_threads) {
+        auto const slots = static_cast<std::size_t>(of_threads / dca::parts_of_run);
+        return sizeof(Largest) * slots + sizeof(double) * (K * slots + ends * static_cast<std::size_t>(of_threads));
+    }
+    __device__ explicit DeviceTeam(DeviceTeams const& teams) : teams_(teams), levels_(teams.levels[blockIdx.x]) {}
+    __device__ dca::PartPlace place() const { return teams_.place[thread()]; }
+    __device__ int part() const { return static_cast<int>(threadIdx.x) % dca::parts_of_run; }
+    __device__ int slot() const { return static_cast<int>(threadIdx.x) / dca::parts_of_run; }
+    __device__ int levels() const { return levels_; }
+    __device__ void sync() const { __syncthreads(); }
+
+    template <class T>
+    __device__ T from_inboard(T const& value) const {
+        return exchanged(value, [](double v) { return __shfl_up_sync(0xffffffffu, v, 1, dca::parts_of_run); });
+    }
+    template <class T>
+    __device__ T from_outboard(T const& value) const {
+        return exchanged(value, [](double v) { return __shfl_down_sync(0xffffffffu, v, 1, dca::parts_of_run); });
+    }
+    template <class Segment>
+    __device__ void put(int slot, Segment const& segment) const {
+        store(shared_numbers, slots(), slot, segment);
+    }
+    template <class Segment>
+    __device__ Segment get(int slot) const {
+        return load<Segment>(shared_numbers, slots(), slot);
+    }
+    __device__ void put_force(int slot, Vector<double, K> const& force) const { store(forces(), slots(), slot, force); }
+    template <int>
+    __device__ Vector<double, K> force(int slot) const {
+        return load<Vector<double, K>>(forces(), slots(), slot);
+    }
+    __device__ Vec3 from_before(Vec3 const& value) const { return passed(last_places(), value, threadIdx.x == 0 ? 0 : -1); }
+    __device__ Vec3 from_after(Vec3 const& value) const { return passed(first_places(), value, threadIdx.x + 1 == blockDim.x ? 0 : 1); }
+
+  private:
+    template <class T>
+    using Numbers = Vector<double, static_cast<int>(sizeof(T) / sizeof(double))>;
+    template <class T, class Exchange>
+    __device__ static T exchanged(T const& value, Exchange const& exchange) {
+        auto numbers = __builtin_bit_cast(Numbers<T>, value);
+        CATENA_UNROLL
+        for (double& v : numbers.data) v = exchange(v);
+        return __builtin_bit_cast(T, numbers);
+    }
+    /// Number after number, so that neighbours do not meet in a bank.
+    template <class T>
+    __device__ static void store(double* origin, int pitch, int at, T const& value) {
+        auto const numbers = __builtin_bit_cast(Numbers<T>, value);
+        CATENA_UNROLL
+        for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n) origin[n * pitch + at] = numbers[n];
+    }
+    template <class T>
+    __device__ static T load(double const* origin, int pitch, int at) {
+        Numbers<T> numbers;
+        CATENA_UNROLL
+        for (int n = 0; n < static_cast<int>(sizeof(T) / sizeof(double)); ++n) numbers[n] = origin[n * pitch + at];
+        return __builtin_bit_cast(T, numbers);
+    }
+    __device__ Vec3 passed(double* places, Vec3 const& value, int from) const {
+        auto const pitch = static_cast<int>(blockDim.x), own = static_cast<int>(threadIdx.x);
+        store(places, pitch, own, value);
+        __syncthreads();
+        return load<Vec3>(places, pitch, own + from);
+    }
+    __device__ static int slots() { return static_cast<int>(blockDim.x) / dca::parts_of_run; }
+    __device__ static double* forces() { return shared_numbers + sizeof(Largest) / sizeof(double) * slots(); }
+    __device__ static double* last_places() { return forces() + K * slots(); }
+    __device__ static double* first_places() { return last_places() + 3 * blockDim.x; }
+    DeviceTeams teams_;
+    int levels_;
+};
+
 template <class Action>
-__global__ void __launch_bounds__(threads_of_block) each_block(DeviceBlock block, Action action) {
-    action(block);
+__global__ void __launch_bounds__(most_threads_of_team) each_team(DeviceTeams teams, Action action) {
+    action(DeviceTeam<Action::K>(teams));
 }
 
 }  // namespace kernels
 
 class DeviceBlocks {
   public:
-    /// Longer chains are better dealt out to many blocks, sweep by sweep.
-    static constexpr std::int64_t longest_chain = 4096;
+    static constexpr std::int64_t most_runs = kernels::most_threads_of_team / dca::parts_of_run;
+    static constexpr std::int64_t longest_chain = most_runs * dca::longest_run;
 
-    explicit DeviceBlocks(ChainGroup const& group) : runs_(group.schedule.runs) {
-        dca::BlockPlan const plan = dca::plan_blocks(group.schedule, last_bodies(group.tips), width(group.schedule));
-        std::vector<dca::Merge> all;
-        for (auto const& level : group.schedule.levels) all.insert(all.end(), level.begin(), level.end());
-        merges_ = Buffer<dca::Merge>(all);
-        roots_ = Buffer<dca::Root>(plan.roots);
-        for (auto const* ranges : {&plan.stage.run, &plan.stage.merge, &plan.stage.root, &plan.body, &plan.tip})
-            ranges_.emplace_back(*ranges);
-        block_ = {{plan.stage.levels, ranges_[0].data(), ranges_[1].data(), ranges_[2].data(), runs_.data(), merges_.data(), roots_.data()},
-                  ranges_[3].data(),
-                  ranges_[4].data()};
-        count_ = static_cast<unsigned>(plan.blocks());
+    explicit DeviceBlocks(ChainGroup const& group) {
+        dca::TeamPlan const plan = dca::plan_teams(group.pieces, runs_of_block(group));
+        threads_ = plan.threads;
+        count_ = static_cast<unsigned>(plan.teams());
+        place_ = Buffer<dca::PartPlace>(plan.place);
+        levels_ = Buffer<std::int32_t>(plan.levels);
     }
     unsigned count() const { return count_; }
-    DeviceBlock const& block() const { return block_; }
+    int threads() const { return threads_; }
+    DeviceTeams teams() const { return {place_.data(), levels_.data()}; }
 
   private:
-    /// Runs of a block: as many as its threads walk at once, but first every multiprocessor gets some.
-    static std::int64_t width(dca::Schedule const& schedule) {
-        constexpr std::int64_t blocks = 256, at_once = kernels::threads_of_block / dca::parts_of_run;
-        return std::clamp<std::int64_t>(std::ssize(schedule.runs) / blocks, 1, at_once);
+    /// One wave of blocks where that is enough: as many registers as they need let no second one be on a multiprocessor.
+    static std::int64_t runs_of_block(ChainGroup const& group) {
+        int device = 0, multiprocessors = 0;
+        check(cudaGetDevice(&device), "say which it is");
+        check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device), "say how large it is");
+        std::int64_t longest = 1;
+        for (dca::Piece const& piece : group.pieces)
+            longest = std::max(longest, (piece.count + dca::longest_run - 1) / dca::longest_run);
+        std::int64_t const chains = (std::ssize(group.schedule.runs) - 1) / (longest * multiprocessors) + 1;
+        return std::min(chains * longest, most_runs);
     }
-    Buffer<dca::Run> runs_;
-    Buffer<dca::Merge> merges_;
-    Buffer<dca::Root> roots_;
-    std::vector<Buffer<dca::Range>> ranges_;
-    DeviceBlock block_;
+    int threads_ = 0;
     unsigned count_ = 0;
+    Buffer<dca::PartPlace> place_;
+    Buffer<std::int32_t> levels_;
 };
 
 }  // namespace catena::cuda

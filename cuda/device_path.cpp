@@ -172,6 +172,7 @@ class CudaDevicePath final : public DevicePath {
         for (DeviceBeads* group : beads) check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
         OpenMmArrays const arrays = openmm_->arrays();
         particles_.bead = own_->bead.data();
+        ++particles_.order;
         particles_.double_position = arrays.double_precision ? static_cast<double*>(arrays.position) : nullptr;
         particles_.position = arrays.double_precision ? nullptr : static_cast<float*>(arrays.position);
         particles_.correction = static_cast<float*>(arrays.correction);

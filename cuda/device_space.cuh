@@ -97,14 +97,21 @@ class DeviceSpace {
     };
 
     using Blocks = DeviceBlocks;
+    template <int K>
+    static constexpr bool has_blocks = K == 1;
+    template <int K>
+    static constexpr bool has_teams = has_blocks<K>;
+    /// Chains that find their place in one block's registers.
     bool pays_by_blocks(ChainGroup const& group) const {
-        return std::all_of(group.pieces.begin(), group.pieces.end(),
-                           [](dca::Piece const& piece) { return piece.count <= DeviceBlocks::longest_chain; });
+        return !group.has_tips() && std::all_of(group.pieces.begin(), group.pieces.end(),
+                                                [](dca::Piece const& piece) { return piece.count <= DeviceBlocks::longest_chain; });
     }
     template <class Action>
     void each_block(Blocks const& blocks, Action const& action) const {
         if (blocks.count() == 0) return;
-        launch<typename Action::Segment>(kernels::each_block<Action>, blocks.count(), kernels::threads_of_block, blocks.block(), action);
+        kernels::each_team<<<blocks.count(), static_cast<unsigned>(blocks.threads()),
+                             kernels::DeviceTeam<Action::K>::shared_bytes(blocks.threads()), stream()>>>(blocks.teams(), action);
+        started();
     }
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {

@@ -15,26 +15,19 @@ using CosSin = BasicCosSin<double>;
 
 /// By the quarter turns that were taken from the angle.
 CATENA_HD CosSin turned_back(int quarters, double c, double s) {
-    switch (quarters & 3) {
-        case 0:
-            return {c, s};
-        case 1:
-            return {-s, c};
-        case 2:
-            return {-c, -s};
-        default:
-            return {s, -c};
-    }
+    bool const odd = (quarters & 1) != 0;
+    double const along = odd ? s : c, across = odd ? c : s;
+    return {((quarters + 1) & 2) != 0 ? -along : along, (quarters & 2) != 0 ? -across : across};
 }
 
 /// Of u in (0, 1]: twice the series of atanh, of u scaled to within [sqrt(1/2), sqrt(2)).
 CATENA_HD double log_of_uniform(double u) {
-    int exponent = 0;
-    double m = std::frexp(u, &exponent);
-    if (m < 0.70710678118654752) {
-        m *= 2;
-        --exponent;
-    }
+    auto const bits = __builtin_bit_cast(std::uint64_t, u);
+    int exponent = static_cast<int>(bits >> 52) - 1022;
+    double m = __builtin_bit_cast(double, (bits & 0x000fffffffffffffULL) | 0x3fe0000000000000ULL);  // in [1/2, 1)
+    bool const small = m < 0.70710678118654752;
+    m = small ? 2 * m : m;
+    exponent = small ? exponent - 1 : exponent;
     double const s = (m - 1) / (m + 1), z = s * s;
     double series = 1.0 / 21;
     CATENA_UNROLL

@@ -6,12 +6,14 @@
 
 #if defined(__CUDACC__)
 #define CATENA_HD __host__ __device__ inline
-#define CATENA_EITHER_SIDE _Pragma("nv_exec_check_disable")  // before a template that calls what its arguments have on one side alone
-#define CATENA_LAMBDA __device__                             // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
+#define CATENA_HD_IN_PLACE __host__ __device__ __forceinline__  // never called: arrays that it is given may stay in registers
+#define CATENA_EITHER_SIDE _Pragma("nv_exec_check_disable")     // before a template that calls what its arguments have on one side alone
+#define CATENA_LAMBDA __device__                                // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
 #define CATENA_UNROLL _Pragma("unroll")
 #define CATENA_NO_UNROLL _Pragma("unroll 1")
 #else
 #define CATENA_HD inline
+#define CATENA_HD_IN_PLACE inline
 #define CATENA_EITHER_SIDE
 #define CATENA_LAMBDA
 #define CATENA_UNROLL _Pragma("GCC unroll 8")

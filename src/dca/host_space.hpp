@@ -80,6 +80,12 @@ class HostSpace : public HostAccess {
     /// Blocks of whole chains that the group has on this rank. A block has loops over its own bodies and tips, and sweeps over its own
     /// chains (host_blocks.hpp).
     using Blocks = HostBlocks;
+    /// Whether there are any for a group whose handles carry K directions.
+    template <int K>
+    static constexpr bool has_blocks = true;
+    /// Whether blocks are teams of threads (parts.hpp).
+    template <int K>
+    static constexpr bool has_teams = false;
     /// Whether it pays to let each block do its whole work alone.
     bool pays_by_blocks(ChainGroup const& group) const { return std::ssize(group.pieces) >= std::max(2, threads()); }
     /// action(block) for every block; they may run side by side.

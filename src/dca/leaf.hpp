@@ -156,5 +156,18 @@ template <class Real>
 CATENA_HD Vector<Real, 3> along_link(Vector<Real, 3> const& u, Vector<Real, 3> const& a, Vector<Real, 3>) {
     return transposed_times(triple(u), a);
 }
+/// Of a bead between the links u1 and u2 that `force` acts on, the links' own forces apart.
+template <class Real, int K>
+CATENA_HD SegmentBias<Real, K> bead_bias(Real inverse_mass, Vector<Real, 3> const& force, Vector<Real, 3> const& u1,
+                                         Vector<Real, 3> const& u2, Vector<Real, K> kind) {
+    Vector<Real, 3> const a = inverse_mass * force;
+    return {along_link(u1, a, kind), along_link(u2, a, kind)};
+}
+/// Of a bead that its links pull with `inboard` along u1 and `outboard` against u2.
+template <class Real>
+CATENA_HD Vector<Real, 3> bead_acceleration(Real inverse_mass, Vector<Real, 3> const& force, Real inboard, Vector<Real, 3> const& u1,
+                                            Real outboard, Vector<Real, 3> const& u2) {
+    return inverse_mass * plus_scaled(plus_scaled(force, inboard, u1), -outboard, u2);
+}
 
 }  // namespace catena::dca

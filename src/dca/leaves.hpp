@@ -53,19 +53,16 @@ class BeadLeaf {
     }
     CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
         SegmentBias<double, K> b{Vector<double, K>::zero(), Vector<double, K>::zero()};
-        if (loads.force.origin) {
-            Vec3 const a = group_.inverse_mass.at(k, 0) * loads.force.load(k);
-            b = {along_link(direction_.load(k), a, Vector<double, K>{}), along_link(outboard(k), a, Vector<double, K>{})};
-        }
+        if (loads.force.origin)
+            b = bead_bias(group_.inverse_mass.at(k, 0), loads.force.load(k), direction_.load(k), outboard(k), Vector<double, K>{});
         add_joint_biases(group_, loads, k, b);
         return b;
     }
     CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force,
                               Vector<double, K> const& outboard_force, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
-        Vec3 const f =
-            plus_scaled(plus_scaled(load_or_zero(loads.force, k), inboard_force[0], direction_.load(k)), -outboard_force[0], outboard(k));
-        out.acceleration.store(k, group_.inverse_mass.at(k, 0) * f);
+        out.acceleration.store(k, bead_acceleration(group_.inverse_mass.at(k, 0), load_or_zero(loads.force, k), inboard_force[0],
+                                                    direction_.load(k), outboard_force[0], outboard(k)));
     }
 
   private:

@@ -48,17 +48,16 @@ struct MovingBeads {
     }
 
     CATENA_HD BiasedSegment<K> segment(Body const& body) const {
-        Vec3 const a = body.inverse_mass * body.force, &u1 = body.inboard.direction, &u2 = body.outboard.direction;
+        Vec3 const &u1 = body.inboard.direction, &u2 = body.outboard.direction;
         BiasedSegment<K> s{bead_matrix(body.inverse_mass, u1, u2, Vector<double, K>{}),
-                           {along_link(u1, a, Vector<double, K>{}), along_link(u2, a, Vector<double, K>{})}};
+                           bead_bias(body.inverse_mass, body.force, u1, u2, Vector<double, K>{})};
         s.bias.b1[0] = s.bias.b1[0] + body.inboard.swing;
         return s;
     }
     CATENA_HD void accelerate(Body const& body, Vector<double, K> const& inboard_force, Vector<double, K> const& outboard_force,
                               AccelerationsView const& out) const {
-        Vec3 const f =
-            plus_scaled(plus_scaled(body.force, inboard_force[0], body.inboard.direction), -outboard_force[0], body.outboard.direction);
-        out.acceleration.store(body.k, body.inverse_mass * f);
+        out.acceleration.store(body.k, bead_acceleration(body.inverse_mass, body.force, inboard_force[0], body.inboard.direction,
+                                                         outboard_force[0], body.outboard.direction));
     }
 
   private:

@@ -7,6 +7,7 @@
 
 #include "dca/evaluation.hpp"
 #include "dca/host_space.hpp"
+#include "dca/parts.hpp"
 
 namespace catena::dca {
 
@@ -42,11 +43,13 @@ class TreeSolver final : public ChainSolver {
     void assemble_matrices(ConfigurationView const& configuration) override {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
-        MatrixSweep<Leaf> const sweep{sweeps_};
-        space_.climb(tree_, sweep);
-        if (!schedule_.shared.empty()) {
-            gather_shared(matrices_);
-            space_.climb(top_, sweep);
+        if (!assemble_by_teams()) {
+            MatrixSweep<Leaf> const sweep{sweeps_};
+            space_.climb(tree_, sweep);
+            if (!schedule_.shared.empty()) {
+                gather_shared(matrices_);
+                space_.climb(top_, sweep);
+            }
         }
         ++report_.matrix_sweeps;
         if (Space::answers_at_once) check();
@@ -75,9 +78,8 @@ class TreeSolver final : public ChainSolver {
     /// action(sweeps)(block) for every block of whole chains, which does so many sweeps of each kind. Precondition: carries().
     template <class Action>
     void carry(ConfigurationView const& configuration, int matrix_sweeps, int bias_sweeps, Action const& action) {
-        if (!blocks_) blocks_.emplace(group_);
         sweeps_.leaf.set(configuration);
-        space_.each_block(*blocks_, action(sweeps_));
+        space_.each_block(blocks(), action(sweeps_));
         report_.matrix_sweeps += matrix_sweeps;
         report_.bias_sweeps += bias_sweeps;
         if (Space::answers_at_once) check();
@@ -102,6 +104,20 @@ class TreeSolver final : public ChainSolver {
 
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
+
+    typename Space::Blocks const& blocks() {
+        if (!blocks_) blocks_.emplace(group_);
+        return *blocks_;
+    }
+    /// Whether chains short enough for a team of threads each were left to such.
+    bool assemble_by_teams() {
+        if constexpr (Space::template has_teams<K>)
+            if (carries()) {
+                space_.each_block(blocks(), MatricesOfChains<Leaf>{sweeps_});
+                return true;
+            }
+        return false;
+    }
 
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);

@@ -30,6 +30,7 @@ struct DeviceParticles {
     /// Becomes the index of a bead whose position or force is no number OpenMM can hold; -1: there was none.
     std::int64_t* trouble = nullptr;
     std::int64_t first = 0;  // index of bead 0 among all that trouble can name
+    std::int64_t order = 0;  // of the particles: which one, counted; in another one beads stand at other places
 
     /// The same for beads that follow others.
     DeviceParticles from(std::int64_t bead_index) const {
@@ -77,8 +78,9 @@ class DeviceBeads {
     virtual std::int64_t count() const = 0;
     /// cudaStream_t; what is asked for below runs there.
     virtual void* stream() const = 0;
+    /// The particles are where the beads are, once the stream has come here.
     virtual void put_positions(DeviceParticles const&) = 0;
-    /// Adds to the forces since set_simple_forces().
+    /// Adds to the forces since set_simple_forces(): what the particles feel when the stream comes to where forces are needed.
     virtual void add_forces(DeviceParticles const&) = 0;
     /// On the host, W; waits for them.
     virtual ConstView<3> host_positions() = 0;

@@ -5,67 +5,96 @@
 
 #include "dca/philox.hpp"
 #include "dca/solver.hpp"
+#include "integrate/bead_forces.hpp"
 #include "integrate/link_geometry.hpp"
 
 namespace catena {
 
-struct BeadChains {
+/// Where the beads of a rank stand in their chains.
+struct BeadPlaces {
     std::int64_t size = 0;
     std::uint8_t const *is_first = nullptr, *has_link = nullptr;  // of its chain; an inboard link
-    ConstView<1> mass, inverse_mass, length;
     LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
-    HeldTip const* tip = nullptr;
-    View<3> position, velocity, observed, force, momentum, change, direction, tip_direction;
-    DirectionsView bias, tip_bias;  // the link's direction comes first; full handles' other directions stay 0
 
-    CATENA_HD LocalPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
+    CATENA_HD_IN_PLACE LocalPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
     /// k = size: the first bead of the next rank, where the chain goes on there.
-    CATENA_HD bool linked(std::int64_t k) const { return k >= size || has_link[k] != 0; }
-    CATENA_HD bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
-    CATENA_HD Vec3 link(std::int64_t k) const { return position.load(k) - (to_ground(k) ? piece_of(k).anchor : position.load(k - 1)); }
-    CATENA_HD Vec3 tip_link(std::int64_t i) const { return tip[i].anchor - position.load(tip[i].body); }
+    CATENA_HD_IN_PLACE bool linked(std::int64_t k) const { return k >= size || has_link[k] != 0; }
+    CATENA_HD_IN_PLACE bool to_ground(std::int64_t k) const { return k < size && is_first[k] != 0; }
+};
+/// Fields of a rank's beads.
+struct BeadFields {
+    using Places = BeadPlaces;
+    template <int D>
+    using Given = ConstView<D>;
+    template <int D>
+    using Found = View<D>;
+    using Biases = DirectionsView;
+};
 
-    CATENA_HD void set_direction(std::int64_t k) const {
+/// `Fields`: as BeadFields; bead k is one of those that they hold.
+template <class Fields>
+struct BeadChainsIn {
+    template <int D>
+    using Given = typename Fields::template Given<D>;
+    template <int D>
+    using Found = typename Fields::template Found<D>;
+    typename Fields::Places places;
+    Given<1> mass, inverse_mass, length, half_over_length;
+    HeldTip const* tip = nullptr;
+    Found<3> position, velocity, observed, force, momentum, change, direction, tip_direction;
+    typename Fields::Biases bias, tip_bias;  // the link's direction comes first; full handles' other directions stay 0
+
+    CATENA_HD_IN_PLACE bool linked(std::int64_t k) const { return places.linked(k); }
+    CATENA_HD_IN_PLACE bool to_ground(std::int64_t k) const { return places.to_ground(k); }
+    CATENA_HD_IN_PLACE Vec3 link(std::int64_t k) const {
+        return position.load(k) - (to_ground(k) ? places.piece_of(k).anchor : position.load(k - 1));
+    }
+    CATENA_HD_IN_PLACE Vec3 tip_link(std::int64_t i) const { return tip[i].anchor - position.load(tip[i].body); }
+
+    CATENA_HD_IN_PLACE void set_direction(std::int64_t k) const {
         Vec3 const d = linked(k) ? link(k) : Vec3::zero();
         direction.store(k, linked(k) ? (1.0 / norm(d)) * d : d);
     }
-    CATENA_HD void set_tip_direction(std::int64_t i) const {
+    CATENA_HD_IN_PLACE void set_tip_direction(std::int64_t i) const {
         Vec3 const d = tip_link(i);
         tip_direction.store(tip[i].body, (1.0 / norm(d)) * d);
     }
-    CATENA_HD void fall(std::int64_t k, Vec3 const& gravity) const { force.store(k, mass.at(k, 0) * gravity); }
-    CATENA_HD void set_momentum(std::int64_t k, double h) const {
+    CATENA_HD_IN_PLACE void take_forces(std::int64_t k, BeadForces const& forces) const { force.store(k, forces.on(k, mass.at(k, 0))); }
+    CATENA_HD_IN_PLACE void set_momentum(std::int64_t k, double h) const {
         momentum.store(k, plus_scaled(mass.at(k, 0) * velocity.load(k), h, force.load(k)));
     }
-    CATENA_HD void drift(std::int64_t k, double h) const { position.store(k, plus_scaled(position.load(k), h, velocity.load(k))); }
-    CATENA_HD void set_excess(std::int64_t k) const {
-        bias.at(k, 0) = linked(k) ? excess(link(k), direction.load(k), length.at(k, 0)) : 0.0;
+    CATENA_HD_IN_PLACE void drift(std::int64_t k, double h) const { position.store(k, plus_scaled(position.load(k), h, velocity.load(k))); }
+    CATENA_HD_IN_PLACE void set_excess(std::int64_t k) const {
+        bias.at(k, 0) = linked(k) ? excess(link(k), length.at(k, 0), half_over_length.at(k, 0)) : 0.0;
     }
-    CATENA_HD void set_tip_excess(std::int64_t i) const {
-        tip_bias.at(tip[i].body, 0) = excess(tip_link(i), tip_direction.load(tip[i].body), tip[i].length);
+    CATENA_HD_IN_PLACE void set_tip_excess(std::int64_t i) const {
+        tip_bias.at(tip[i].body, 0) = excess(tip_link(i), tip[i].length, 0.5 / tip[i].length);
     }
-    CATENA_HD void close(std::int64_t k, double per_step) const {
+    CATENA_HD_IN_PLACE void close(std::int64_t k, double per_step) const {
         Vec3 const c = change.load(k);
         position.store(k, position.load(k) + c);
         velocity.store(k, plus_scaled(velocity.load(k), per_step, c));
     }
-    CATENA_HD void thermalise(std::int64_t k, double keep, double spread, std::uint64_t seed, std::uint64_t step) const {
-        Vec3 const noise = normal3(seed, step, piece_of(k).body_of(k), NoiseStage::thermostat);
+    CATENA_HD_IN_PLACE void thermalise(std::int64_t k, double keep, double spread, std::uint64_t seed, std::uint64_t step) const {
+        Vec3 const noise = normal3(seed, step, places.piece_of(k).body_of(k), NoiseStage::thermostat);
         velocity.store(k, plus_scaled(keep * velocity.load(k), spread * std::sqrt(inverse_mass.at(k, 0)), noise));
     }
-    CATENA_HD double swing_of(std::int64_t k) const {
+    CATENA_HD_IN_PLACE double swing_of(std::int64_t k) const {
         Vec3 const v = observed.load(k) - (to_ground(k) ? Vec3::zero() : observed.load(k - 1));
         return swing(v, direction.load(k), length.at(k, 0));
     }
-    CATENA_HD double tip_swing(std::int64_t i) const {
+    CATENA_HD_IN_PLACE double tip_swing(std::int64_t i) const {
         return swing(observed.load(tip[i].body), tip_direction.load(tip[i].body), tip[i].length);
     }
-    CATENA_HD void set_swing(std::int64_t k) const { bias.at(k, 0) = linked(k) ? swing_of(k) : 0.0; }
-    CATENA_HD void set_tip_swing(std::int64_t i) const { tip_bias.at(tip[i].body, 0) = tip_swing(i); }
+    CATENA_HD_IN_PLACE void set_swing(std::int64_t k) const { bias.at(k, 0) = linked(k) ? swing_of(k) : 0.0; }
+    CATENA_HD_IN_PLACE void set_tip_swing(std::int64_t i) const { tip_bias.at(tip[i].body, 0) = tip_swing(i); }
     /// Of a link's length, relative.
-    CATENA_HD double error(std::int64_t k) const { return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0; }
-    CATENA_HD double tip_error(std::int64_t i) const { return std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length; }
+    CATENA_HD_IN_PLACE double error(std::int64_t k) const {
+        return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0;
+    }
+    CATENA_HD_IN_PLACE double tip_error(std::int64_t i) const { return std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length; }
 };
+using BeadChains = BeadChainsIn<BeadFields>;
 
 }  // namespace catena

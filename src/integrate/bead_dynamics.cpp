@@ -8,6 +8,13 @@ std::vector<std::uint8_t> links_of(ChainGroup const& group) {
     return links;
 }
 
+Field<1> halves_over(Field<1> const& length) {
+    Field<1> halves(length.size());
+    for (std::int64_t k = 0; k < length.size(); ++k)
+        if (double const l = length[k][0]; l > 0) halves.set(k, {{0.5 / l}});
+    return halves;
+}
+
 void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity) {
     for (dca::Piece const& piece : group.pieces) {
         BeadArrays const& beads = scene.chains[group.chain[piece.chain]].beads;

@@ -26,6 +26,9 @@ struct BeadSolution {
     double residual(Communicator const&, ConstView<3> velocity, std::vector<HeldTip> const&) const;
 };
 
+/// 0 where there is no link.
+Field<1> halves_over(Field<1> const& length);
+
 template <class Space>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     using Field3 = typename Space::template FieldOf<3>;
@@ -40,6 +43,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
           solver_(std::move(solver)),
           gravity_(scene.forces.gravity),
           links_(links_of(group)),
+          halves_(halves_over(group.length)),
           piece_(local_pieces(group, scene)),
           tip_(held_tips(group, [&](std::int64_t k) { return scene.chains[group.scene_chain(k)].beads.position.back(); })),
           is_first_(group.is_first),
@@ -49,6 +53,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
           mass_(group.mass),
           inverse_mass_(group.inverse_mass),
           length_(group.length),
+          half_over_length_(halves_),
           position_(group.size),
           velocity_(group.size),
           observed_(group.size),
@@ -69,9 +74,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     void update_configuration() override { parts().update_configuration(); }
     void assemble_matrices() override { solver_->assemble_matrices(directions()); }
     void set_simple_forces() override {
-        space_.for_each(group_.size, [c = chains(), g = gravity_] CATENA_LAMBDA(std::int64_t k) { c.fall(k, g); });
+        forces_ = {gravity_, {}};
+        forces_are_ahead_ = true;
     }
     View<3> bead_forces() override {
+        settle_forces();
         forces_are_out_ = true;
         return space_.pull(force_, force_mirror_);
     }
@@ -88,19 +95,29 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         return nullptr;
     }
     void put_positions(DeviceParticles const& particles) override {
+        if (put_at_step_ == particles.order) return;
         space_.for_each(group_.size,
                         [particles, x = ConstView<3>(position_.view())] CATENA_LAMBDA(std::int64_t k) { particles.put(k, x.load(k)); });
     }
-    void add_forces(DeviceParticles const& particles) override {
-        space_.for_each(group_.size,
-                        [particles, f = force_.view()] CATENA_LAMBDA(std::int64_t k) { f.store(k, f.load(k) + particles.force_on(k)); });
-    }
+    void add_forces(DeviceParticles const& particles) override { forces_.particles = particles; }
     ConstView<3> host_positions() override { return bead_positions(); }
 
-    void kick(double h) override { parts().kick(h); }
-    void observe(double h) override { parts().project(h, observed_.view()); }
-    void drift(double h, int sweeps) override { parts().drift(h, sweeps); }
-    void thermostat(Thermostat const& thermostat, std::uint64_t step) override { parts().thermostat(thermostat, step); }
+    void kick(double h) override {
+        settle_forces();
+        parts().kick(h);
+    }
+    void observe(double h) override {
+        settle_forces();
+        parts().project(h, observed_.view());
+    }
+    void drift(double h, int sweeps) override {
+        put_at_step_ = never;
+        parts().drift(h, sweeps);
+    }
+    void thermostat(Thermostat const& thermostat, std::uint64_t step) override {
+        settle_forces();
+        parts().thermostat(thermostat, step);
+    }
     /// Block by block where it pays.
     void step(ConstrainedStep const& step) override {
         if (!carry<dca::BeadLeaf<1>>(step) && !carry<dca::BeadLeaf<3>>(step)) AbsoluteDynamics::step(step);
@@ -131,12 +148,14 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view())};
     }
     void set_state(std::vector<StateArray> const& arrays) override {
+        put_at_step_ = never;
         space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
         space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
     }
     std::vector<StateArray> observed_state() const override { return {to_array<3>("velocity", space_.read(observed_).view())}; }
 
     void evaluate() override {
+        settle_forces();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         BeadChains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
@@ -146,11 +165,13 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     }
     void evaluate_at_once() override {
         if (group_.has_tips() || !solver_->at_once()) return AbsoluteDynamics::evaluate_at_once();
+        settle_forces();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         exchange_from_outboard(communicator_, group_, observed_.view(), space_);
         solver_->assemble_and_solve(where(), what(), {{}, change_.view(), joint_force_.view(), {}});
     }
     std::vector<double> time_at_once(int chained, int repeat) override {
+        settle_forces();
         return solver_->time_evaluations(where(), what(), {{}, change_.view(), {}, {}}, chained, repeat);
     }
     BodyResults results() const override {
@@ -185,19 +206,34 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         void from_inboard() const { exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
         void from_outboard() const { exchange_from_outboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
         void assemble() const { d.assemble_matrices(); }
-        void solve(LoadsView const& loads, AccelerationsView const& out) const { d.solver_->solve(loads, out); }
+        void project(View<3> momentum, View<3> out) const { d.solver_->solve({{}, momentum, {}, {}, {}}, {{}, out, {}, {}}); }
+        void close(DirectionsView bias, DirectionsView tip_bias, View<3> out) const {
+            d.solver_->solve({{}, {}, {}, bias, tip_bias}, {{}, out, {}, {}});
+        }
     };
 
+    /// Into the array. Not private: nvcc asks for that.
+    void settle_forces() {
+        if (std::exchange(forces_are_ahead_, false))
+            space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) { c.take_forces(k, f); });
+    }
+
   private:
+    static constexpr std::int64_t never = -1;
     BeadStep<Way> parts() { return {chains(), {*this}}; }
     /// Whether the solver, if it is one of this leaf, carried the chains through the step.
     template <class Leaf>
     bool carry(ConstrainedStep const& step) {
-        auto* const solver = dynamic_cast<dca::TreeSolver<Leaf, Space>*>(solver_.get());
-        if (solver == nullptr || !solver->carries()) return false;
-        solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(),
-                      [&](dca::TreeSweeps<Leaf> const& sweeps) { return StepOfBlock<Leaf>{sweeps, chains(), step}; });
-        return true;
+        if constexpr (Space::template has_blocks<Leaf::K>) {
+            auto* const solver = dynamic_cast<dca::TreeSolver<Leaf, Space>*>(solver_.get());
+            if (solver == nullptr || !solver->carries()) return false;
+            solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(), [&](dca::TreeSweeps<Leaf> const& sweeps) {
+                return StepOfChains<Leaf>{sweeps, chains(), step, forces_are_ahead_, forces_};
+            });
+            put_at_step_ = forces_are_ahead_ && forces_.particles.bead ? forces_.particles.order : never;
+            return true;
+        }
+        return false;
     }
     ConfigurationView directions() { return {direction_.view(), {}, group_.has_tips() ? tip_direction_.view() : View<3>{}, {}, {}}; }
     ConfigurationView where() const {
@@ -217,14 +253,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     std::int64_t tips() const { return std::ssize(tip_); }
     BeadChains chains() {
         BeadChains c;
-        c.size = group_.size;
-        c.is_first = is_first_.data();
-        c.has_link = has_link_.data();
+        c.places.size = group_.size;
+        c.places.is_first = is_first_.data();
+        c.places.has_link = has_link_.data();
         c.mass = mass_.view();
         c.inverse_mass = inverse_mass_.view();
         c.length = length_.view();
-        c.piece = pieces_.data();
-        c.pieces = std::ssize(piece_);
+        c.half_over_length = half_over_length_.view();
+        c.places.piece = pieces_.data();
+        c.places.pieces = std::ssize(piece_);
         c.tip = tips_.data();
         c.position = position_.view();
         c.velocity = velocity_.view();
@@ -253,16 +290,19 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     std::unique_ptr<ChainSolver> solver_;
     Vec3 gravity_;
     std::vector<std::uint8_t> links_;
+    Field<1> halves_;
     std::vector<LocalPiece> piece_;
     std::vector<HeldTip> tip_;
     typename Space::template List<std::uint8_t> is_first_, has_link_;
     typename Space::template List<LocalPiece> pieces_;
     typename Space::template List<HeldTip> tips_;
-    typename Space::template Fixed<1> mass_, inverse_mass_, length_;
+    typename Space::template Fixed<1> mass_, inverse_mass_, length_, half_over_length_;
     Field3 position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     typename Space::template Mirror<3> position_mirror_, force_mirror_;
-    bool forces_are_out_ = false;
+    BeadForces forces_;
+    bool forces_are_ahead_ = false, forces_are_out_ = false;
+    std::int64_t put_at_step_ = never;  // DeviceParticles::order of the particles that the last step moved with the beads
 };
 
 }  // namespace catena

@@ -30,7 +30,7 @@ struct ConstrainedStep {
 /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is.
 CATENA_EITHER_SIDE
 template <class Parts>
-CATENA_HD void take_step(Parts&& parts, ConstrainedStep const& s) {
+CATENA_HD_IN_PLACE void take_step(Parts&& parts, ConstrainedStep const& s) {
     parts.kick(s.kick);
     if (s.langevin) {
         parts.drift(0.5 * s.drift, s.sweeps);

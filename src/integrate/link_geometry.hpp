@@ -15,12 +15,9 @@ struct HeldTip {
     double length = 0;      // of the link
 };
 
-/// How far a link d is too long along its direction u at the step's start: the s with |d - s u| = length.
-CATENA_HD double excess(Vec3 const& d, Vec3 const& u, double length) {
-    double const along = dot(d, u), e = dot(d, d) - length * length;
-    double const square = along * along - e;
-    return e / (along + std::sqrt(square > 0 ? square : 0.0));
-}
+/// How much too long a link d is, to first order: each sweep of a drift takes what the one before it has left, and what all of them close
+/// along are the directions at the drift's start, which leave more of it. No root, no division: a sweep of few beads waits for them.
+CATENA_HD double excess(Vec3 const& d, double length, double half_over_length) { return half_over_length * (dot(d, d) - length * length); }
 
 /// |v_rel, perpendicular|^2 / length of a link along u whose ends part with velocity v (formulas: -c).
 CATENA_HD double swing(Vec3 const& v, Vec3 const& u, double length) {

@@ -111,7 +111,7 @@ struct RigidChains {
         else
             out.store<3>(k, value);
     }
-    CATENA_HD Vec3 opening(Vec3 const& d, Link const& l) const { return linked ? Vec3{{excess(d, l.direction, l.length), 0, 0}} : d; }
+    CATENA_HD Vec3 opening(Vec3 const& d, Link const& l) const { return linked ? Vec3{{excess(d, l.length, 0.5 / l.length), 0, 0}} : d; }
     /// For a drift that ended with the handles here: `scale` times how far joints are open.
     CATENA_HD void set_openings(std::int64_t k, double scale) const {
         set_bias(bias, k, is_joined(k) ? scale * opening(apart(k), link(k)) : Vec3::zero());

@@ -84,12 +84,8 @@ HandleOperations count_beads() {
     Vector3 const u{{one, Counted(0), Counted(0)}};
     Vector<Counted, K> const kind = Vector<Counted, K>::zero();
     h.leaf_matrices = count([&] { keep(bead_matrix(one, u, u, kind)); });
-    h.leaf_biases = count([&] {
-        Vector3 const a = one * u;
-        keep(along_link(u, a, kind));
-        keep(along_link(u, a, kind));
-    });
-    h.leaf_accelerations = count([&] { keep(one * plus_scaled(plus_scaled(u, one, u), -one, u)); });
+    h.leaf_biases = count([&] { keep(bead_bias(one, u, u, u, kind)); });
+    h.leaf_accelerations = count([&] { keep(bead_acceleration(one, u, one, u, one, u)); });
     return h;
 }
 

@@ -56,6 +56,21 @@ Scene free_beads() {
         "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: {beads: 100, length: 0.38}}}]\n"
         "dynamics: {integrator: rattle, step: 0.001, temperature: 300}");
 }
+/// More chains than a GPU has multiprocessors, several in a block of threads, with parts of every length.
+Scene many_beads() {
+    std::string chains;
+    for (int const beads : {1, 2, 16, 17, 33, 140})
+        chains += (chains.empty() ? "" : ", ") +
+                  ("{count: 400, base: free, generator: {freely_jointed: {length: 0.38, beads: " + std::to_string(beads) + "}}}");
+    return scene_from("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}");
+}
+/// As long as one block takes, and one bead longer.
+Scene beads_of_a_block(int beads) {
+    return scene_from("chains: [{base: fixed, generator: {random: {joint: link, seed: 4, bodies: " + std::to_string(beads) +
+                      "}}}, {base: free, generator: {random: {joint: link, seed: 5, bodies: 50}}}]\nforces: {gravity: [1, 2, -9.81]}");
+}
+Scene longest_beads() { return beads_of_a_block(1024); }
+Scene longer_beads() { return beads_of_a_block(1025); }
 Scene held_beads() {
     return scene_from(
         "chains: [{name: a, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, generator: {random: {bodies: 60, joint: link, "
@@ -153,10 +168,11 @@ INSTANTIATE_TEST_SUITE_P(
     Scenes, GpuAbsolute,
     ::testing::Values(AbsoluteScene{"hanging_beads", hanging_beads}, AbsoluteScene{"hanging_beads_full", hanging_beads, Handles::full},
                       AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"held_beads", held_beads},
-                      AbsoluteScene{"free_bodies", free_bodies}, AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
-                      AbsoluteScene{"held_bodies", held_bodies}, AbsoluteScene{"carrying_bodies", carrying_bodies},
-                      AbsoluteScene{"free_domains", free_domains}, AbsoluteScene{"hanging_domains_full", hanging_domains, Handles::full},
-                      AbsoluteScene{"held_domains", held_domains}),
+                      AbsoluteScene{"many_beads", many_beads}, AbsoluteScene{"longest_beads", longest_beads},
+                      AbsoluteScene{"longer_beads", longer_beads}, AbsoluteScene{"free_bodies", free_bodies},
+                      AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full}, AbsoluteScene{"held_bodies", held_bodies},
+                      AbsoluteScene{"carrying_bodies", carrying_bodies}, AbsoluteScene{"free_domains", free_domains},
+                      AbsoluteScene{"hanging_domains_full", hanging_domains, Handles::full}, AbsoluteScene{"held_domains", held_domains}),
     name_of_scene);
 
 class GpuConstrained : public ::testing::TestWithParam<AbsoluteScene> {
@@ -216,7 +232,8 @@ TEST_P(GpuConstrained, AHundredStepsLeaveTheBitsOfTheHost) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, GpuConstrained,
-                         ::testing::Values(AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"free_bodies", free_bodies},
+                         ::testing::Values(AbsoluteScene{"free_beads", free_beads}, AbsoluteScene{"many_beads", many_beads},
+                                           AbsoluteScene{"longest_beads", longest_beads}, AbsoluteScene{"free_bodies", free_bodies},
                                            AbsoluteScene{"hanging_bodies", hanging_bodies},
                                            AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full},
                                            AbsoluteScene{"held_bodies", held_bodies}, AbsoluteScene{"carrying_bodies", carrying_bodies},
