@@ -85,8 +85,8 @@ class AbsoluteDynamics : public BeadHost {
     /// Positions by h along the velocities, impulses along the joints of the configuration updated last added in `sweeps` quasi-Newton
     /// sweeps so that the joints close at the end; velocities become the drift's. Collective.
     virtual void drift(double h, int sweeps) = 0;
-    /// Velocities between those of before and noise, projected. Collective.
-    virtual void thermostat(Thermostat const&, std::uint64_t step) = 0;
+    /// Velocities between those of before and noise, which kick() then projects.
+    virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
     /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is. Collective.
     virtual void step(ConstrainedStep const& step) { take_step(*this, step); }
     /// Velocities of temperature kt, projected; matrices must be assembled. Collective.

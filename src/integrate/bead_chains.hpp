@@ -76,8 +76,10 @@ struct BeadChainsIn {
         position.store(k, position.load(k) + c);
         velocity.store(k, plus_scaled(velocity.load(k), per_step, c));
     }
-    CATENA_HD_IN_PLACE void thermalise(std::int64_t k, double keep, double spread, std::uint64_t seed, std::uint64_t step) const {
-        Vec3 const noise = normal3(seed, step, places.piece_of(k).body_of(k), NoiseStage::thermostat);
+    CATENA_HD_IN_PLACE Vec3 noise(std::int64_t k, std::uint64_t seed, std::uint64_t step) const {
+        return normal3(seed, step, places.piece_of(k).body_of(k), NoiseStage::thermostat);
+    }
+    CATENA_HD_IN_PLACE void thermalise(std::int64_t k, double keep, double spread, Vec3 const& noise) const {
         velocity.store(k, plus_scaled(keep * velocity.load(k), spread * std::sqrt(inverse_mass.at(k, 0)), noise));
     }
     CATENA_HD_IN_PLACE double swing_of(std::int64_t k) const {

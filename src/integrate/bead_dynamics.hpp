@@ -114,10 +114,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         put_at_step_ = never;
         parts().drift(h, sweeps);
     }
-    void thermostat(Thermostat const& thermostat, std::uint64_t step) override {
-        settle_forces();
-        parts().thermostat(thermostat, step);
-    }
+    void thermalise(Thermostat const& thermostat, std::uint64_t step) override { parts().thermalise(thermostat, step); }
     /// Block by block where it pays.
     void step(ConstrainedStep const& step) override {
         if (!carry<dca::BeadLeaf<1>>(step) && !carry<dca::BeadLeaf<3>>(step)) AbsoluteDynamics::step(step);
@@ -194,6 +191,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         template <class Action>
         void each_bead(Action const& action) const {
             d.space_.for_each(d.group_.size, action);
+        }
+        template <class Make, class Take>
+        void each_bead(Make const& make, Take const& take) const {
+            d.space_.for_each(d.group_.size, [make, take] CATENA_LAMBDA(std::int64_t k) { take(k, make(k)); });
         }
         template <class Action>
         void each_link(Action const& action) const {

@@ -105,6 +105,17 @@ class BeadPart {
         CATENA_HD_IN_PLACE void each_bead(Action const& action) const {
             part->each(action);
         }
+        /// In turn: as one loop `make` is in the program once.
+        template <class Make, class Take>
+        CATENA_HD_IN_PLACE void each_bead(Make const& make, Take const& take) const {
+            CATENA_NO_UNROLL
+            for (int i = 0; i < length; ++i) {
+                auto const made = make(i);
+            CATENA_UNROLL
+                for (int j = 0; j < length; ++j)
+                    if (j == i) take(j, made);
+            }
+        }
         template <class Action>
         CATENA_HD_IN_PLACE void each_link(Action const& action) const {
             part->each(action);

@@ -1,9 +1,9 @@
 // A step of chains of point beads, part by part, for whatever carries it out: loop after loop over all chains (BeadDynamics), or a block
 // of threads that takes whole chains through everything, so that a step is one launch.
 //
-// A `Way` has each_bead(action), each_link(action) and each_tip(action), from_inboard() and from_outboard() for the positions of
-// neighbours elsewhere, assemble() for the matrices of the directions of now, project(momentum, out) and close(bias, tip_bias, out), which
-// solve for them.
+// A `Way` has each_bead(action) and each_bead(make, take) for take(k, make(k)), where make is long, each_link(action) and each_tip(action),
+// from_inboard() and from_outboard() for the positions of neighbours elsewhere, assemble() for the matrices of the directions of now,
+// project(momentum, out) and close(bias, tip_bias, out), which solve for them.
 #pragma once
 
 #include "dca/leaves.hpp"
@@ -49,9 +49,9 @@ struct BeadStep {
         }
     }
     CATENA_EITHER_SIDE
-    CATENA_HD_IN_PLACE void thermostat(Thermostat const& t, std::uint64_t step) const {
-        way.each_bead([c = c, t, step] CATENA_LAMBDA(std::int64_t k) { c.thermalise(k, t.keep, t.spread, t.seed, step); });
-        kick(0.0);
+    CATENA_HD_IN_PLACE void thermalise(Thermostat const& t, std::uint64_t step) const {
+        way.each_bead([c = c, t, step] CATENA_LAMBDA(std::int64_t k) { return c.noise(k, t.seed, step); },
+                      [c = c, t] CATENA_LAMBDA(std::int64_t k, Vec3 const& noise) { c.thermalise(k, t.keep, t.spread, noise); });
     }
 };
 
@@ -65,6 +65,11 @@ struct WayOfBlock {
     template <class Action>
     CATENA_HD void each_bead(Action const& action) const {
         block.each_body(action);
+    }
+    CATENA_EITHER_SIDE
+    template <class Make, class Take>
+    CATENA_HD void each_bead(Make const& make, Take const& take) const {
+        block.each_body([make, take] CATENA_LAMBDA(std::int64_t k) { take(k, make(k)); });
     }
     CATENA_EITHER_SIDE
     template <class Action>

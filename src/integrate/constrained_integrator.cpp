@@ -31,23 +31,17 @@ void ConstrainedIntegrator::observe() {
     for (AbsoluteDynamics* group : groups_) group->observe((pending_ - 0.5) * scheme_.step);
 }
 
-/// From the present velocities, and from such as the thermostat will give.
 double ConstrainedIntegrator::error_after(int sweeps) {
-    bool const langevin = scheme_.kind == Integrator::g_baoab;
-    double const h = langevin ? 0.5 * scheme_.step : scheme_.step;
+    double const h = scheme_.kind == Integrator::rattle ? scheme_.step : 0.5 * scheme_.step;
     double worst = 0;
     for (AbsoluteDynamics* group : groups_) {
         std::vector<StateArray> const before = group->state();
-        std::vector<bool> const every_chain(group->group().chain.size(), true);
-        for (bool const thermal : {false, true}) {
-            if (thermal && !langevin) continue;
-            if (thermal) group->draw_velocities(scheme_.kt, scheme_.seed, every_chain);
-            group->kick(pending_ * scheme_.step);
-            group->drift(h, sweeps);
-            worst = larger(worst, group->constraint_error());
-            group->set_state(before);
-            group->update_configuration();
-        }
+        group->kick(pending_ * scheme_.step);
+        group->drift(h, sweeps);
+        double const error = group->constraint_error();
+        group->set_state(before);
+        group->update_configuration();
+        worst = larger(worst, error);
     }
     return worst;
 }
@@ -59,7 +53,7 @@ void ConstrainedIntegrator::choose_sweeps() {
         double const error = error_after(sweeps);
         bool const at_rounding = error <= scheme_.tolerance && error > 0.5 * before;
         if (error <= 0.01 * scheme_.tolerance || at_rounding) {
-            sweeps_ = sweeps;
+            sweeps_ = std::min(sweeps + 1, most);
             return;
         }
         before = error;

@@ -27,7 +27,7 @@ class ConstrainedIntegrator {
     void step(std::int64_t n);
     /// Velocities at x_n as an observer sees them (both half kicks in their places), into the dynamics' observed state. Before step().
     void observe();
-    /// Quasi-Newton sweeps a drift makes, fixed for the run: the fewest that reach `tolerance` / 100 from the present state.
+    /// Quasi-Newton sweeps a drift makes, fixed for the run: the fewest that reach `tolerance` / 100 from the present state, and one more.
     /// Configuration, matrices and forces must be ready; the state is put back. Throws ComputationError when 30 do not suffice.
     void choose_sweeps();
 

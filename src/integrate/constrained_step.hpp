@@ -8,7 +8,7 @@
 
 namespace catena {
 
-/// v <- P (keep v + spread M^-1/2 noise).
+/// v <- keep v + spread M^-1/2 noise, to be projected.
 struct Thermostat {
     double keep = 1, spread = 0;
     std::uint64_t seed = 0;
@@ -31,15 +31,17 @@ struct ConstrainedStep {
 CATENA_EITHER_SIDE
 template <class Parts>
 CATENA_HD_IN_PLACE void take_step(Parts&& parts, ConstrainedStep const& s) {
-    parts.kick(s.kick);
-    if (s.langevin) {
-        parts.drift(0.5 * s.drift, s.sweeps);
-        parts.update_configuration();
-        parts.assemble_matrices();
-        parts.thermostat(s.thermostat, s.number);
-        parts.drift(0.5 * s.drift, s.sweeps);
-    } else {
-        parts.drift(s.drift, s.sweeps);
+    // One loop, not one part after the other: written out, a GPU would spend its time fetching instructions.
+    int const drifts = s.langevin ? 2 : 1;
+    CATENA_NO_UNROLL
+    for (int d = 0; d < drifts; ++d) {
+        if (d > 0) {
+            parts.update_configuration();
+            parts.assemble_matrices();
+            parts.thermalise(s.thermostat, s.number);
+        }
+        parts.kick(d == 0 ? s.kick : 0.0);
+        parts.drift(s.drift / drifts, s.sweeps);
     }
     parts.update_configuration();
 }

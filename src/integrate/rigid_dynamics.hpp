@@ -129,9 +129,8 @@ class RigidDynamics final : public AbsoluteDynamics {
             solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
         }
     }
-    void thermostat(Thermostat const& t, std::uint64_t step) override {
+    void thermalise(Thermostat const& t, std::uint64_t step) override {
         add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular}, 0, group_.size);
-        kick(0.0);
     }
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
         for (dca::Piece const& piece : group_.pieces)
