@@ -35,6 +35,7 @@ class GhostExchange {
     void update(std::span<Vec3 const> own);
     /// The next update makes the lists anew. On every rank or none.
     void renew() { renew_ = true; }
+    bool is_due() const { return renew_; }
     /// Compares ghosts and their positions with a search among all beads. Collective; throws SharedError where one is missed or stale.
     void audit(std::span<Vec3 const> own) const;
 

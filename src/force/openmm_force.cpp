@@ -38,6 +38,7 @@ class OpenMmForces final : public OpenMmForce {
     std::string platform() const override { return platform_.name(); }
     std::string path() const override { return path_.name(); }
     void renew_ghosts() override { rank_->renew_ghosts(); }
+    bool ghosts_are_due() const override { return rank_->ghosts_are_due(); }
     GhostTraffic traffic() const override { return rank_->traffic(); }
     std::int64_t largest_context() const override { return rank_->largest_context(); }
     std::int64_t contexts() const override { return rank_->contexts(); }

@@ -82,6 +82,7 @@ class OpenMmForce {
     virtual std::string path() const = 0;
     /// Lists of ghosts are made anew at the next evaluation. On every rank or none.
     virtual void renew_ghosts() = 0;
+    virtual bool ghosts_are_due() const = 0;
     /// What this rank sent and holds where the forces are split over ranks; nothing elsewhere.
     virtual GhostTraffic traffic() const = 0;
     /// When positions were brought to this rank for the last evaluation.

@@ -33,6 +33,7 @@ class RankForces {
 
     /// Lists of ghosts are made anew by the next gather(), here as on every other rank.
     virtual void renew_ghosts() {}
+    virtual bool ghosts_are_due() const { return false; }
     virtual GhostTraffic traffic() const { return {}; }
     /// Particles of the largest Context so far, and how many were made.
     virtual std::int64_t largest_context() const = 0;

@@ -70,6 +70,7 @@ class SplitForces final : public RankForces {
     }
 
     void renew_ghosts() override { ghosts_.renew(); }
+    bool ghosts_are_due() const override { return ghosts_.is_due(); }
     GhostTraffic traffic() const override { return ghosts_.traffic(); }
     std::int64_t largest_context() const override { return largest_; }
     std::int64_t contexts() const override { return contexts_; }

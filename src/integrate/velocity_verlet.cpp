@@ -10,7 +10,10 @@ class VelocityVerlet final : public JointIntegrator {
     bool carries_rates() const override { return true; }
     void restored() override { ready_ = true; }
     void prepare() override {
-        if (ready_) return;
+        if (ready_) {
+            make_ghosts();
+            return;
+        }
         system_.solve_joint_groups();
         for (JointDynamics* const group : system_.joint()) group->carry_rates();
         ready_ = true;
@@ -24,6 +27,11 @@ class VelocityVerlet final : public JointIntegrator {
     }
 
   private:
+    /// Lists of ghosts belong to the step at which they were asked for: a restart makes them there.
+    void make_ghosts() {
+        if (system_.openmm() && system_.openmm()->ghosts_are_due()) system_.evaluate();
+    }
+
     ChainSystem& system_;
     bool ready_ = false;
 };

@@ -74,6 +74,44 @@ TEST_P(OpenMmRuns, WithGhostsTheyAreTheRunOnOneRankButForRounding) {
     world_.barrier();
 }
 
+/// Two chains of bodies in joint coordinates that fly past each other, so fast that lists last nine steps. Frames and
+/// checkpoints fall on different steps.
+std::string passing_bodies(std::string const& box) {
+    auto const chain = [](std::string const& name, std::string const& y, std::string const& speed) {
+        std::string bodies;
+        for (int k = 0; k < 40; ++k) {
+            std::string const turned = k % 2 == 0 ? "0.4" : "-0.4";
+            std::string const joint = k == 0 ? "{type: free, q: {position: [0, " + y + ", 0]}, qd: {velocity: [" + speed + ", 0, 0]}}"
+                                             : "{type: revolute, axis: [0, 0, 1], translation: [0.38, 0, 0], q: " + turned + "}";
+            bodies += "{mass: 100, com: [0.1, 0, 0], inertia: [2, 3, 4], joint: " + joint +
+                      ", beads: [{residue: " + (k % 2 == 0 ? "LYS" : "GLU") + ", position: [0, 0, 0], mass: 100}]}, ";
+        }
+        return "{name: " + name + ", base: free, bodies: [" + bodies + "]}";
+    };
+    return "chains: [" + chain("here", "0", "3") + ", " + chain("there", "2.5", "-3") + "]\nbox: " + box +
+           "\nforces: {openmm: {builder: calvados2, platform: Reference, path: inline, audit: true}}\n"
+           "dynamics: {integrator: velocity-verlet, step: 0.01, steps: 30}\noutput: {every: 7, checkpoint_every: 10}\n";
+}
+
+class VerletRuns : public WholeRun {};
+
+TEST_P(VerletRuns, WithGhostsARestartIsTheUndisturbedRun) {
+    Communicator const& world = catena::testing::world();
+    nlohmann::json const whole = run(world, "whole", 30), first = run(world, "parts", 10);
+    nlohmann::json const rest = run(world, "parts", 30, "parts/checkpoint.h5");
+    if (world.rank() == 0) {
+        EXPECT_EQ(arrays("whole"), arrays("parts"));
+        auto const lists = [](nlohmann::json const& summary) { return summary.at("forces").at("ghosts").at("rebuilds").get<int>(); };
+        if (world.size() > 1) {  // made at the same steps: both parts make those of the checkpoint
+            EXPECT_EQ(lists(whole), lists(first) + lists(rest) - 1);
+        }
+    }
+    world.barrier();
+}
+
+RunScene const passing[] = {{"InABox", passing_bodies(boxes[0])}, {"InTheOpen", passing_bodies(boxes[1])}};
+INSTANTIATE_TEST_SUITE_P(Boxes, VerletRuns, ::testing::ValuesIn(passing), [](auto const& scene) { return scene.param.name; });
+
 RunScene const in_boxes[] = {{"InABox", boxes[0]}, {"InTheOpen", boxes[1]}};
 INSTANTIATE_TEST_SUITE_P(Boxes, OpenMmRuns, ::testing::ValuesIn(in_boxes), [](auto const& scene) { return scene.param.name; });
 

@@ -30,8 +30,8 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         if (catena::testing::world().rank() == 0) std::filesystem::remove_all(folder_, ignored);
         catena::testing::world().barrier();
     }
-    void run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
-             Backend backend = Backend::automatic) {
+    nlohmann::json run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
+                       Backend backend = Backend::automatic) {
         RunOptions options;
         options.output = folder_ + "/" + name;
         options.steps = steps;
@@ -44,6 +44,7 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         if (backend != Backend::automatic && communicator.rank() == 0) {
             EXPECT_EQ(summary["solver"]["backend"], name_of(backend));
         }
+        return summary;
     }
     /// The checkpoint of run `name`, bit for bit.
     auto arrays(std::string const& name) const { return read_checkpoint(folder_ + "/" + name + "/checkpoint.h5").arrays; }
