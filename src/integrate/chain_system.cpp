@@ -302,7 +302,9 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
 
 void ChainSystem::begin_openmm(bool timed) {
     if (!on_device()) {
+        Traffic const before = communicator_.traffic();
         openmm_->begin(own_bead_positions());
+        openmm_traffic_ += communicator_.traffic() - before;
         return;
     }
     if (clock_is_due_) read_device_clock();

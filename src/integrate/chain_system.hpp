@@ -94,6 +94,8 @@ class ChainSystem {
     /// Seconds of matrix sweep and of these the ones during which OpenMM computed.
     double matrix_seconds() const { return matrix_seconds_; }
     double hidden_seconds() const { return hidden_seconds_; }
+    /// Messages of this rank that brought positions to OpenMM.
+    Traffic openmm_traffic() const { return openmm_traffic_; }
 
     /// Everything a checkpoint needs, in scene order on rank 0; and back, on every rank.
     std::map<std::string, std::vector<double>> state();
@@ -145,6 +147,7 @@ class ChainSystem {
     Field<3> bead_position_, openmm_force_;   // of the last evaluation, own beads, host after host
     std::map<std::string, double> seconds_;
     double matrix_seconds_ = 0, hidden_seconds_ = 0;
+    Traffic openmm_traffic_;
     // On a GPU the clock is asked now and then: questions take time there.
     static constexpr std::int64_t evaluations_a_clock = 8;
     bool clock_is_due_ = false, timed_before_ = false;

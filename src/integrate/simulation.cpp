@@ -64,10 +64,11 @@ class Run {
             bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
             bool const looks = writes || saves || n % check_every == 0;
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
-            if ((saves || n == last_) && system_.openmm()) system_.openmm()->renew_ghosts();  // as after a restart from here
-            Traffic const before = communicator_.traffic();
+            bool const renews = (saves || n == last_) && system_.openmm();
+            if (renews) system_.openmm()->renew_ghosts();  // as after a restart from here
+            Traffic const before = chains_traffic();
             at_step(n, [&] { stepper_->prepare(timeline); });
-            Traffic of_step = communicator_.traffic() - before;
+            Traffic of_step = chains_traffic() - before;
             if (n == first) open(n);  // nothing is written or replaced before the first step has its forces
             stopped_by_ = n == last_ ? 0 : stop.reason_at(n);
             bool const ends = n == last_ || stopped_by_ != 0;
@@ -80,10 +81,10 @@ class Run {
                 error_at_end_ = error;
                 break;
             }
-            Traffic const prepared = communicator_.traffic();
+            Traffic const prepared = chains_traffic();
             at_step(n, [&] { stepper_->step(n, timeline); });
-            of_step += communicator_.traffic() - prepared;
-            if (n > first) count_messages(of_step);  // the first step also starts the integrator
+            of_step += chains_traffic() - prepared;
+            if (n > first && !renews) count_messages(of_step);  // others may evaluate once more
             progress.update(n + 1);
         }
         progress.finish();
@@ -153,6 +154,9 @@ class Run {
         if (error > std::max(early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted && stepper_->add_sweep())
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
     }
+
+    /// So far; without what OpenMM is brought, which StepMessages does not tell.
+    Traffic chains_traffic() const { return communicator_.traffic() - system_.openmm_traffic(); }
 
     void count_messages(Traffic const& of_step) {
         ++counted_steps_;

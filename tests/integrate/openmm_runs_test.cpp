@@ -50,6 +50,7 @@ TEST_P(OpenMmRuns, WithGhostsARestartIsTheUndisturbedRun) {
     run_with(world_, "parts", "audit: true", 40, "parts/checkpoint.h5");
     if (world_.rank() != 0) return;
     EXPECT_EQ(arrays("whole"), arrays("parts"));
+    EXPECT_EQ(half.at("parallel").at("messages_a_step").at("ranks_that_differ"), 0);
     if (world_.size() == 1) return;
     auto const& ghosts = half.at("forces").at("ghosts");
     EXPECT_EQ(ghosts.at("evaluations"), 21);
@@ -101,6 +102,7 @@ TEST_P(VerletRuns, WithGhostsARestartIsTheUndisturbedRun) {
     nlohmann::json const rest = run(world, "parts", 30, "parts/checkpoint.h5");
     if (world.rank() == 0) {
         EXPECT_EQ(arrays("whole"), arrays("parts"));
+        EXPECT_EQ(rest.at("parallel").at("messages_a_step").at("ranks_that_differ"), 0);
         auto const lists = [](nlohmann::json const& summary) { return summary.at("forces").at("ghosts").at("rebuilds").get<int>(); };
         if (world.size() > 1) {  // made at the same steps: both parts make those of the checkpoint
             EXPECT_EQ(lists(whole), lists(first) + lists(rest) - 1);
