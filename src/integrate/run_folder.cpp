@@ -27,8 +27,8 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         bool const empty = !exists || fs::is_empty(folder_, ignored);
         appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_)) throw InputError("the output is not a folder", folder_, "name another with --output");
-        std::string const checkpoint = path("checkpoint.h5");
-        std::string const go_on = options.restart.empty() && fs::exists(checkpoint, ignored) ? ", go on with --restart " + checkpoint : "";
+        std::string const checkpoint = newest_checkpoint();
+        std::string const go_on = options.restart.empty() && !checkpoint.empty() ? ", go on with --restart " + checkpoint : "";
         if (!empty && !appends_ && !options.overwrite)
             throw InputError("the output folder exists", folder_,
                              "name another with --output" + go_on + ", or replace it with --overwrite");
@@ -38,6 +38,14 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         fs::create_directories(folder_, error);
         if (error) throw InputError("the output folder cannot be made: " + error.message(), folder_, "name another with --output");
     });
+}
+
+/// Between two renames of a checkpoint that was being written, only the one before is there.
+std::string RunFolder::newest_checkpoint() const {
+    std::error_code ignored;
+    for (char const* name : {"checkpoint.h5", "checkpoint.previous.h5"})
+        if (fs::exists(path(name), ignored)) return path(name);
+    return {};
 }
 
 void RunFolder::open(Topology const& topology, Frame const& first, std::vector<std::string> const& columns) {
@@ -56,9 +64,8 @@ void RunFolder::on_disk(Action const& action) {
         try {
             action();
         } catch (ComputationError const& error) {
-            std::string const checkpoint = path("checkpoint.h5");
-            std::error_code ignored;
-            if (!fs::exists(checkpoint, ignored)) throw;
+            std::string const checkpoint = newest_checkpoint();
+            if (checkpoint.empty()) throw;
             throw ComputationError(std::string(error.what()) + ": mend that and go on with --restart " + checkpoint);
         }
     });

@@ -28,6 +28,8 @@ class RunFolder {
     std::vector<std::string> const& topology_files() const { return topology_files_; }
 
   private:
+    /// What a restart can begin with; empty: nothing.
+    std::string newest_checkpoint() const;
     /// By rank 0; a ComputationError of its tells the way back as well.
     template <class Action>
     void on_disk(Action const& action);

@@ -1,6 +1,7 @@
 // A run that is stopped and restarted is the undisturbed run, bit for bit: state, trajectory and table.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -107,10 +108,16 @@ TEST_P(Restart, RefusesAnotherScene) {
 }
 
 TEST_P(Restart, RefusesAnExistingFolder) {
-    run("parts", 5);
-    std::string const message = message_of([&] { run("parts", 5); });
-    EXPECT_NE(message.find("the output folder exists"), std::string::npos) << message;
-    EXPECT_NE(message.find("--overwrite"), std::string::npos) << message;
+    run("parts", 20);
+    for (std::string const file : {"checkpoint.h5", "checkpoint.previous.h5"}) {
+        std::string const newest = folder_ / "parts/" + file;
+        std::string const message = message_of([&] { run("parts", 5); });
+        EXPECT_NE(message.find("the output folder exists"), std::string::npos) << message;
+        EXPECT_NE(message.find("go on with --restart " + newest), std::string::npos) << message;
+        EXPECT_NE(message.find("--overwrite"), std::string::npos) << message;
+        std::filesystem::remove(newest);
+    }
+    EXPECT_EQ(message_of([&] { run("parts", 5); }).find("--restart"), std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, Restart, testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
