@@ -6,6 +6,7 @@
 #include <string>
 
 #include "chain/chain_group.hpp"
+#include "error.hpp"
 
 namespace catena::cuda {
 
@@ -22,6 +23,17 @@ DeviceMemory memory_needed(ChainGroup const&, Scene const&, Backend, Communicato
 
 /// Bytes that are free on the GPU chosen last, or this rank's part of them where ranks of a host share it.
 std::int64_t free_memory(Communicator const&);
+
+/// The GPU cannot hold the scene. Where nobody asked for it, the next choice may.
+class TooLittleMemory : public InputError {
+  public:
+    TooLittleMemory(std::string const& what, std::string const& where, std::string const& remedy)
+        : InputError(what, where, remedy), reason_(what) {}
+    std::string const& reason() const { return reason_; }
+
+  private:
+    std::string reason_;
+};
 
 /// Empty where it is enough, else "2.5 GiB of GPU memory are needed and 1.0 GiB are free".
 std::string too_little_memory(std::int64_t needed, std::int64_t free);

@@ -135,11 +135,12 @@ Outcome bench_plan(Communicator const& communicator, BenchRequest const& request
     outcome.json = {{"bench", "plan"}, {"build", version_json()}, {"hardware", hardware_json()}, {"results", Json::array()}};
     Worst worst;
     Handles const handles = request.handles == "full" ? Handles::full : Handles::projected;
-    plan::with_planner(communicator, request.threads.empty() ? 0 : std::stoi(request.threads), largest_sample, [&](plan::Planner& planner) {
-        for (plan::Family const& family : families_named(request.joints, handles))
-            for (std::int64_t const bodies : request.sizes) add_case(outcome, table, worst, planner, family, bodies);
-        outcome.json["left_out"] = planner.machine().no_gpu;
-    });
+    plan::with_planner(communicator, request.threads.empty() ? 0 : std::stoi(request.threads), largest_sample, "",
+                       [&](plan::Planner& planner) {
+                           for (plan::Family const& family : families_named(request.joints, handles))
+                               for (std::int64_t const bodies : request.sizes) add_case(outcome, table, worst, planner, family, bodies);
+                           outcome.json["left_out"] = planner.machine().no_gpu;
+                       });
     outcome.json["worst_ratio"] = worst.ratio;
     outcome.json["worst_choice_slower_by"] = worst.choice;
     outcome.json["valid"] = outcome.valid;

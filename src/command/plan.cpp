@@ -150,31 +150,7 @@ plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communica
     return plan::measure_phases(system, {5, 200, 0.5});
 }
 
-}  // namespace
-
-Outcome calibrate(Communicator const& communicator, PlanRequest const& request) {
-    Outcome outcome;
-    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
-    plan::with_planner(communicator, threads, largest_sample, [&](plan::Planner& planner) {
-        double const start = seconds_now();
-        planner.measure_everything();
-        std::string const file = plan::cache_file(planner.machine());
-        outcome.text =
-            fmt::format("{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
-                        counted(static_cast<long long>(planner.calibration().points()), "point", "points"), seconds_now() - start,
-                        file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME" : "kept in " + file);
-        outcome.json = {{"machine", planner.machine().identity}, {"points", planner.calibration().points()}, {"file", file}};
-    });
-    return outcome;
-}
-
-Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanRequest const& request) {
-    Axes const axes = axes_for(given);
-    Predictions predictions;
-    plan::with_planner(communicator, given.solver.threads, largest_sample,
-                       [&](plan::Planner& planner) { predictions = predict(planner, given, axes, communicator.size()); });
-    share(communicator, predictions.choice);
-    Scene const scene = with_choice(given, predictions.choice);
+Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator, PlanRequest const& request, Predictions predictions) {
     ChainSystem const system(scene, axes, communicator);
     predictions.choice.arrangement = {system.backend(), system.executor().threads()};
     std::vector<SolverReport> const reports = system.solver_reports();
@@ -225,6 +201,40 @@ Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanReq
         if (communicator.rank() == 0) add_measured(text, json, predictions, measured);
     }
     outcome.text = text.str();
+    return outcome;
+}
+
+}  // namespace
+
+Outcome calibrate(Communicator const& communicator, PlanRequest const& request) {
+    Outcome outcome;
+    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
+    plan::with_planner(communicator, threads, largest_sample, "", [&](plan::Planner& planner) {
+        double const start = seconds_now();
+        planner.measure_everything();
+        std::string const file = plan::cache_file(planner.machine());
+        outcome.text =
+            fmt::format("{}\n  {} measured in {:.3g} s; {}\n", planner.machine().identity,
+                        counted(static_cast<long long>(planner.calibration().points()), "point", "points"), seconds_now() - start,
+                        file.empty() ? "there is no place to keep them: set XDG_CACHE_HOME" : "kept in " + file);
+        outcome.json = {{"machine", planner.machine().identity}, {"points", planner.calibration().points()}, {"file", file}};
+    });
+    return outcome;
+}
+
+Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanRequest const& request) {
+    Axes const axes = axes_for(given);
+    Predictions predictions;
+    auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
+        plan::with_planner(communicator, scene.solver.threads, largest_sample, no_gpu,
+                           [&](plan::Planner& planner) { predictions = predict(planner, scene, axes, communicator.size()); });
+        share(communicator, predictions.choice);
+        return predictions.choice;
+    };
+    Outcome outcome;
+    plan::with_choice(given, choose, [&](Scene const& scene, plan::Choice const&) {
+        outcome = plan_chosen(scene, axes, communicator, request, predictions);
+    });
     return outcome;
 }
 

@@ -98,24 +98,25 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     StopSignals const signals;
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
-    plan::Choice const choice = plan::choose(given, axes, communicator);
-    Scene const scene = with_choice(std::move(given), choice);
     RunOptions options;
-    options.output = output_folder(scene, request);
+    options.output = output_folder(given, request);
     options.steps = request.steps;
     options.restart = request.restart;
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;
     options.stop = StopSignals::noted;
-    nlohmann::json const summary = run_simulation(scene, communicator, options);
     Outcome outcome;
-    outcome.valid = summary.at("valid").get<bool>();
-    outcome.whole = !summary.at("run").contains("stopped_by");
-    if (communicator.rank() != 0) return outcome;
-    outcome.text = text_of(scene, summary, choice.reason);
-    outcome.json = summary;
-    outcome.complaint = complaint_of(summary, outcome.whole);
+    auto const choose = [&](Scene const& scene, std::string const& no_gpu) { return plan::choose(scene, axes, communicator, no_gpu); };
+    plan::with_choice(std::move(given), choose, [&](Scene const& scene, plan::Choice const& choice) {
+        nlohmann::json const summary = run_simulation(scene, communicator, options);
+        outcome.valid = summary.at("valid").get<bool>();
+        outcome.whole = !summary.at("run").contains("stopped_by");
+        if (communicator.rank() != 0) return;
+        outcome.text = text_of(scene, summary, choice.reason);
+        outcome.json = summary;
+        outcome.complaint = complaint_of(summary, outcome.whole);
+    });
     return outcome;
 }
 

@@ -171,19 +171,15 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
     });
 }
 
-}  // namespace
-
-Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest const& request) {
-    prepare_file(communicator, request.accelerations);
+Outcome solve_chosen(Scene const& given, Communicator const& communicator, SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
-    plan::Choice const choice = plan::choose(given, Axes::joint, communicator);
-    Scene const scene = with_start_velocities(with_choice(std::move(given), choice), communicator);
+    Scene const scene = with_start_velocities(given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     system.close_tips();  // as a run does: velocities then fit them
     Timing const timing = time_evaluations(system, request.repeat);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);
-    json["backend_reason"] = choice.reason;
+    json["backend_reason"] = reason;
     double const residual = system.residual(), bound = system.residual_bound();
     std::vector<EnergyTerm> const energies = system.potential_energy();
     // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.
@@ -206,6 +202,20 @@ Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest 
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);
+    });
+    return outcome;
+}
+
+}  // namespace
+
+Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest const& request) {
+    prepare_file(communicator, request.accelerations);
+    Outcome outcome;
+    auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
+        return plan::choose(scene, Axes::joint, communicator, no_gpu);
+    };
+    plan::with_choice(std::move(given), choose, [&](Scene const& scene, plan::Choice const& choice) {
+        outcome = solve_chosen(scene, communicator, request, choice.reason);
     });
     return outcome;
 }

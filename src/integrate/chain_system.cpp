@@ -19,6 +19,7 @@ constexpr char const* without_gpu = "use auto, another backend, or a build with 
 constexpr char const* without_memory = "use more GPUs (ranks on several hosts), another backend, or fewer bodies";
 
 /// Ends all ranks together, with the words of the first that has a reason. Collective.
+template <class Error = InputError>
 void refuse_cuda(Communicator const& communicator, std::string const& backend, std::string const& reason, char const* remedy) {
     std::string own = reason, all(static_cast<std::size_t>(communicator.size()) * 200, ' ');
     own.resize(200, ' ');
@@ -29,7 +30,7 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
     std::string text = all.substr(found, 200 - found % 200);
     text.erase(text.find_last_not_of(' ') + 1);
     if (communicator.size() > 1) text += ", rank " + std::to_string(found / 200);
-    throw InputError(text, "solver.backend: " + backend, remedy);
+    throw Error(text, "solver.backend: " + backend, remedy);
 }
 
 }  // namespace
@@ -78,7 +79,8 @@ bool ChainSystem::is_current() noexcept {
 void ChainSystem::require_gpu_memory() const {
     std::int64_t needed = gpu_reserve;
     for (auto const& group : groups_) needed += cuda::memory_needed(*group, scene_, backend_, communicator_).sum();
-    refuse_cuda(communicator_, name_of(backend_), cuda::too_little_memory(needed, cuda::free_memory(communicator_)), without_memory);
+    refuse_cuda<cuda::TooLittleMemory>(communicator_, name_of(backend_), cuda::too_little_memory(needed, cuda::free_memory(communicator_)),
+                                       without_memory);
 }
 
 void ChainSystem::make_current() {

@@ -11,9 +11,6 @@
 namespace catena::plan {
 namespace {
 
-/// Of chains that are measured before a computation starts: a fraction of a second in all.
-constexpr std::int64_t largest_at_start = 16384;
-
 /// Why a GPU is not for `auto`, besides there being none. OpenMM computes on another platform with it, with another rounding.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
@@ -28,13 +25,12 @@ std::string text_of(Prediction const& p) {
 
 /// A GPU that would be chosen must hold the scene, with room for what a sample chain does not show (lists of short chains, OpenMM).
 void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<Share> const& shares, Machine const& machine) {
-    Arrangement const best = quickest(predictions).arrangement;
-    if (!uses_gpu(best.backend)) return;
+    if (!uses_gpu(quickest(predictions).arrangement.backend)) return;
     double constexpr reserve = 1 << 28, margin = 1.25;
     double needed = reserve;
     for (Share const& share : shares) needed += margin * machine.gpu_memory(share.family, share.bodies);
     for (Prediction& p : predictions)
-        if (p.arrangement == best)
+        if (uses_gpu(p.arrangement.backend))
             p.unusable = cuda::too_little_memory(static_cast<std::int64_t>(needed), static_cast<std::int64_t>(machine.free_gpu_memory()));
 }
 
@@ -77,19 +73,21 @@ Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     return {{solver.backend, solver.threads}, solver.levels_on_gpu(), "asked for"};
 }
 
-Choice choose(Scene const& scene, Axes axes, Communicator const& communicator) {
+Choice choose(Scene const& scene, Axes axes, Communicator const& communicator, std::string const& no_gpu) {
     Choice choice{{scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
     if (!leaves_open(scene)) return choice;
-    with_planner(communicator, scene.solver.threads, largest_at_start,
+    with_planner(communicator, scene.solver.threads, largest_at_start, no_gpu,
                  [&](Planner& planner) { choice = choose(scene, axes, planner, communicator.size()); });
     share(communicator, choice);
     return choice;
 }
 
-void with_planner(Communicator const& communicator, int threads, std::int64_t largest, std::function<void(Planner&)> const& action) {
+void with_planner(Communicator const& communicator, int threads, std::int64_t largest, std::string const& no_gpu,
+                  std::function<void(Planner&)> const& action) {
     Machine machine = this_machine(communicator, threads);
     // Every rank needs a GPU, or none gets one.
     if (communicator.max(machine.no_gpu.empty() ? 0 : 1) > 0) without_gpu(machine, "not every rank has one");
+    if (!no_gpu.empty()) without_gpu(machine, no_gpu);
     on_first_rank(communicator, [&] {
         Planner planner(machine, read_cache(machine), largest);
         action(planner);
@@ -114,6 +112,22 @@ Scene with_choice(Scene scene, Choice const& choice) {
     if (levels_are_open(scene.solver))
         scene.solver.gpu_levels = std::to_string(choice.levels.up) + "," + std::to_string(choice.levels.down);
     return scene;
+}
+
+void with_choice(Scene scene, Chooser const& choose, WithChoice const& action) {
+    SolverSpec const asked = scene.solver;
+    auto const attempt = [&](std::string const& no_gpu) {
+        Choice const choice = choose(scene, no_gpu);
+        scene = with_choice(std::move(scene), choice);
+        action(scene, choice);
+    };
+    try {
+        attempt("");
+    } catch (cuda::TooLittleMemory const& error) {
+        if (asked.backend != Backend::automatic) throw;
+        scene.solver = asked;
+        attempt(error.reason());
+    }
 }
 
 }  // namespace catena::plan

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "cuda/memory.hpp"
 #include "tests/plan/told_machine.hpp"
 
 namespace catena::test {
@@ -51,6 +52,26 @@ TEST(Choice, WhatDoesNotFitOnTheGpuStaysOnTheHost) {
     plan::Choice const choice = choose(told_scene(10000), machine);
     EXPECT_EQ(choice.arrangement, (Arrangement{Backend::openmp, 4}));
     EXPECT_NE(choice.reason.find("GiB of GPU memory are needed"), std::string::npos) << choice.reason;
+}
+
+/// As on another rank's GPU, or where OpenMM is there as well: known when everything is about to be made.
+TEST(Choice, AGpuThatTurnsOutTooSmallIsLeftOut) {
+    std::vector<Backend> tried;
+    std::string reason;
+    auto const chooser = [](Scene const& scene, std::string const& no_gpu) {
+        plan::Machine machine = told_machine(true);
+        if (!no_gpu.empty()) plan::without_gpu(machine, no_gpu);
+        return choose(scene, machine);
+    };
+    auto const action = [&](Scene const& scene, plan::Choice const& choice) {
+        tried.push_back(scene.solver.backend);
+        reason = choice.reason;
+        if (scene.solver.backend == Backend::cuda) throw cuda::TooLittleMemory("9 GiB are needed, rank 3", "solver.backend", "use others");
+    };
+    plan::with_choice(told_scene(10000), chooser, action);
+    EXPECT_EQ(tried, (std::vector<Backend>{Backend::cuda, Backend::openmp}));
+    EXPECT_NE(reason.find("; 9 GiB are needed, rank 3"), std::string::npos) << reason;
+    EXPECT_THROW(plan::with_choice(told_scene(10000, "{backend: cuda}"), chooser, action), InputError);  // asked for
 }
 
 TEST(Choice, AGpuThatFailsIsLeftOut) {
