@@ -209,7 +209,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
 Outcome calibrate(Communicator const& communicator, PlanRequest const& request) {
     Outcome outcome;
     int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
-    plan::with_planner(communicator, threads, largest_sample, "", [&](plan::Planner& planner) {
+    plan::with_planner(communicator, threads, plan::largest_at_start, "", [&](plan::Planner& planner) {
         double const start = seconds_now();
         planner.measure_everything();
         std::string const file = plan::cache_file(planner.machine());

@@ -54,7 +54,7 @@ Scene arranged(Scene scene, Arrangement const& arrangement) {
 PhaseSeconds measure_phases(ChainSystem& system, Effort const& effort) {
     Communicator const& communicator = system.communicator();
     system.evaluate();  // velocities in absolute coordinates are projected once
-    PhaseSeconds least = time_once(system);
+    PhaseSeconds least;
     least.fill(std::numeric_limits<double>::infinity());
     std::vector<double> evaluations;
     double const start = seconds_now();

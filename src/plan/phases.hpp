@@ -32,7 +32,7 @@ using PhaseCurve = Curve<phases>;
 /// How much a measurement may cost: evaluations, and seconds after which no more are begun (`least` are made in any case).
 struct Effort {
     int least = 3, most = 200;
-    double seconds = 0.03;
+    double seconds = 0.02;
 };
 
 /// The scene with the arrangement in the place of its own.
