@@ -106,6 +106,7 @@ std::string dynamics_text(Scene const& scene) {
                                    static_cast<double>(d.steps) * d.step, time_unit(scene));
     if (d.integrator == Integrator::g_baoab)
         text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
+    if (d.fixman) text += fmt::format(", Fixman potential at {} K", d.temperature);
     return text;
 }
 

@@ -13,6 +13,8 @@ std::vector<double> ChainSolver::time_evaluations(ConfigurationView const& confi
     return HostSpace(*executor).time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
 }
 
+void ChainSolver::invert(InverseView const& /*out*/) { throw ComputationError("this solver keeps nothing of the inverse of its matrix"); }
+
 void add_tree(ChainGroup const& group, Communicator const& communicator, SolverReport& report) {
     report.directions = group.directions;
     report.ranks = communicator.size();

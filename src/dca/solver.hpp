@@ -96,6 +96,13 @@ struct LoadsView {
     bool gyroscopic = false;       // `torque` lacks -omega x J omega: the solver adds it
 };
 
+/// Of links: what the inverse of their matrix T (formulas, "Link chains") says beyond solutions.
+struct InverseView {
+    View<1> pivot;      // of link k in the tree's order, those of tips among them: their product is det T; 1 where there is no link
+    View<1> tip_pivot;  // of the link from last body k to the ground
+    View<1> beside;     // (T^-1)_k,k+1 of the links on either side of body k; 0 where there are not two
+};
+
 struct AccelerationsView {
     View<3> alpha;               // angular, B; may be absent
     View<3> acceleration;        // of the centre of mass (bead), axes of LoadsView::force; may be absent
@@ -160,6 +167,8 @@ class ChainSolver {
     virtual void wait() {}
     /// From here on the seconds of every sweep are in the report, if need be by waiting for each.
     virtual void measure(bool /*on*/) {}
+    /// With the matrices assembled last by assemble_matrices(). Precondition: links, a backend without a GPU.
+    virtual void invert(InverseView const&);
     virtual SolverReport report() const = 0;
 };
 

@@ -7,6 +7,7 @@
 
 #include "dca/evaluation.hpp"
 #include "dca/host_space.hpp"
+#include "dca/inverse_sweep.hpp"
 #include "dca/parts.hpp"
 
 namespace catena::dca {
@@ -71,6 +72,33 @@ class TreeSolver final : public ChainSolver {
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
         return space_.time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
+    }
+
+    void invert(InverseView const& out) override {
+        if constexpr (Space::answers_at_once) {
+            if (!inverse_) inverse_.emplace(schedule_);
+            InverseSweep<Leaf> const sweep{sweeps_, inverse_->own.view(), inverse_->across.view(), out.beside};
+            auto const each = [&](auto const& items) { space_.over(std::span(items), sweep); };
+            auto const each_level = [&](auto const& levels) {
+                for (std::size_t l = levels.size(); l-- > 0;) each(levels[l]);
+            };
+            each(schedule_.top_roots);
+            each_level(schedule_.top_levels);
+            each(schedule_.top_copies);
+            each(schedule_.shared);
+            each(schedule_.roots);
+            each_level(schedule_.levels);
+            each(schedule_.runs);
+            auto const pivot = [this](std::int64_t joint) {
+                double const inverse = sweeps_.joints.load(joint).factor(0, 0);  // 0 where nothing is restricted
+                return inverse != 0 ? 1 / inverse : 1.0;
+            };
+            space_.for_each(group_.size, [&](std::int64_t k) { out.pivot.at(k, 0) = pivot(k); });
+            for (std::size_t i = 0; i < group_.tips.size(); ++i)
+                out.tip_pivot.at(group_.tips[i].body, 0) = pivot(schedule_.first_tip() + static_cast<std::int64_t>(i));
+        } else {
+            ChainSolver::invert(out);
+        }
     }
 
     /// Whether chains can be carried through several sweeps block by block, without a word from other ranks, and it pays.
@@ -199,6 +227,12 @@ class TreeSolver final : public ChainSolver {
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;
+    /// Of invert(), where it is asked for.
+    struct Inverse {
+        explicit Inverse(Schedule const& schedule) : own(schedule.joints), across(schedule.slots) {}
+        Records<double, Order::plain> own, across;
+    };
+    std::optional<Inverse> inverse_;
     bool measured_ = false;
     SolverReport report_;
 };

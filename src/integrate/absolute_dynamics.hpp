@@ -32,7 +32,7 @@ struct BodyResults {
 
 /// Body by body, this rank's.
 struct PotentialEnergy {
-    std::vector<double> gravity, springs;
+    std::vector<double> gravity, springs, fixman;  // fixman: where the scene asks for it
 };
 
 /// The larger of two; a NaN counts as the largest.

@@ -74,7 +74,9 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
                                                      Communicator const& communicator, std::unique_ptr<ChainSolver> solver) {
-    return std::make_unique<BeadDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver));
+    auto beads = std::make_unique<BeadDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver));
+    if (scene.dynamics.fixman) beads->use(std::make_unique<FixmanPotential>(group, scene, executor, communicator, beads->solver()));
+    return beads;
 }
 
 }  // namespace catena

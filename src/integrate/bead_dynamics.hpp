@@ -7,6 +7,7 @@
 #include "dca/tree_solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
 #include "integrate/bead_step.hpp"
+#include "integrate/fixman.hpp"
 
 namespace catena {
 
@@ -76,7 +77,12 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     void set_simple_forces() override {
         forces_ = {gravity_, {}};
         forces_are_ahead_ = true;
+        if (!fixman_) return;
+        settle_forces();
+        fixman_->add_forces(directions(), force_.view());
     }
+    /// On the host alone.
+    void use(std::unique_ptr<FixmanPotential> fixman) { fixman_ = std::move(fixman); }
     View<3> bead_forces() override {
         settle_forces();
         forces_are_out_ = true;
@@ -181,7 +187,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         auto const& observed = space_.read(observed_);
         return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
     }
-    PotentialEnergy potential() override { return potential_in(gravity_, group_, space_.read(position_)); }
+    PotentialEnergy potential() override {
+        PotentialEnergy energy = potential_in(gravity_, group_, space_.read(position_));
+        if (fixman_) energy.fixman = fixman_->energy();
+        return energy;
+    }
     ChainGroup const& group() const override { return group_; }
     ChainSolver& solver() const override { return *solver_; }
 
@@ -304,6 +314,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     BeadForces forces_;
     bool forces_are_ahead_ = false, forces_are_out_ = false;
     std::int64_t put_at_step_ = never;  // DeviceParticles::order of the particles that the last step moved with the beads
+    std::unique_ptr<FixmanPotential> fixman_;
 };
 
 }  // namespace catena

@@ -37,6 +37,9 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
+    if (uses_gpu(asked) && scene.dynamics.fixman)
+        throw InputError("the Fixman force is computed on the host", "solver.backend: " + std::string(name_of(asked)),
+                         "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
@@ -347,7 +350,7 @@ void ChainSystem::finish_openmm() {
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
     for (auto const& group : joint_) group->update_configuration();
-    bool const at_once = !project && !openmm_ && joint_.empty();
+    bool const at_once = !project && !openmm_ && joint_.empty() && !scene_.dynamics.fixman;  // whose forces need the matrices
     if (at_once)
         for (auto const& group : absolute_) group->set_simple_forces();
     else

@@ -45,8 +45,8 @@ class ChainSystem {
         std::vector<Quat> orientation;                // identity for beads
     };
     Snapshot snapshot();
-    /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, then OpenMM's.
-    /// Collective.
+    /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, fixman, then
+    /// OpenMM's. Collective.
     std::vector<EnergyTerm> potential_energy();
     /// Accelerations and joint forces of the last evaluate() in scene order on rank 0; for bodies in joint coordinates `joint_acceleration`
     /// holds qdd (revolute: first entry) and `base_acceleration` a free base's. Collective.

@@ -1,6 +1,7 @@
 #include "integrate/chain_system.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "chain/gather.hpp"
@@ -72,16 +73,18 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
 
 std::vector<EnergyTerm> ChainSystem::potential_energy() {
     std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
-    std::vector<double> gravity(n), springs(n);
+    std::vector<double> gravity(n), springs(n), fixman(scene_.dynamics.fixman ? n : 0);
     auto const add = [&](ChainGroup const& group, PotentialEnergy const& e) {
         gather_to_scene(communicator_, group, 1, e.gravity, gravity);
         gather_to_scene(communicator_, group, 1, e.springs, springs);
+        if (scene_.dynamics.fixman) gather_to_scene(communicator_, group, 1, e.fixman, fixman);
     };
     for (auto const& group : absolute_) add(group->group(), group->potential());
     for (auto const& group : joint_) add(group->group(), group->potential());
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
     for (double const e : gravity) terms[0].value += e;
     for (double const e : springs) terms[1].value += e;
+    if (scene_.dynamics.fixman) terms.push_back({"fixman", std::accumulate(fixman.begin(), fixman.end(), 0.0)});
     if (openmm_)
         for (EnergyTerm const& term : openmm_->energies()) terms.push_back(term);
     return terms;

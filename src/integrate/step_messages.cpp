@@ -46,7 +46,8 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
       beads_(group.beads),
       linked_(group.linked),
       moving_meeting_(group.moving_meeting()),
-      tips_(group.has_tips()) {
+      tips_(group.has_tips()),
+      fixman_(scene.dynamics.fixman) {
     BodyLoads const loads = group.beads ? BodyLoads() : make_body_loads(group, scene);
     joint_loads_ = loads.joint_loads;
     springs_ = loads.springs;
@@ -62,8 +63,9 @@ Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
     sum.bias_sweeps(drifts + closings, directions_);
     sum.from_inboard(closings, 3);
     if (beads_ || linked_) {
-        sum.from_inboard(drifts, 3);
-        sum.from_outboard(drifts, 3);
+        std::int64_t const forces = fixman_ ? 1 : 0;
+        sum.from_inboard(drifts + forces, 3);
+        sum.from_outboard(drifts + forces, 3);
     } else {
         if (springs_) sum.from_inboard(drifts, 4);
         if (joint_loads_) sum.from_outboard(1, 3);

@@ -25,7 +25,7 @@ class StepMessages {
 
     Integrator integrator_;
     std::int64_t directions_;
-    bool absolute_, beads_, linked_, joint_loads_, springs_, moving_meeting_, tips_;
+    bool absolute_, beads_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
 };
 
 }  // namespace catena

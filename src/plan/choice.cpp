@@ -14,6 +14,7 @@ namespace {
 /// Why a GPU is not for `auto`, besides there being none. OpenMM computes on another platform with it, with another rounding.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
+    if (scene.dynamics.fixman) return "the Fixman force is computed on the host";
     bool const other_forces = scene.forces.openmm && scene.forces.openmm->platform.empty();
     return other_forces ? "with the GPU OpenMM's platform would be another: name it in forces.openmm.platform" : "";
 }

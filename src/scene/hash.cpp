@@ -167,6 +167,7 @@ std::string fingerprint(Scene const& scene) {
     ForceSpec const& f = scene.forces;
     add_named(print, "scene drag", f.linear_drag != 0 || f.angular_drag != 0, f.linear_drag, f.angular_drag);
     print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
+    add_named(print, "fixman", d.fixman);
     return print.text();
 }
 

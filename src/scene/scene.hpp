@@ -176,6 +176,7 @@ struct DynamicsSpec {
     double friction = 0.01;
     std::uint64_t seed = 1;
     double constraint_tolerance = 1e-10;
+    bool fixman = false;  // rigid links sample as stiff springs would
 };
 
 enum class Backend { automatic, serial, segments, openmp, cuda, cuda_levels };

@@ -115,8 +115,8 @@ std::optional<Vec3> read_box(Node const& box) {
 }
 
 DynamicsSpec read_dynamics(Node const& node, bool si) {
-    Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed", "constraint_tolerance"},
-                        {"tolerance", "fixman"});
+    Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed", "constraint_tolerance", "fixman"},
+                        {"tolerance"});
     DynamicsSpec dynamics;
     dynamics.given = true;
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
@@ -131,6 +131,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     take(fields, "friction", dynamics.friction, non_negative);
     take(fields, "seed", dynamics.seed, seed64);
     take(fields, "constraint_tolerance", dynamics.constraint_tolerance, positive);
+    take(fields, "fixman", dynamics.fixman, truth);
     if (si && dynamics.integrator == Integrator::g_baoab) fields.need("friction", "friction: 1e10");
     return dynamics;
 }

@@ -65,6 +65,15 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     refuse_joint_forces(root, scene, draft);
 }
 
+void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
+    if (!dynamics.fixman) return;
+    Node const& at = *root.find("dynamics")->find("fixman");
+    if (!draft.chain.is_beads())
+        fail(at, fmt::format("the Fixman correction of chain `{}`, which is not of point beads alone", shown(draft.chain.name)),
+             "leave it out: links between point beads alone have it");
+    if (!(dynamics.temperature > 0)) fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
+}
+
 /// Drag acts on rigid bodies; left out silently on others it would mislead.
 void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
     if (scene.forces.linear_drag == 0 && scene.forces.angular_drag == 0) return;
@@ -151,6 +160,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         previous = &draft;
         check_drag(root, scene, draft);
         if (scene.dynamics.given) check_integrator(root, scene, draft);
+        check_fixman(root, scene.dynamics, draft);
         check_handles(root, scene, draft);
         check_thermal(root, scene.dynamics, draft);
     }

@@ -20,6 +20,12 @@ inline RunScene const run_scenes[] = {
     {"langevin_beads",
      "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 150, length: 0.38}}}]\n"
      "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"langevin_fixman",
+     "chains: [{name: a, velocities: thermal, generator: {freely_jointed: {beads: 1200, length: 0.38}}}, {name: b, base: fixed, "
+     "velocities: "
+     "thermal, tip: {joint: {type: link, anchor: [2, 3, 1]}}, generator: {freely_jointed: {beads: 70, length: 0.38}}}]\n"
+     "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5, fixman: true}\noutput: {every: 5, checkpoint_every: "
+     "10}\n"},
     {"rattle_bodies",
      "chains: [{name: a, base: free, velocities: thermal, generator: {random: {bodies: 60, joint: spherical, seed: 1}}}, {name: b, base: "
      "fixed, velocities: thermal, "

@@ -44,6 +44,9 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         if (backend != Backend::automatic && communicator.rank() == 0) {
             EXPECT_EQ(summary["solver"]["backend"], name_of(backend));
         }
+        if (communicator.rank() == 0) {
+            EXPECT_EQ(summary.at("parallel").at("messages_a_step").at("ranks_that_differ"), 0);
+        }
         return summary;
     }
     /// The checkpoint of run `name`, bit for bit.

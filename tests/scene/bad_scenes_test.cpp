@@ -214,6 +214,13 @@ dynamics: {integrator: g-baoab, step: 1})y",
 dynamics: {integrator: rk4, step: 1})y",
      "integrator rk4 works in joint coordinates, chain `asyn` has links (s.yaml: dynamics.integrator, line 2): use `integrator: rattle` or "
      "`g-baoab`"},
+    {"fixman_of_bodies", R"y(chains: [{generator: {random: {bodies: 9, joint: spherical}}, name: rods}]
+dynamics: {integrator: rattle, step: 1, fixman: true})y",
+     "the Fixman correction of chain `rods`, which is not of point beads alone (s.yaml: dynamics.fixman, line 2): leave it out: links "
+     "between point beads alone have it"},
+    {"fixman_without_a_temperature", R"y(chains: [{sequence: GGG, model: calvados2}]
+dynamics: {integrator: rattle, step: 1, temperature: 0, fixman: true})y",
+     "the Fixman correction without a temperature above 0 (s.yaml: dynamics.fixman, line 2): add `temperature: 300`"},
     {"damping_under_rattle", R"y(chains:
   - base: fixed
     bodies:
@@ -271,9 +278,6 @@ solver: {balance: true})y",
     {"tolerance", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rk4, step: 1, tolerance: 1e-6})y",
      "not in this version: key `tolerance` (s.yaml: dynamics.tolerance, line 2)"},
-    {"fixman", R"y(chains: [{sequence: GGG, model: calvados2}]
-dynamics: {integrator: rattle, step: 1, fixman: true})y",
-     "not in this version: key `fixman` (s.yaml: dynamics.fixman, line 2)"},
     {"implicit_midpoint", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: implicit-midpoint, step: 1})y",
      "not in this version: `integrator: implicit-midpoint` (s.yaml: dynamics.integrator, line 2)"},

@@ -1,0 +1,76 @@
+// Entries of the inverse of the links' matrix T (formulas, "Link chains") next to its diagonal, from the roots to the leaves after a matrix
+// sweep. The derivative of log det T is made of them: an entry of T^-1 is what its own entry of T adds to it.
+//
+// A joint's force follows from those at its segment's ends, phi = in phi_first + out phi_next + w r, w the inverse of its pivot. T^-1 is
+// made from the ends inwards in the same way.
+#pragma once
+
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::dca {
+
+/// Precondition: one restricted direction a joint at most.
+template <class Leaf>
+struct InverseSweep {
+    TreeSweeps<Leaf> s;
+    RecordsView<double, Order::plain> own;     // (T^-1)_jj, by joint
+    RecordsView<double, Order::plain> across;  // (T^-1)_jk of the joints at a segment's ends, by slot
+    View<1> beside;                            // as InverseView
+
+    void operator()(Root const& root) const {
+        double const first = s.joints.load(root.first).factor(0, 0);
+        Entries const tip = root.jointed_tip ? entries(root.next, first, 0, 0) : Entries{};
+        own.store(root.first, first);
+        across.store(root.slot, tip.inboard);
+        if (root.jointed_tip) own.store(root.next, tip.own);
+    }
+    void operator()(Merge const& m) const {
+        Entries const e = entries(m.joint, own.load(m.first), across.load(m.slot), own.load(m.next));
+        own.store(m.joint, e.own);
+        across.store(m.inboard, e.inboard);
+        across.store(m.outboard, e.outboard);
+    }
+    void operator()(TopCopy const& copy) const {
+        s.joints.store(copy.to, s.joints.load(copy.from));
+        own.store(copy.to, own.load(copy.from));
+    }
+    void operator()(SharedUnit const& unit) const {
+        if (unit.source >= 0) across.store(unit.source, across.load(unit.slot));
+    }
+    /// Its parts from the far end on, and each part's bodies.
+    void operator()(Run const& run) const {
+        Ends rest{own.load(run.body), across.load(run.slot), own.load(run.next)};
+        for (int p = parts_of(run) - 1; p > 0; --p) bodies(begin_of(run, p), end_of(run, p), take_off(begin_of(run, p), rest));
+        bodies(run.body, end_of(run, 0), rest);
+    }
+
+  private:
+    /// Of the joint where two segments meet: with the first joint's force, with its own and with the next joint's.
+    struct Entries {
+        double inboard = 0, own = 0, outboard = 0;
+    };
+    CATENA_HD Entries entries(std::int64_t joint, double first, double between, double next) const {
+        typename TreeSweeps<Leaf>::Joint const j = s.joints.load(joint);
+        double const w = j.factor(0, 0), in = w * j.inboard(0, 0), out = w * j.outboard(0, 0);
+        double const inboard = fused(in, first, out * between), outboard = fused(in, between, out * next);
+        return {inboard, fused(in, inboard, fused(out, outboard, w)), outboard};
+    }
+    /// Of a segment.
+    struct Ends {
+        double first, between, next;
+    };
+    /// What lies beyond joint k, which is taken off from `rest`.
+    CATENA_HD Ends take_off(std::int64_t k, Ends& rest) const {
+        Entries const e = entries(k, rest.first, rest.between, rest.next);
+        Ends const beyond{e.own, e.outboard, rest.next};
+        own.store(k, e.own);
+        rest = {rest.first, e.inboard, e.own};
+        return beyond;
+    }
+    CATENA_HD void bodies(std::int64_t begin, std::int64_t end, Ends rest) const {
+        for (std::int64_t k = end - 1; k > begin; --k) beside.at(k, 0) = take_off(k, rest).between;
+        beside.at(begin, 0) = rest.between;
+    }
+};
+
+}  // namespace catena::dca
