@@ -23,11 +23,11 @@ namespace {
 constexpr std::int64_t most_bodies_in_json = 10000;
 
 /// The recursive Newton-Euler residual of the worst chain, where the oracle can have it: every body on this rank, not too many, none
-/// joined by links.
+/// joined by links, no forces that it does not know.
 Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     Scene const& scene = system.scene();
     bool const linked = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.is_linked(); });
-    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || linked) return nullptr;
+    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || linked || scene.dynamics.fixman) return nullptr;
     double worst = 0;
     std::size_t body = 0, bead = 0;
     for (ChainSpec const& chain : scene.chains) {
@@ -151,8 +151,9 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     for (auto const& [term, energy] : json["potential_energy"].items())
         text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
     Json const& inverse = json["rnea_residual"];
-    text.entry("inverse dynamics", inverse.is_null() ? "residual not computed (several ranks, many bodies or bodies on links)"
-                                                     : fmt::format("residual {:.2e}, as information", inverse.get<double>()));
+    text.entry("inverse dynamics", inverse.is_null()
+                                       ? "residual not computed (several ranks, many bodies, bodies on links or a Fixman potential)"
+                                       : fmt::format("residual {:.2e}, as information", inverse.get<double>()));
     text.entry("residual",
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));

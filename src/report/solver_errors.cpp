@@ -115,6 +115,7 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
             Scene variant = scene;
             variant.solver.backend = backend;
             variant.solver.handles = kind;
+            variant.dynamics.fixman = false;  // whose forces the oracles do not know
             ChainSystem system(variant, Axes::joint, communicator);
             SolverPoint point{name_of(backend), name_of(kind), system.executor().threads(), 0, 0, 0, {}, false};
             point.seconds = time_evaluations(system, repeat).evaluation;

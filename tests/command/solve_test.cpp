@@ -120,6 +120,13 @@ TEST(Solve, AChainHeldAtBothEndsLeavesTheForcesOfOthersAcrossThePlane) {
     EXPECT_EQ(two[2][5].get<double>(), 0.0);           // held twice: not determined
 }
 
+TEST(Solve, KnowsTheFixmanPotential) {
+    Json const json = solved({input("freely-jointed-trimer.yaml"), "--set", "dynamics.fixman=true"});
+    EXPECT_LT(json["potential_energy"]["fixman"].get<double>(), 0);
+    EXPECT_TRUE(json["rnea_residual"].is_null());  // inverse dynamics does not know it
+    EXPECT_TRUE(json["valid"].get<bool>());
+}
+
 TEST(Solve, ArraysEndAtTenThousandBodies) {
     EXPECT_EQ(solved({input("random-link.yaml"), "--set", small + "10000"})["bead_accelerations"].size(), 10000U);
     Json const larger = solved({input("random-link.yaml"), "--set", small + "10001"});
