@@ -1,5 +1,7 @@
 // Whole runs with OpenMM's double-precision platform on several ranks: replicated they are the run on one rank, bit for bit; with ghosts
 // no pair is missed, and a restart is the undisturbed run.
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "tests/integrate/whole_run.hpp"
@@ -75,23 +77,27 @@ TEST_P(OpenMmRuns, WithGhostsTheyAreTheRunOnOneRankButForRounding) {
     world_.barrier();
 }
 
-/// Two chains of bodies in joint coordinates that fly past each other, so fast that lists last nine steps. Frames and
-/// checkpoints fall on different steps.
+/// Two chains of bodies in joint coordinates that fly past each other, so fast that lists last nine steps. Frames and checkpoints fall on
+/// different steps.
 std::string passing_bodies(std::string const& box) {
-    auto const chain = [](std::string const& name, std::string const& y, std::string const& speed) {
+    auto const chain = [](char const* name, double y, double speed) {
         std::string bodies;
         for (int k = 0; k < 40; ++k) {
-            std::string const turned = k % 2 == 0 ? "0.4" : "-0.4";
-            std::string const joint = k == 0 ? "{type: free, q: {position: [0, " + y + ", 0]}, qd: {velocity: [" + speed + ", 0, 0]}}"
-                                             : "{type: revolute, axis: [0, 0, 1], translation: [0.38, 0, 0], q: " + turned + "}";
-            bodies += "{mass: 100, com: [0.1, 0, 0], inertia: [2, 3, 4], joint: " + joint +
-                      ", beads: [{residue: " + (k % 2 == 0 ? "LYS" : "GLU") + ", position: [0, 0, 0], mass: 100}]}, ";
+            bool const even = k % 2 == 0;
+            std::string const joint =
+                k == 0 ? fmt::format("type: free, q: {{position: [0, {}, 0]}}, qd: {{velocity: [{}, 0, 0]}}", y, speed)
+                       : fmt::format("type: revolute, axis: [0, 0, 1], translation: [0.38, 0, 0], q: {}", even ? 0.4 : -0.4);
+            bodies += fmt::format(
+                "{{mass: 100, com: [0.1, 0, 0], inertia: [2, 3, 4], joint: {{{}}}, beads: [{{residue: {}, position: [0, 0, 0], mass: "
+                "100}}]}}, ",
+                joint, even ? "LYS" : "GLU");
         }
-        return "{name: " + name + ", base: free, bodies: [" + bodies + "]}";
+        return fmt::format("{{name: {}, base: free, bodies: [{}]}}", name, bodies);
     };
-    return "chains: [" + chain("here", "0", "3") + ", " + chain("there", "2.5", "-3") + "]\nbox: " + box +
-           "\nforces: {openmm: {builder: calvados2, platform: Reference, path: inline, audit: true}}\n"
-           "dynamics: {integrator: velocity-verlet, step: 0.01, steps: 30}\noutput: {every: 7, checkpoint_every: 10}\n";
+    return fmt::format(
+        "chains: [{}, {}]\nbox: {}\nforces: {{openmm: {{builder: calvados2, platform: Reference, path: inline, audit: true}}}}\n"
+        "dynamics: {{integrator: velocity-verlet, step: 0.01, steps: 30}}\noutput: {{every: 7, checkpoint_every: 10}}\n",
+        chain("here", 0, 3), chain("there", 2.5, -3), box);
 }
 
 class VerletRuns : public WholeRun {};
