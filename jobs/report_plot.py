@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Draws the solver error against run time that `catena report` found.
+"""Draws what `catena report` found, a picture for each part of the report: solver.png, integrators.png, forces.png, stability.png.
 
-usage: report_plot.py REPORT.json PICTURE.png
-One panel a scene: forward error (filled) and backward residual (open) against the median time of one evaluation, both axes logarithmic.
+usage: report_plot.py REPORT.json FOLDER
+Both axes of every panel are logarithmic.
 """
 
 import json
 import math
+import os
 import sys
 
 import matplotlib
@@ -16,7 +17,8 @@ import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.ticker import NullFormatter  # noqa: E402
 
-COLOURS = {"serial": "#0072B2", "segments": "#D55E00", "openmp": "#009E73", "oracle": "#666666"}
+COLOURS = {"serial": "#0072B2", "segments": "#D55E00", "openmp": "#009E73", "cuda": "#CC79A7", "cuda-levels": "#E69F00",
+           "rk4": "#0072B2", "velocity-verlet": "#D55E00", "rattle": "#009E73", "g-baoab": "#CC79A7", "oracle": "#666666"}
 MARKERS = {"projected": "o", "full": "s"}
 FLOOR = 1e-17  # an error of zero still has a place
 
@@ -26,65 +28,115 @@ def decades(values):
     return 10.0 ** math.floor(math.log10(min(values)) - 0.05), 10.0 ** math.ceil(math.log10(max(values)) + 0.05)
 
 
-def errors_of(study):
-    errors = [study["oracle"]["forward_error"]]
-    for point in study["points"]:
-        errors += [point["forward_error"], point["residual"]]
-    return [max(error, FLOOR) for error in errors if error is not None]
+def shown(errors):
+    return [max(error, FLOOR) for error in errors]
 
 
-def draw_study(axes, study, limits):
-    for point in study["points"]:
-        time = point["seconds"]["median"]
-        style = {"color": COLOURS[point["backend"]], "marker": MARKERS[point["handles"]], "markersize": 7, "linestyle": ""}
-        if point["forward_error"] is not None:
-            axes.plot(time, max(point["forward_error"], FLOOR), **style)
-        if point["residual"] is not None:
-            axes.plot(time, max(point["residual"], FLOOR), fillstyle="none", **style)
-    oracle = study["oracle"]
-    axes.plot(oracle["seconds"]["median"], max(oracle["forward_error"], FLOOR), "*", color=COLOURS["oracle"], markersize=9)
-    axes.set_xscale("log")
-    axes.set_yscale("log")
-    axes.set_xlim(decades([point["seconds"]["median"] for point in study["points"]] + [oracle["seconds"]["median"]]))
-    axes.set_ylim(limits)
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_minor_formatter(NullFormatter())
-    axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
-    axes.set_axisbelow(True)
-    condition = study["condition"]
-    note = f", condition {condition:.0e}" if condition else ""
-    axes.set_title(f"{study['kind']}, {study['bodies']:,} bodies{note}", fontsize=9)
+def panels(count, title, x_label, y_label):
+    columns = min(3, count)
+    rows = -(-count // columns)
+    figure, grid = plt.subplots(rows, columns, figsize=(4.2 * columns, 3.2 * rows + 1.0), squeeze=False, layout="constrained")
+    for axes in grid.flat[count:]:
+        axes.set_visible(False)
+    for axes in grid.flat[:count]:
+        axes.set_xscale("log")
+        axes.set_yscale("log")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_minor_formatter(NullFormatter())
+        axes.grid(True, which="major", color="#dddddd", linewidth=0.6)
+        axes.set_axisbelow(True)
+    for axes in grid[-1]:
+        axes.set_xlabel(x_label, fontsize=9)
+    for axes in grid[:, 0]:
+        axes.set_ylabel(y_label, fontsize=9)
+    figure.suptitle(title, fontsize=11)
+    return figure, list(grid.flat[:count])
 
 
-def legend_entries():
-    entries = [Line2D([], [], color=COLOURS[name], marker="o", linestyle="", label=name) for name in ("serial", "segments", "openmp")]
-    entries += [Line2D([], [], color="black", marker=MARKERS[kind], linestyle="", label=f"{kind} handles") for kind in MARKERS]
-    entries.append(Line2D([], [], color=COLOURS["oracle"], marker="*", linestyle="", label="articulated bodies (oracle)"))
-    entries.append(Line2D([], [], color="black", marker="o", linestyle="", label="forward error"))
-    entries.append(Line2D([], [], color="black", marker="o", fillstyle="none", linestyle="", label="backward residual"))
-    return entries
+def entry(name, marker="o", **style):
+    return Line2D([], [], color=style.pop("color", COLOURS.get(name, "black")), marker=marker, linestyle=style.pop("linestyle", ""), label=name, **style)
 
 
-def main(report_file, picture):
+def solver(report, hardware):
+    """Forward error (filled) and backward residual (open) against the median time of one evaluation."""
+    studies = report["studies"]
+    figure, all_axes = panels(len(studies), f"Solver error against run time\n{hardware}", "median time of one evaluation / s", "relative error")
+    used = []
+    for axes, study in zip(all_axes, studies):
+        for point in study["points"]:
+            style = {"color": COLOURS[point["backend"]], "marker": MARKERS[point["handles"]], "markersize": 7, "linestyle": ""}
+            used += [point["backend"]] if point["backend"] not in used else []
+            for key, fill in (("forward_error", "full"), ("residual", "none")):
+                if point[key] is not None:
+                    axes.plot(point["seconds"]["median"], max(point[key], FLOOR), fillstyle=fill, **style)
+        oracle = study["oracle"]
+        axes.plot(oracle["seconds"]["median"], max(oracle["forward_error"], FLOOR), "*", color=COLOURS["oracle"], markersize=9)
+        axes.set_xlim(decades([point["seconds"]["median"] for point in study["points"]] + [oracle["seconds"]["median"]]))
+        note = f", condition {study['condition']:.0e}" if study["condition"] else ""
+        axes.set_title(f"{study['kind']}, {study['bodies']:,} bodies{note}", fontsize=9)
+    entries = [entry(name) for name in used] + [entry(f"{kind} handles", MARKERS[kind]) for kind in MARKERS]
+    entries += [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]), entry("forward error"),
+                entry("backward residual", fillstyle="none")]
+    figure.legend(handles=entries, loc="outside lower center", ncols=4, fontsize=8, frameon=False)
+    return figure
+
+
+def integrators(report, hardware):
+    """Error at the end (solid) and of the energy (dashed) against the median time of the run."""
+    scenes = report["integrators"]["scenes"]
+    figure, all_axes = panels(len(scenes), f"Integrator error against run time\n{hardware}", "median time of the run / s", "relative error")
+    used = []
+    for axes, scene in zip(all_axes, scenes):
+        for curve in scene["curves"]:
+            name, points = curve["integrator"], curve["points"]
+            used += [name] if name not in used else []
+            times = [point["seconds"]["median"] for point in points]
+            for key, line in (("error", "-"), ("energy_error", ":")):
+                axes.plot(times, shown(point[key] for point in points), line, color=COLOURS[name], marker="o", markersize=3)
+        axes.set_title(scene["title"], fontsize=9)
+    entries = [entry(name) for name in used] + [entry("error at the end", "", linestyle="-"), entry("error of the energy", "", linestyle=":")]
+    figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    return figure
+
+
+def forces(report, hardware):
+    """Differences from the Reference platform, which itself stands at the bottom."""
+    studies = report["forces"]
+    figure, all_axes = panels(len(studies), f"OpenMM's forces\n{hardware}", "median time of an evaluation / s", "relative error (rms)")
+    for axes, study in zip(all_axes, studies):
+        for point in study["points"]:
+            axes.plot(point["seconds"]["median"], max(point["error"], FLOOR), "o", label=f"{point['platform']}, {point['precision']}")
+        axes.set_title(f"{study['title']}, {study['beads']:,} beads", fontsize=9)
+        axes.legend(fontsize=8, frameon=False)
+    return figure
+
+
+def stability(report, hardware):
+    """Forward error over growth, a dot a case; beyond the dashed line more was lost than the equations' roundings account for."""
+    figure, (axes,) = panels(1, f"Stability suite: forward error over growth\n{hardware}", "growth of roundings", "forward error")
+    figure.set_size_inches(8, 5.5)
+    backends = {}
+    for study in report["stability"]:
+        axes.plot(study["growth"], max(study["oracle"]["forward_error"] or 1, FLOOR), "*", color=COLOURS["oracle"], markersize=6)
+        for point in study["points"]:
+            if point["handles"] == "projected" and not point["refused"]:
+                backends[point["backend"]] = True
+                axes.plot(study["growth"], max(point["forward_error"], FLOOR), "o", color=COLOURS[point["backend"]], markersize=4)
+    growths = decades([study["growth"] for study in report["stability"]])
+    axes.plot(growths, [2.0**-53 * growth for growth in growths], "--", color="black", linewidth=0.8)
+    entries = [entry(name) for name in backends] + [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]),
+                                                    entry("2^-53 growth", "", linestyle="--")]
+    figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    return figure
+
+
+def main(report_file, folder):
     with open(report_file, encoding="utf-8") as file:
         report = json.load(file)
-    studies = report["studies"]
-    columns = min(3, len(studies))
-    rows = -(-len(studies) // columns)
-    figure, grid = plt.subplots(rows, columns, figsize=(4.2 * columns, 3.2 * rows + 1.0), squeeze=False, layout="constrained")
-    limits = decades([error for study in studies for error in errors_of(study)])
-    for axes, study in zip(grid.flat, studies):
-        draw_study(axes, study, limits)
-    for axes in grid.flat[len(studies) :]:
-        axes.set_visible(False)
-    for axes in grid[-1]:
-        axes.set_xlabel("median time of one evaluation / s", fontsize=9)
-    for axes in grid[:, 0]:
-        axes.set_ylabel("relative error", fontsize=9)
-    hardware = report["hardware"]
-    figure.suptitle(f"Solver error against run time\n{hardware['processor']}, {report['ranks']} rank(s)", fontsize=11)
-    figure.legend(handles=legend_entries(), loc="outside lower center", ncols=4, fontsize=8, frameon=False)
-    figure.savefig(picture, dpi=150)
+    hardware = f"{report['hardware']['processor']}, {report['ranks']} rank(s)"
+    for key, draw in (("studies", solver), ("integrators", integrators), ("forces", forces), ("stability", stability)):
+        if report.get(key):
+            draw(report, hardware).savefig(os.path.join(folder, draw.__name__ + ".png"), dpi=150)
 
 
 if __name__ == "__main__":

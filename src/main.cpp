@@ -1,6 +1,6 @@
 // The command line: catena check | plan | solve | run | report | bench. What each does is in command/.
 #include "command/commands.hpp"
-#include "command/generated.hpp"
+#include "command/report_scenes.hpp"
 #include "command/session.hpp"
 
 namespace {
@@ -31,12 +31,11 @@ int execute(Session const& session, RunRequest const& request) {
 }
 
 int execute(Session const& session, ReportRequest const& request) {
+    if (!request.suite.empty()) return session.conclude(report_stability(session.communicator(), request));
     std::vector<Scene> scenes;
     for (std::string const& file : request.scenes) scenes.push_back(session.load(file));
-    if (request.scenes.empty())
-        for (char const* const joint : {"link", "spherical", "revolute"})
-            for (int const bodies : {16, 256, 4096}) scenes.push_back(random_scene(joint, bodies, overrides_of(request)));
-    return session.conclude(report_scenes(scenes, session.communicator(), request));
+    return session.conclude(report_scenes(scenes.empty() ? generated_report(request) : sorted_for_report(std::move(scenes)),
+                                          session.communicator(), request));
 }
 
 int execute(Session const& session, BenchRequest const& request) { return session.conclude(run_bench(session.communicator(), request)); }

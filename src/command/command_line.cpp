@@ -16,6 +16,7 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
+constexpr std::string_view suite_names[] = {"stability"};
 constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures", "network", "plan"};
 
 /// What the contract promises for later versions, by command.
@@ -24,7 +25,7 @@ std::map<std::string, std::vector<std::string>> const later_options{
     {"plan", {}},
     {"solve", {"--precision", "--refine"}},
     {"run", {"--precision", "--refine"}},
-    {"report", {"--suite", "--quick", "--precision"}},
+    {"report", {"--precision"}},
     {"bench", {"--precision"}},
 };
 std::vector<std::string> const later_benches{"sweeps", "peers"};
@@ -32,9 +33,9 @@ std::vector<std::string> const later_benches{"sweeps", "peers"};
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite;
     std::vector<std::string> scenes;
-    bool overwrite = false, explain = false, measure = false, calibrate = false;
+    bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
 };
 
 void add_common(CLI::App& command, Words& words) {
@@ -116,11 +117,23 @@ void add_commands(CLI::App& app, Words& words) {
         "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
         "SIGINT, SIGTERM or SIGUSR1 on any rank: all finish their step, write a checkpoint and end with status 3.");
 
-    command = app.add_subcommand("report", "solver error against run time, as tables, JSON and a picture");
-    command->add_option("SCENE", words.scenes, "scene files (default: generated chains of 16, 256 and 4096 bodies)")->type_name("");
-    command->add_option("--output", words.output, "folder for report.json and report.png (default catena-report)")->type_name("DIR");
-    add_repeat(*command, words, "11");
-    command->footer("Examples:\n  catena report\n  catena report inputs/arm.yaml inputs/random-link.yaml --repeat 51 --output errors");
+    command = app.add_subcommand("report", "error against run time of solver, integrators and forces, as page, tables, JSON and pictures");
+    command
+        ->add_option("SCENE", words.scenes,
+                     "scene files (default: generated chains); integrators are compared where a scene has `dynamics` without OpenMM, "
+                     "forces where it has OpenMM")
+        ->type_name("");
+    command
+        ->add_option("--suite", words.suite,
+                     "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth of roundings, errors, bounds, verdicts")
+        ->type_name("NAME");
+    command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
+    command->add_option("--output", words.output, "folder for report.html, report.json and pictures (default catena-report)")
+        ->type_name("DIR");
+    add_repeat(*command, words, "11, with --quick 3");
+    command->footer(
+        "Examples:\n  catena report --quick\n  catena report inputs/arm.yaml inputs/random-link.yaml --repeat 51 --output errors\n"
+        "  catena report --suite stability --output stability");
 
     command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
     command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
@@ -252,8 +265,12 @@ ReportRequest report_request(Words const& words) {
     ReportRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
     request.scenes = words.scenes;
+    request.quick = words.quick;
+    if (!words.suite.empty()) request.suite = known_value("--suite", words.suite, suite_names);
+    if (!request.suite.empty() && !request.scenes.empty())
+        throw InputError("both --suite and a scene", "command line", "the suite has chains of its own: leave the scene out");
     if (!words.output.empty()) request.output = words.output;
-    request.repeat = repeat_of(words, request.repeat);
+    request.repeat = repeat_of(words, request.quick ? 3 : request.repeat);
     return request;
 }
 

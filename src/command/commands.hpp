@@ -22,8 +22,14 @@ Outcome solve_scene(Scene, Communicator const&, SolveRequest const&);
 /// A simulation with its folder.
 Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 
-/// Solver error against run time; writes report.json and, where Python can draw it, report.png.
-Outcome report_scenes(std::vector<Scene> const&, Communicator const&, ReportRequest const&);
+/// What `report` measures: the solver's error on all scenes, the integrators' and forces' on those that have them.
+struct ReportScenes {
+    std::vector<Scene> solver, integrators, forces, drift;
+    double time = 0;  // of the integrators; 0: 32 steps of each scene's own
+};
+/// Error against run time, or the stability suite (no scenes); writes report.json, report.html and, where Python can draw them, pictures.
+Outcome report_scenes(ReportScenes const&, Communicator const&, ReportRequest const&);
+Outcome report_stability(Communicator const&, ReportRequest const&);
 
 /// `solve`, or the list of benchmarks.
 Outcome run_bench(Communicator const&, BenchRequest const&);

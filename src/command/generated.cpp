@@ -18,6 +18,26 @@ Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<st
     return parse_scene(text, name, overrides);
 }
 
+Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides) {
+    std::string const text = fmt::format(
+        "title: 8 swinging bodies, {0}\n"
+        "units: si\n"
+        "chains: [{{name: swinging, base: fixed, generator: {{random: {{bodies: 8, joint: {0}, seed: 4{1}}}}}}}]\n"
+        "forces: {{gravity: [0, -3, -5]}}\n",
+        joint, joint == "link" ? "" : ", loads: false");
+    return parse_scene(text, "swinging-" + joint, overrides);
+}
+
+Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides) {
+    std::string const text = fmt::format(
+        "title: coil, {0} bodies\n"
+        "units: si\n"
+        "chains: [{{name: coil, base: fixed, generator: {{coil: {{bodies: {0}}}}}}}]\n"
+        "forces: {{gravity: [0, -3, -5]}}\n",
+        bodies);
+    return parse_scene(text, fmt::format("coil-{}", bodies), overrides);
+}
+
 namespace {
 
 constexpr char const* alpha_synuclein =

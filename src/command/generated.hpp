@@ -12,6 +12,12 @@ namespace catena::command {
 /// `joint`: link (free base) | spherical | revolute (fixed base, gravity). The same chain for the same arguments everywhere.
 Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides);
 
+/// Eight bodies that swing under gravity from a given start without losing energy. `joint`: revolute | spherical | mixed | link.
+Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides);
+
+/// Rods wound up into a helix, hanging at rest.
+Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides);
+
 /// Copies of alpha-synuclein (140 beads) at 330 mg/ml, g-BAOAB at 10 fs with OpenMM's forces: the chains that hold about so many beads;
 /// one has room around it.
 Scene condensate_scene(std::int64_t beads, std::vector<std::string> const& overrides);

@@ -5,11 +5,8 @@
 
 namespace catena::command {
 
-struct Picture {
-    std::string file;    // empty: none was drawn
-    std::string remark;  // why not, and what to do
-};
-/// Runs jobs/report_plot.py. Looks for Python in VIRTUAL_ENV, in the venv folder of the build tree the program lies in, and on PATH.
-Picture draw_report(std::string const& report_json, std::string const& png);
+/// Runs jobs/report_plot.py, which draws a PNG for each part of the report into the folder. Empty, or why not and what to do. Looks for
+/// Python in VIRTUAL_ENV, in the venv folder of the build tree the program lies in, and on PATH.
+std::string draw_report(std::string const& report_json, std::string const& folder);
 
 }  // namespace catena::command

@@ -5,96 +5,127 @@
 #include <filesystem>
 
 #include "command/commands.hpp"
-#include "command/describe.hpp"
 #include "command/picture.hpp"
+#include "command/report_parts.hpp"
+#include "command/values.hpp"
 #include "command/version.hpp"
+#include "cuda/solver.hpp"
+#include "error.hpp"
+#include "force/openmm_force.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
-#include "report/solver_errors.hpp"
+#include "report/hardware.hpp"
 
 namespace catena::command {
 namespace {
 
-Json spread_json(Spread const& s) { return {{"median", s.median}, {"min", s.min}, {"max", s.max}, {"repeat", s.count}}; }
+constexpr int integrator_steps = 32;  // of a scene's own: the time over which its integrators are compared
+constexpr double drift_step = 0.002;
+constexpr std::int64_t drift_steps = 1000000;
 
-Json json_of(SolverStudy const& study) {
-    Json points = Json::array();
-    for (SolverPoint const& p : study.points)
-        points.push_back({{"backend", p.backend},
-                          {"handles", p.handles},
-                          {"threads", p.threads},
-                          {"residual", p.residual},
-                          {"residual_bound", p.residual_bound},
-                          {"forward_error", p.forward_error},
-                          {"seconds", spread_json(p.seconds)},
-                          {"valid", p.valid}});
-    return {
-        {"title", study.title},
-        {"scene", study.file},
-        {"kind", study.kind},
-        {"bodies", study.bodies},
-        {"condition", study.condition ? Json(*study.condition) : Json()},
-        {"reference", study.reference},
-        {"oracle",
-         {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}, {"seconds", spread_json(study.oracle_seconds)}}},
-        {"points", points}};
+void make_folder(Communicator const& communicator, std::string const& folder) {
+    on_first_rank(communicator, [&] {
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error || !std::filesystem::is_directory(folder))
+            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
+    });
 }
 
-std::string text_of(SolverStudy const& study) {
-    Text text;
-    text.heading(fmt::format("{} ({}): {} bodies, condition {}; reference: {}", study.title, study.kind, study.bodies,
-                             study.condition ? fmt::format("{:.1e}", *study.condition) : "not estimated", study.reference));
-    Table table({"backend", "handles", "threads", "residual", "bound", "forward error", "time", "ns a body", ""}, {0, 1, 8});
-    auto const a_body = [&](double seconds) { return fmt::format("{:.1f}", 1e9 * seconds / static_cast<double>(study.bodies)); };
-    for (SolverPoint const& p : study.points)
-        table.add({p.backend, p.handles, std::to_string(p.threads), fmt::format("{:.1e}", p.residual),
-                   fmt::format("{:.1e}", p.residual_bound), fmt::format("{:.1e}", p.forward_error), duration_text(p.seconds.median),
-                   a_body(p.seconds.median), p.valid ? "VALID" : "INVALID"});
-    table.add({"articulated bodies", "(oracle)", "1", "", "", fmt::format("{:.1e}", study.oracle_error),
-               duration_text(study.oracle_seconds.median), a_body(study.oracle_seconds.median), ""});
-    text.add(table);
-    return text.str();
+/// All that this build and machine have, unless one is named.
+std::vector<Backend> backends_of(ReportRequest const& request) {
+    if (!request.backend.empty() && request.backend != "auto") return {backend_named("--backend", request.backend)};
+    std::vector<Backend> backends = cpu_backends();
+    if (cuda::why_not().empty()) backends.insert(backends.end(), {Backend::cuda, Backend::cuda_levels});
+    return backends;
+}
+
+std::vector<Handles> handles_of(ReportRequest const& request) {
+    if (request.handles.empty()) return {Handles::projected, Handles::full};
+    return {request.handles == "full" ? Handles::full : Handles::projected};
+}
+
+/// Text and JSON, and on rank 0 the files.
+Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts, std::vector<std::string> const& left_out,
+                 Communicator const& communicator, ReportRequest const& request) {
+    Outcome outcome;
+    std::string const hardware = fmt::format("{}, {}; {}", hardware_text(), counted(communicator.size(), "rank", "ranks"), compiler_name());
+    outcome.json = {{"report", title},
+                    {"build", version_json()},
+                    {"hardware", hardware_json()},
+                    {"ranks", communicator.size()},
+                    {"left_out", left_out}};
+    for (ReportPart const& part : parts) {
+        outcome.json[part.key] = part.json;
+        outcome.text += text_of(part);
+        outcome.valid = outcome.valid && part.valid;
+    }
+    outcome.json["valid"] = outcome.valid;
+    outcome.complaint = "see the report";
+    on_first_rank(communicator, [&] {
+        std::string const json = request.output + "/report.json", page = request.output + "/report.html";
+        write_text_file(json, json_text(outcome.json));
+        write_text_file(page, page_of("Catena: " + title, hardware, parts));
+        for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
+        outcome.text += hardware + "\nwrote " + json + ", " + page + "\n";
+        std::string const remark = draw_report(json, request.output);
+        if (!remark.empty()) outcome.text += remark + "\n";
+        for (ReportPart const& part : parts)
+            if (remark.empty()) outcome.text += "drew " + request.output + "/" + part.picture + ".png\n";
+        outcome.text += outcome.valid ? "VALID\n" : "INVALID\n";
+    });
+    return outcome;
+}
+
+ReportPart integrators_of(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
+    std::vector<IntegratorStudy> studies;
+    for (Scene const& scene : scenes.integrators) {
+        double const time = scenes.time > 0 ? scenes.time : integrator_steps * scene.dynamics.step;
+        studies.push_back(study_integrator_errors(scene, communicator, time, request.quick ? 8 : 10, request.repeat));
+        spdlog::info("integrators of {} done", scene.title);
+    }
+    std::vector<DriftStudy> drifts;
+    for (Scene const& scene : scenes.drift)
+        for (Integrator const integrator : {Integrator::rattle, Integrator::g_baoab})
+            drifts.push_back(study_drift(scene, communicator, integrator, drift_step, drift_steps));
+    return integrator_part(studies, drifts);
 }
 
 }  // namespace
 
-Outcome report_scenes(std::vector<Scene> const& scenes, Communicator const& communicator, ReportRequest const& request) {
-    on_first_rank(communicator, [&] {
-        std::error_code error;
-        std::filesystem::create_directories(request.output, error);
-        if (error || !std::filesystem::is_directory(request.output))
-            throw InputError("the folder cannot be made: " + error.message(), "--output " + request.output, "name another");
-    });
-    std::vector<Backend> const backends =
-        request.backend.empty() || request.backend == "auto" ? cpu_backends() : std::vector{scenes.front().solver.backend};
-    std::vector<Handles> const handles =
-        request.handles.empty() ? std::vector{Handles::projected, Handles::full} : std::vector{scenes.front().solver.handles};
-    Outcome outcome;
-    outcome.json = {{"report", "solver error against run time"},
-                    {"build", version_json()},
-                    {"hardware", hardware_json()},
-                    {"ranks", communicator.size()},
-                    {"forward_error", "largest difference of the joint accelerations from the reference, relative to the largest"},
-                    {"studies", Json::array()}};
-    for (Scene const& scene : scenes) {
-        SolverStudy const study = study_solver_errors(scene, communicator, backends, handles, request.repeat);
+Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
+    make_folder(communicator, request.output);
+    std::vector<SolverStudy> solver;
+    for (Scene const& scene : scenes.solver) {
+        solver.push_back(study_solver_errors(scene, communicator, backends_of(request), handles_of(request), request.repeat));
         spdlog::info("{} done", scene.title);
-        if (communicator.rank() != 0) continue;
-        outcome.valid =
-            outcome.valid && std::all_of(study.points.begin(), study.points.end(), [](SolverPoint const& p) { return p.valid; });
-        outcome.text += text_of(study);
-        outcome.json["studies"].push_back(json_of(study));
     }
-    on_first_rank(communicator, [&] {
-        std::string const json = request.output + "/report.json", png = request.output + "/report.png";
-        outcome.json["valid"] = outcome.valid;
-        write_text_file(json, json_text(outcome.json));
-        Picture const picture = draw_report(json, png);
-        outcome.text += fmt::format("{}, {}\n", hardware_text(), counted(communicator.size(), "rank", "ranks"));
-        outcome.text += "wrote " + json + "\n" + (picture.file.empty() ? picture.remark : "drew " + picture.file) + "\n";
-        outcome.text += outcome.valid ? "VALID\n" : "INVALID\n";
-    });
-    return outcome;
+    std::vector<ReportPart> parts;
+    std::vector<std::string> left_out;
+    if (communicator.rank() == 0) parts.push_back(solver_part(solver));
+    if (communicator.size() > 1 && !(scenes.integrators.empty() && scenes.forces.empty()))
+        left_out.emplace_back("integrators and forces: they are compared on one rank");
+    if (communicator.size() == 1) {
+        if (!scenes.integrators.empty()) parts.push_back(integrators_of(scenes, communicator, request));
+        std::vector<ForceStudy> forces;
+        for (Scene const& scene : scenes.forces) forces.push_back(study_force_errors(scene, communicator, request.repeat));
+        if (!forces.empty()) parts.push_back(force_part(forces));
+        if (openmm_platforms().empty()) left_out.emplace_back("forces: built without OpenMM");
+    }
+    return conclude("error against run time", parts, left_out, communicator, request);
+}
+
+Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
+    if (communicator.size() > 1)
+        throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"), "--suite", "run it without mpirun");
+    make_folder(communicator, request.output);
+    std::vector<StabilityStudy> studies;
+    for (StabilityCase const& each : stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick)) {
+        int const seeds = each.bodies > 100000 ? 1 : 3;
+        studies.push_back(study_stability(each, backends_of(request), handles_of(request), seeds));
+        spdlog::info("{}, {}: {}", each.family, each.name, name_of(studies.back().verdict()));
+    }
+    return conclude("stability suite", {stability_part(studies)}, {}, communicator, request);
 }
 
 }  // namespace catena::command

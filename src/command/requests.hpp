@@ -43,8 +43,10 @@ struct RunRequest : SceneOptions {
 };
 struct ReportRequest : CommonOptions {
     std::vector<std::string> scenes;  // empty: generated ones
+    std::string suite;                // "stability"; empty: error against run time
     std::string output = "catena-report";
     int repeat = 11;
+    bool quick = false;
 };
 struct BenchRequest : CommonOptions {
     std::string name;

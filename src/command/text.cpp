@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "io/html.hpp"
+
 namespace catena::command {
 
 std::string Table::text(std::string const& indent) const {
@@ -17,13 +19,27 @@ std::string Table::text(std::string const& indent) const {
     for (auto const& row : rows_) {
         std::string line = indent;
         for (std::size_t c = 0; c < row.size(); ++c) {
-            bool const flush_left = std::find(left_.begin(), left_.end(), c) != left_.end();
-            line += (c == 0 ? "" : "  ") + (flush_left ? fmt::format("{:<{}}", row[c], width[c]) : fmt::format("{:>{}}", row[c], width[c]));
+            line += (c == 0 ? "" : "  ") + (is_left(c) ? fmt::format("{:<{}}", row[c], width[c]) : fmt::format("{:>{}}", row[c], width[c]));
         }
         text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
     }
     return text;
 }
+
+std::string Table::html() const {
+    std::string html = "<table class=\"rows\">\n<thead><tr>";
+    for (std::string const& cell : rows_.front()) html += "<th>" + escaped(cell) + "</th>";
+    html += "</tr></thead>\n<tbody>\n";
+    for (std::size_t r = 1; r < rows_.size(); ++r) {
+        html += "<tr>";
+        for (std::size_t c = 0; c < rows_[r].size(); ++c)
+            html += (is_left(c) ? "<td class=\"text\">" : "<td>") + escaped(rows_[r][c]) + "</td>";
+        html += "</tr>\n";
+    }
+    return html + "</tbody>\n</table>\n";
+}
+
+bool Table::is_left(std::size_t column) const { return std::find(left_.begin(), left_.end(), column) != left_.end(); }
 
 void Text::entry(std::string const& name, std::string const& value) { text_ += fmt::format("  {:<20} {}\n", name, value); }
 

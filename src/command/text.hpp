@@ -13,8 +13,11 @@ class Table {
         : rows_{std::move(header)}, left_(std::move(left)) {}
     void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
     std::string text(std::string const& indent = "  ") const;
+    /// The same for a page (io/html.hpp).
+    std::string html() const;
 
   private:
+    bool is_left(std::size_t column) const;
     std::vector<std::vector<std::string>> rows_;
     std::vector<std::size_t> left_;
 };

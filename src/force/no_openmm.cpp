@@ -27,4 +27,6 @@ std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const&, BeadSystem const& 
 
 std::string openmm_version() { return "none"; }
 
+std::vector<std::string> openmm_platforms() { return {}; }
+
 }  // namespace catena

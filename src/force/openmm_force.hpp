@@ -99,5 +99,7 @@ std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem con
 
 /// "OpenMM 8.6.1" or "none".
 std::string openmm_version();
+/// Platforms that are present ("Reference", "CPU", ...); none without OpenMM.
+std::vector<std::string> openmm_platforms();
 
 }  // namespace catena

@@ -106,6 +106,11 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, 
     return chosen;
 }
 
+std::vector<std::string> openmm_platforms() {
+    load_openmm_plugins();
+    return platforms_present();
+}
+
 std::string openmm_version() { return "OpenMM " + OpenMM::Platform::getOpenMMVersion(); }
 
 }  // namespace catena

@@ -60,12 +60,19 @@ std::string curve_family(CurveFamily const& family) {
         NamedCurve const& curve = family.curves[i];
         std::string const style =
             fmt::format("stroke=\"{}\"{}", colours[i % std::size(colours)], curve.dashed ? " stroke-dasharray=\"5 4\"" : "");
+        std::string dots;
         svg += "<polyline " + style + " points=\"";
-        for (std::size_t k = 0; k < curve.x.size(); ++k)
-            if (drawn(curve.x[k], curve.y[k])) svg += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[k]), at_y(curve.y[k]));
+        for (std::size_t k = 0; k < curve.x.size(); ++k) {
+            if (!drawn(curve.x[k], curve.y[k])) continue;
+            if (curve.joined) svg += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[k]), at_y(curve.y[k]));
+            if (curve.marked)
+                dots += fmt::format("<circle fill=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>", colours[i % std::size(colours)],
+                                    at_x(curve.x[k]), at_y(curve.y[k]));
+        }
         double const y = top + 8 + line_height * static_cast<double>(i), x = left + inner_width + 12;
         svg += fmt::format("\"/><line {} stroke-width=\"1.8\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
                            style, x, x + 22, y, y, x + 28, y + 4, escaped(curve.name));
+        svg += dots + (dots.empty() ? "" : "\n");
     }
     return svg + "</svg>\n";
 }

@@ -10,6 +10,8 @@ struct NamedCurve {
     std::string name;
     std::vector<double> x, y;  // of one length; what is not positive is left out
     bool dashed = false;
+    bool marked = false;  // every point by a dot
+    bool joined = true;   // points by lines
 };
 struct CurveFamily {
     std::string title, x_label, y_label;

@@ -3,48 +3,12 @@
 #include <cmath>
 #include <set>
 
-#include "dca/oracle/oracle.hpp"
 #include "error.hpp"
 #include "integrate/start_velocities.hpp"
-#include "report/solution.hpp"
+#include "report/oracle_accelerations.hpp"
 
 namespace catena {
 namespace {
-
-template <class Scalar>
-Matrix<Scalar, 3, 3> orientation_of(ChainSpec const& chain, std::size_t k) {
-    auto const& q = chain.linked.orientation[k];
-    return to_matrix(Quaternion<Scalar>{Scalar(q[0]), Scalar(q[1]), Scalar(q[2]), Scalar(q[3])});
-}
-
-/// Joint accelerations in the layout of Solution::acceleration.
-template <class Scalar>
-std::vector<double> oracle_accelerations(Scene const& scene, std::vector<Vec3> const& bead_force) {
-    std::vector<double> list;
-    std::size_t bead = 0;
-    auto const append = [&](Vector<Scalar, 3> const& v, int count) {
-        for (int i = 0; i < count; ++i) list.push_back(static_cast<double>(v[i]));
-    };
-    for (ChainSpec const& chain : scene.chains) {
-        oracle::Loads loads{scene.forces.gravity, {}, scene.forces.linear_drag, scene.forces.angular_drag};
-        if (!bead_force.empty()) loads.bead_forces.assign(bead_force.begin() + bead, bead_force.begin() + bead + chain.bead_count());
-        bead += chain.bead_count();
-        oracle::OracleResult<Scalar> const r = oracle::aba<Scalar>(chain, loads);
-        for (std::size_t k = 0; k < chain.size(); ++k) {
-            int const numbers = accelerations_of(chain, k);
-            if (chain.is_beads() || (chain.is_linked() && numbers == 3)) {
-                append(r.com_acceleration[k], 3);
-            } else if (chain.is_linked()) {
-                append(transposed_times(orientation_of<Scalar>(chain, k), r.alpha[k]), 3);
-                append(r.com_acceleration[k], 3);
-            } else {
-                append(r.qdd[k], std::min(3, numbers));
-                if (numbers == 6) append(r.base_acceleration, 3);
-            }
-        }
-    }
-    return list;
-}
 
 bool finite(std::vector<double> const& values) {
     double sum = 0;

@@ -115,9 +115,56 @@ TEST(Report, ErrorsAndTimesOfEveryBackendAndHandleKind) {
     }
     EXPECT_GT(json["studies"][0]["condition"].get<double>(), 1);  // 4 bodies
     EXPECT_TRUE(json["studies"][1]["condition"].is_null());       // 1,000
+    EXPECT_TRUE(std::filesystem::exists(folder / "report/report.html"));
     bool const drawn = e.out.find("drew ") != std::string::npos;  // a Python with matplotlib may be absent; then a line says what to do
-    EXPECT_EQ(std::filesystem::exists(folder / "report/report.png"), drawn);
+    EXPECT_EQ(std::filesystem::exists(folder / "report/solver.png"), drawn);
     EXPECT_TRUE(drawn || e.out.find("no picture: ") != std::string::npos) << e.out;
+}
+
+TEST(Report, QuickComparesSolversIntegratorsAndForces) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"report", "--quick", "--repeat", "1", "--output", folder / "r"});
+    expect_good(e);
+    Json const json = Json::parse(std::ifstream(folder / "r/report.json"));
+    EXPECT_EQ(json.at("valid"), true);
+    EXPECT_GE(json.at("studies").size(), 7U);
+    ASSERT_EQ(json.at("integrators").at("scenes").size(), 4U);
+    for (Json const& scene : json["integrators"]["scenes"])
+        for (Json const& curve : scene.at("curves")) EXPECT_NEAR(curve.at("slope").get<double>(), curve.at("order").get<double>(), 0.1);
+    bool const openmm = json.at("build").at("openmm") != "none";
+    EXPECT_EQ(json.contains("forces"), openmm);
+    EXPECT_EQ(json.at("left_out").empty(), openmm);
+    std::ifstream file(folder / "r/report.html");
+    std::string const page{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_GE(count(page, "<svg"), 8U);  // two of each kind of solver and of each integrators' scene
+    EXPECT_EQ(count(page, "<svg"), count(page, "</svg>"));
+    EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg"));  // nothing is loaded
+    EXPECT_EQ(page.find("<script"), std::string::npos);
+}
+
+TEST(Report, AUsersSceneIsComparedWithItsOwnIntegrators) {
+    TemporaryFolder const folder;
+    auto const json =
+        catena({"report", input("pendulum.yaml"), "--repeat", "1", "--quick", "--output", folder / "r", "--json", "-"}).json();
+    EXPECT_EQ(json.at("studies").size(), 1U);
+    EXPECT_EQ(json.at("integrators").at("scenes").at(0).at("curves").size(), 2U);  // rk4 and velocity-verlet
+}
+
+TEST(Report, TheStabilitySuiteGivesAVerdictForEveryCase) {
+    TemporaryFolder const folder;
+    Ended const e =
+        catena({"report", "--suite", "stability", "--quick", "--backend", "segments", "--handles", "projected", "--output", folder / "r"});
+    Json const json = Json::parse(std::ifstream(folder / "r/report.json"));
+    EXPECT_EQ(e.status, json.at("valid").get<bool>() ? 0 : 1);
+    EXPECT_GT(json.at("stability").size(), 40U);
+    for (Json const& each : json.at("stability")) {
+        std::string const verdict = each.at("verdict");
+        // Inverses of thin bodies' inertias keep the digits of their largest entries alone.
+        bool const thin = each.at("family").get<std::string>().starts_with("thin bodies") && each.at("name") == "1e8";
+        EXPECT_EQ(verdict == "INVALID", thin) << each.dump();
+        EXPECT_GE(each.at("growth").get<double>(), 1);
+    }
+    EXPECT_EQ(catena({"report", "--suite", "stability", input("arm.yaml")}).status, 2);
 }
 
 TEST(Report, BackendAndHandlesCanBeChosen) {

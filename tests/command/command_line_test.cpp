@@ -62,6 +62,10 @@ TEST(CommandLine, ReportTakesSeveralScenesOrNone) {
     EXPECT_EQ(std::get<ReportRequest>(parsed({"report", "a.yaml", "b.yaml", "--repeat", "3"})).scenes,
               (std::vector<std::string>{"a.yaml", "b.yaml"}));
     EXPECT_TRUE(std::get<ReportRequest>(parsed({"report"})).scenes.empty());
+    auto const suite = std::get<ReportRequest>(parsed({"report", "--suite", "stability", "--quick"}));
+    EXPECT_EQ(suite.suite, "stability");
+    EXPECT_TRUE(suite.quick);
+    EXPECT_EQ(refusal({"report", "--suite", "stabilty"}), "`stabilty` is not a value of --suite (command line): did you mean `stability`?");
 }
 
 TEST(CommandLine, AMachineIsCalibratedWithoutAScene) {
@@ -74,7 +78,7 @@ TEST(CommandLine, ACommandsNameIsNoSecondCommand) { EXPECT_EQ(std::get<CheckRequ
 
 TEST(CommandLine, LaterCommandsAndOptionsSaySo) {
     for (std::vector<char const*> const& words :
-         std::vector<std::vector<char const*>>{{"report", "--suite", "stability"}, {"bench", "peers"}})
+         std::vector<std::vector<char const*>>{{"report", "--precision", "mixed"}, {"bench", "peers"}})
         EXPECT_TRUE(refusal(words).starts_with("not in this version: ")) << refusal(words);
 }
 

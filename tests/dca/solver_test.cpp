@@ -7,6 +7,7 @@
 #include "dca/oracle/oracle.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
+#include "report/nudged.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"

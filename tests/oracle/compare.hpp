@@ -11,6 +11,7 @@
 #include <string>
 
 #include "dca/oracle/oracle.hpp"
+#include "report/nudged.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 

@@ -171,48 +171,7 @@ ChainSpec without_bodies(char const* name, Base base) {
     return chain;
 }
 
-/// Moves numbers by up to `size` of themselves.
-class Perturbation {
-  public:
-    Perturbation(std::uint64_t seed, double size) : random_(seed), size_(size) {}
-    void operator()(double& x) { x *= 1 + random_.uniform(-size_, size_); }
-    template <class Container>
-    void operator()(Container& values) {
-        for (auto& value : values) (*this)(value);
-    }
-    void operator()(Vec3& v) { (*this)(v.data); }
-    void operator()(Sym3& m) { (*this)(m.data); }
-    void operator()(std::pair<Vec3, Vec3>& wrench) {
-        (*this)(wrench.first);
-        (*this)(wrench.second);
-    }
-    void operator()(DrivenJoint& drive) {
-        for (Course& c : drive.course) (*this)(c.offset), (*this)(c.rate), (*this)(c.amplitude), (*this)(c.frequency), (*this)(c.phase);
-    }
-    void operator()(Mat3& rotation) { rotation = to_matrix(about_vector(random_.vector(size_))) * rotation; }
-
-  private:
-    Random random_;
-    double size_;
-};
-
 }  // namespace
-
-ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size) {
-    Perturbation move(seed, size);
-    BodyArrays& b = chain.bodies;
-    move(b.mass), move(b.com), move(b.inertia), move(b.axis), move(b.rotation), move(b.translation), move(b.q), move(b.qd);
-    move(b.free_position), move(b.free_velocity), move(b.torque), move(b.stiffness), move(b.damping), move(b.rest), move(b.wrench);
-    move(chain.beads.mass), move(chain.beads.position), move(chain.beads.velocity), move(chain.beads.anchor);
-    TipJoint& tip = chain.tip_joint;
-    move(tip.axis), move(tip.first_axis), move(tip.pitch), move(tip.rotation), move(tip.translation), move(tip.q);
-    if (tip.anchor) move(*tip.anchor);
-    LinkedArrays& l = chain.linked;
-    move(l.mass), move(l.inertia), move(l.position), move(l.velocity), move(l.orientation), move(l.omega), move(l.inboard);
-    move(l.outboard), move(l.anchor);
-    move(b.first_axis), move(b.pitch), move(b.drag), move(b.driven);
-    return chain;
-}
 
 double Random::uniform(double low, double high) {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15U);

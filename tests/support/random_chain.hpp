@@ -54,8 +54,4 @@ std::vector<std::pair<Vec3, Vec3>> random_wrenches(std::uint64_t seed, std::size
 /// A force on each bead.
 std::vector<Vec3> random_forces(std::uint64_t seed, std::size_t beads);
 
-/// The chain with every number moved by up to `size` of itself (rotations by angles up to `size`). What the accelerations
-/// change by, over `size`, is the problem's own growth of errors: no solver can be asked for less than growth x eps.
-ChainSpec perturbed(std::uint64_t seed, ChainSpec chain, double size);
-
 }  // namespace catena::test

@@ -68,7 +68,8 @@ S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
 
 template <class S>
 OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
-    std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
+    std::vector<BeadLink<S>> links = read_bead_links<S>(chain);
+    for (std::size_t k = 0; k < loads.link_gaps.size(); ++k) links[k].closure += S(loads.link_gaps[k]);
     std::vector<V3<S>> forces;
     for (std::size_t k = 0; k < chain.size(); ++k) forces.push_back(bead_force<S>(chain, loads, k));
     OracleResult<S> result = open_chain(chain, links, forces);

@@ -21,6 +21,8 @@ struct Loads {
     /// Rigid bodies: acceleration {angular, linear} (of the body's origin, W) by which each inboard joint fails to close: what an error
     /// in those equations comes to. Empty: zero.
     std::vector<std::pair<Vec3, Vec3>> gaps = {};
+    /// The same of beads and linked bodies: along each link, outboard end less inboard end, that of a jointed tip behind the last.
+    std::vector<double> link_gaps = {};
 };
 
 template <class Scalar>

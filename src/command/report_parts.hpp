@@ -1,0 +1,18 @@
+// The parts of `catena report`, from what was measured.
+#pragma once
+
+#include "command/report_part.hpp"
+#include "report/force_errors.hpp"
+#include "report/integrator_errors.hpp"
+#include "report/solver_errors.hpp"
+#include "report/stability.hpp"
+
+namespace catena::command {
+
+ReportPart solver_part(std::vector<SolverStudy> const&);
+/// `drifts` may be empty.
+ReportPart integrator_part(std::vector<IntegratorStudy> const&, std::vector<DriftStudy> const& drifts);
+ReportPart force_part(std::vector<ForceStudy> const&);
+ReportPart stability_part(std::vector<StabilityStudy> const&);
+
+}  // namespace catena::command

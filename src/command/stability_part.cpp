@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "command/report_parts.hpp"
+
+namespace catena::command {
+namespace {
+
+Json json_of(StabilityStudy const& study) {
+    Json points = Json::array();
+    for (StabilityPoint const& p : study.points)
+        points.push_back({{"backend", p.backend},
+                          {"handles", p.handles},
+                          {"residual", p.residual},
+                          {"residual_bound", p.residual_bound},
+                          {"residual_over_bound", p.of_residual_bound},
+                          {"forward_error", p.error},
+                          {"forward_error_over_bound", p.of_bound},
+                          {"refused", p.refused}});
+    return {{"family", study.family},
+            {"name", study.name},
+            {"bodies", study.bodies},
+            {"seeds", study.seeds},
+            {"reference", study.reference},
+            {"condition", study.condition ? Json(*study.condition) : Json()},
+            {"growth", study.growth},
+            {"oracle", {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}}},
+            {"points", points},
+            {"verdict", name_of(study.verdict())}};
+}
+
+void add_row(Table& table, StabilityStudy const& study) {
+    auto const worst = [&](double StabilityPoint::* value) {
+        double largest = 0;
+        for (StabilityPoint const& p : study.points) largest = larger(largest, p.*value);
+        return largest;
+    };
+    bool const refused = std::any_of(study.points.begin(), study.points.end(), [](StabilityPoint const& p) { return !p.refused.empty(); });
+    std::vector<std::string> row{study.name, study.condition ? exponent(*study.condition) : "", exponent(study.growth),
+                                 exponent(study.oracle_error)};
+    if (refused)
+        row.insert(row.end(), {"refused", "", "", ""});
+    else
+        row.insert(row.end(), {exponent(worst(&StabilityPoint::error)), exponent(worst(&StabilityPoint::of_bound)),
+                               exponent(worst(&StabilityPoint::residual)), exponent(worst(&StabilityPoint::of_residual_bound))});
+    row.emplace_back(name_of(study.verdict()));
+    table.add(row);
+}
+
+std::vector<std::string> const columns{"case",     "condition",  "growth", "articulated bodies", "forward error", "over bound",
+                                       "residual", "over bound", ""};
+
+CurveFamily picture(std::vector<StabilityStudy> const& studies) {
+    CurveFamily family{"Forward error over growth, all cases", "growth", "forward error (medians)", {}};
+    NamedCurve oracle{"articulated bodies", {}, {}, false, true, false}, one{"2^-53 growth", {1, 1e13}, {0x1p-53, 0x1p-53 * 1e13}, true};
+    std::map<std::string, NamedCurve> curves;
+    for (StabilityStudy const& study : studies) {
+        oracle.x.push_back(study.growth), oracle.y.push_back(study.oracle_error);
+        for (StabilityPoint const& p : study.points) {
+            if (p.handles == name_of(Handles::full)) continue;
+            NamedCurve& curve = curves[p.backend];
+            curve.x.push_back(study.growth), curve.y.push_back(p.error);
+        }
+    }
+    for (auto& [name, curve] : curves) family.curves.push_back({name, curve.x, curve.y, false, true, false});
+    family.curves.insert(family.curves.end(), {oracle, one});
+    return family;
+}
+
+}  // namespace
+
+ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
+    ReportPart part{
+        "stability",
+        "stability",
+        "Stability suite",
+        "Medians over the seeds, the worst of all backends and handle kinds. Growth: by how much roundings of the data and of each body's "
+        "and joint's equations change the answer; condition: of the joint-space inertia, or of the links' matrix. Bounds: of the residual "
+        "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both hold. BEYOND: 2^-53 growth is above 1e-3, so that "
+        "these equations in double precision determine fewer than three digits; the answer is still that of a chain nearby, or refused.",
+        {},
+        Json::array()};
+    for (StabilityStudy const& study : studies) {
+        part.json.push_back(json_of(study));
+        part.valid = part.valid && study.verdict() != Verdict::invalid;
+        auto section =
+            std::find_if(part.sections.begin(), part.sections.end(), [&](ReportSection const& s) { return s.heading == study.family; });
+        if (section == part.sections.end())
+            section = part.sections.insert(section, {study.family, Table(columns, {0, columns.size() - 1}), {}});
+        add_row(section->table, study);
+    }
+    if (!part.sections.empty()) part.sections.front().pictures = {picture(studies)};
+    return part;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,125 @@
+#include "report/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "error.hpp"
+#include "report/growth.hpp"
+#include "report/solver_errors.hpp"
+
+namespace catena {
+namespace {
+
+constexpr std::int64_t largest_quad_here = 5000;
+constexpr std::int64_t few_nudges_above = 100000;
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+double median(std::vector<double> const& values) { return spread_of(values).median; }
+
+/// One way to solve, over the seeds.
+struct Variant {
+    SolverSpec solver;
+    std::vector<double> residual, residual_bound, error, bound;
+    std::string refused;
+};
+
+std::vector<Variant> variants_of(std::vector<Backend> const& backends, std::vector<Handles> const& handles) {
+    std::vector<Variant> all;
+    for (Backend const backend : backends)
+        for (Handles const kind : handles) {
+            Variant variant;
+            variant.solver.backend = backend;
+            variant.solver.handles = kind;
+            all.push_back(variant);
+        }
+    return all;
+}
+
+/// Where there is no layout yet, for chains of which a backend finds none.
+Solution layout_of(Scene const& scene) {
+    Solution s;
+    s.acceleration_offset.push_back(0);
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.size(); ++k)
+            s.acceleration_offset.push_back(s.acceleration_offset.back() + accelerations_of(chain, k));
+    return s;
+}
+
+void add(Variant& to, Scene& scene, ExactSolution const& exact) {
+    auto const communicator = serial_communicator();
+    scene.solver = to.solver;
+    try {
+        ChainSystem system(scene, Axes::joint, *communicator);
+        system.evaluate();
+        to.residual.push_back(system.residual());
+        to.residual_bound.push_back(system.residual_bound());
+        to.error.push_back(largest_difference(scene, solution_of(system), exact.acceleration));
+        to.bound.push_back(system.residual_bound() * exact.growth);
+    } catch (ComputationError const& error) {
+        to.refused = error.what();
+    }
+}
+
+double largest_ratio(std::vector<double> const& values, std::vector<double> const& bounds) {
+    double worst = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) worst = larger(worst, values[i] / bounds[i]);
+    return worst;
+}
+
+double error_in_double(Scene const& scene, Solution layout, ExactSolution const& exact) {
+    try {
+        layout.acceleration = oracle_accelerations<double>(scene, {});
+    } catch (ComputationError const&) {
+        return infinite;
+    }
+    return largest_difference(scene, layout, exact.acceleration);
+}
+
+}  // namespace
+
+char const* name_of(Verdict verdict) {
+    switch (verdict) {
+        case Verdict::valid:
+            return "VALID";
+        case Verdict::beyond:
+            return "BEYOND";
+        default:
+            return "INVALID";
+    }
+}
+
+/// Beyond double precision an answer must still be the exact one of a chain nearby, or refused.
+Verdict StabilityStudy::verdict() const {
+    bool const all_hold = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds(); });
+    bool const nearby =
+        std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return !p.refused.empty() || p.of_residual_bound <= 1; });
+    if (beyond()) return nearby ? Verdict::beyond : Verdict::invalid;
+    return all_hold ? Verdict::valid : Verdict::invalid;
+}
+
+StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends, std::vector<Handles> const& handles,
+                               int seeds) {
+    StabilityStudy study{which.family, which.name, {}, which.bodies, seeds, {}, 1, 0, {}};
+    std::vector<Variant> variants = variants_of(backends, handles);
+    std::vector<double> condition, growth, in_double;
+    for (int seed = 1; seed <= seeds; ++seed) {
+        Scene scene = which.scene(static_cast<std::uint64_t>(seed));
+        Solution const layout = layout_of(scene);
+        ExactSolution const exact = exact_solution(scene, layout, largest_quad_here, which.bodies > few_nudges_above ? 1 : 3);
+        study.reference = exact.by;
+        growth.push_back(exact.growth);
+        if (which.bodies <= largest_condition) condition.push_back(oracle::condition_estimate(scene.chains.front()));
+        in_double.push_back(error_in_double(scene, layout, exact));
+        for (Variant& variant : variants) add(variant, scene, exact);
+    }
+    study.growth = median(growth);
+    if (!condition.empty()) study.condition = median(condition);
+    study.oracle_error = median(in_double);
+    for (Variant const& v : variants)
+        study.points.push_back({name_of(v.solver.backend), name_of(v.solver.handles), median(v.residual), median(v.residual_bound),
+                                median(v.error), largest_ratio(v.residual, v.residual_bound), largest_ratio(v.error, v.bound), v.refused});
+    return study;
+}
+
+}  // namespace catena

@@ -1,0 +1,40 @@
+// How far every backend can be trusted on a hard chain: backward and forward error beside their bounds, over several seeds.
+//
+// A backend has solved exactly a chain whose data and equations are off by its local residual; the answer is then off by the residual times
+// the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth.
+#pragma once
+
+#include <optional>
+
+#include "report/stability_cases.hpp"
+#include "report/timing.hpp"
+
+namespace catena {
+
+struct StabilityPoint {
+    std::string backend, handles;
+    double residual = 0, residual_bound = 0, error = 0;  // medians over the seeds
+    double of_residual_bound = 0, of_bound = 0;          // residual and forward error over their bounds, the largest of the seeds
+    std::string refused = {};                            // why a seed had no answer; empty: all had one
+    bool holds() const { return refused.empty() && of_residual_bound <= 1 && of_bound <= 1; }
+};
+
+enum class Verdict { valid, beyond, invalid };
+
+struct StabilityStudy {
+    std::string family, name, reference;
+    std::int64_t bodies = 0;
+    int seeds = 0;
+    std::optional<double> condition;  // of the joint-space inertia (links' matrix), up to largest_condition bodies; median
+    double growth = 1;                // median
+    double oracle_error = 0;          // of articulated bodies in double; median; infinite where they find no answer
+    std::vector<StabilityPoint> points;
+    /// Beyond double precision: data rounded to 53 bits determine fewer than three digits of the answer, whoever computes it.
+    bool beyond() const { return growth * 0x1p-53 > 1e-3; }
+    Verdict verdict() const;
+};
+char const* name_of(Verdict);
+
+StabilityStudy study_stability(StabilityCase const&, std::vector<Backend> const&, std::vector<Handles> const&, int seeds);
+
+}  // namespace catena
