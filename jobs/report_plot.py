@@ -62,6 +62,8 @@ def solver(report, hardware):
     studies = report["studies"]
     figure, all_axes = panels(len(studies), f"Solver error against run time\n{hardware}", "median time of one evaluation / s", "relative error")
     used = []
+    errors = [point[key] for study in studies for point in study["points"] + [study["oracle"]] for key in ("forward_error", "residual")
+              if point.get(key) is not None]
     for axes, study in zip(all_axes, studies):
         for point in study["points"]:
             style = {"color": COLOURS[point["backend"]], "marker": MARKERS[point["handles"]], "markersize": 7, "linestyle": ""}
@@ -72,8 +74,9 @@ def solver(report, hardware):
         oracle = study["oracle"]
         axes.plot(oracle["seconds"]["median"], max(oracle["forward_error"], FLOOR), "*", color=COLOURS["oracle"], markersize=9)
         axes.set_xlim(decades([point["seconds"]["median"] for point in study["points"]] + [oracle["seconds"]["median"]]))
+        axes.set_ylim(decades(shown(errors)))
         note = f", condition {study['condition']:.0e}" if study["condition"] else ""
-        axes.set_title(f"{study['kind']}, {study['bodies']:,} bodies{note}", fontsize=9)
+        axes.set_title(f"{study['title']}{note}", fontsize=9)
     entries = [entry(name) for name in used] + [entry(f"{kind} handles", MARKERS[kind]) for kind in MARKERS]
     entries += [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]), entry("forward error"),
                 entry("backward residual", fillstyle="none")]
@@ -112,7 +115,7 @@ def forces(report, hardware):
 
 
 def stability(report, hardware):
-    """Forward error over growth, a dot a case; beyond the dashed line more was lost than the equations' roundings account for."""
+    """Forward error over growth, a dot a case, open ones after two steps of refinement."""
     figure, (axes,) = panels(1, f"Stability suite: forward error over growth\n{hardware}", "growth of roundings", "forward error")
     figure.set_size_inches(8, 5.5)
     backends = {}
@@ -122,10 +125,14 @@ def stability(report, hardware):
             if point["handles"] == "projected" and not point["refused"]:
                 backends[point["backend"]] = True
                 axes.plot(study["growth"], max(point["forward_error"], FLOOR), "o", color=COLOURS[point["backend"]], markersize=4)
+                if point["refined"]:
+                    error = max(point["refined"][-1]["forward_error"], FLOOR)
+                    axes.plot(study["growth"], error, "o", fillstyle="none", color=COLOURS[point["backend"]], markersize=4)
     growths = decades([study["growth"] for study in report["stability"]])
     axes.plot(growths, [2.0**-53 * growth for growth in growths], "--", color="black", linewidth=0.8)
     entries = [entry(name) for name in backends] + [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]),
-                                                    entry("2^-53 growth", "", linestyle="--")]
+                                                    entry("2^-53 growth", "", linestyle="--"),
+                                                    entry("refined twice", fillstyle="none")]
     figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
 

@@ -23,7 +23,7 @@ constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "open
 std::map<std::string, std::vector<std::string>> const later_options{
     {"check", {}},
     {"plan", {}},
-    {"solve", {"--precision", "--refine"}},
+    {"solve", {"--precision"}},
     {"run", {"--precision", "--refine"}},
     {"report", {"--precision"}},
     {"bench", {"--precision"}},
@@ -33,7 +33,8 @@ std::vector<std::string> const later_benches{"sweeps", "peers"};
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite,
+        refine;
     std::vector<std::string> scenes;
     bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
 };
@@ -96,6 +97,11 @@ void add_commands(CLI::App& app, Words& words) {
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
     add_repeat(*command, words, "11");
+    command
+        ->add_option("--refine", words.refine,
+                     "steps of iterative refinement, of bodies on joints (default 0): 1 or 2 bring back what nearly parallel hinges, light "
+                     "bodies between heavy ones and thin bodies lose")
+        ->type_name("K");
     command
         ->add_option("--accelerations", words.accelerations,
                      "write accelerations and forces of joints and tips, of any number of bodies (HDF5)")
@@ -313,6 +319,7 @@ Request request_of(std::string const& command, Words const& words) {
     if (command == "bench") return bench_request(words);
     auto request = scene_request<SolveRequest>(words, "solve");
     request.accelerations = words.accelerations;
+    if (!words.refine.empty()) request.refine = static_cast<int>(whole_number("--refine", words.refine, 0, 10));
     request.repeat = repeat_of(words, request.repeat);
     return request;
 }

@@ -34,6 +34,7 @@ struct PlanRequest : SceneOptions {  // the scene may be missing where the machi
 struct SolveRequest : SceneOptions {
     int repeat = 11;
     std::string accelerations;  // HDF5 file
+    int refine = 0;             // steps of refinement
 };
 struct RunRequest : SceneOptions {
     std::optional<std::int64_t> steps;

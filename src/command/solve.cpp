@@ -148,6 +148,10 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                                    timing.evaluation.count, duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                                    1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
     for (auto const& [name, seconds] : timing.phases) text.entry("  " + name, duration_text(seconds));
+    std::vector<double> const refinement = json["refinement"]["seconds_of_each"];
+    if (!refinement.empty())
+        text.entry("refinement", fmt::format("{}, {} each", counted(std::ssize(refinement), "step", "steps"),
+                                             duration_text(spread_of(refinement).median)));
     for (auto const& [term, energy] : json["potential_energy"].items())
         text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
     Json const& inverse = json["rnea_residual"];
@@ -159,6 +163,17 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                            json["residual_bound"].get<double>()));
     text.heading(json["valid"].get<bool>() ? "VALID" : "INVALID");
     return text.str();
+}
+
+/// Seconds of each step.
+std::vector<double> refine(ChainSystem& system, int steps) {
+    std::vector<double> seconds;
+    for (int i = 0; i < steps; ++i) {
+        double const start = seconds_now();
+        system.refine();
+        seconds.push_back(system.communicator().max(seconds_now() - start));
+    }
+    return seconds;
 }
 
 void prepare_file(Communicator const& communicator, std::string const& file) {
@@ -178,9 +193,11 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
     ChainSystem system(scene, Axes::joint, communicator);
     system.close_tips();  // as a run does: velocities then fit them
     Timing const timing = time_evaluations(system, request.repeat);
+    std::vector<double> const refinement = refine(system, request.refine);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);
     json["backend_reason"] = reason;
+    json["refinement"] = {{"steps", request.refine}, {"seconds_of_each", refinement}};
     double const residual = system.residual(), bound = system.residual_bound();
     std::vector<EnergyTerm> const energies = system.potential_energy();
     // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.
@@ -198,8 +215,7 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["velocities"] = thermal ? "thermal" : "given";
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
-        if (!outcome.valid)
-            outcome.complaint = fmt::format("residual {:.2e}, bound {:.2e}: compare with --set solver.handles=full", residual, bound);
+        if (!outcome.valid) outcome.complaint = fmt::format("residual {:.2e}, bound {:.2e}: compare with --refine 2", residual, bound);
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);

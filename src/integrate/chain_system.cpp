@@ -288,6 +288,13 @@ void ChainSystem::solve_joint_groups() {
     note_overlap(moved, begun, assembled, assembled, finished);
 }
 
+void ChainSystem::refine() {
+    for (auto const& group : joint_) {
+        group->refine();
+        group->set_rates();
+    }
+}
+
 void ChainSystem::close_tips(int corrections) {
     for (auto const& group : joint_) group->close_tips(corrections);
 }

@@ -35,6 +35,9 @@ class ChainSystem {
     /// Forces and matrices at the present configuration, for the constrained integrators: `update_configuration` must have run. Collective.
     void forces_and_matrices(StepTimeline* timeline);
 
+    /// One step of iterative refinement of the last evaluate(), for the groups in joint coordinates (JointDynamics::refine). Collective.
+    void refine();
+
     /// Largest local backward residual of the last evaluate(), and its bound c depth eps.
     double residual();
     double residual_bound() const;

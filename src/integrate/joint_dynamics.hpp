@@ -31,6 +31,10 @@ class JointDynamics : public BeadHost {
     virtual void solve() = 0;
     /// Those of coordinates, after solve(); and as they were set last, on the host.
     virtual void set_rates() = 0;
+    /// One step of iterative refinement of what solve() found last: what the equations of bodies and joints lack is solved for with the
+    /// same matrices and added. Digits come back that were lost where a body's forces are far larger than what they leave of them:
+    /// accelerations are carried apart from the forces they came from. Collective. InputError where the solution is on a GPU.
+    virtual void refine() = 0;
     virtual JointRates rates() const = 0;
 
     // Steps, stage by stage: each but the first half of Verlet's follows a solve().

@@ -1,9 +1,11 @@
 // JointDynamics in any Space: state, kinematics, loads and steps stay there.
 #pragma once
 
+#include <type_traits>
 #include <utility>
 
 #include "dca/host_space.hpp"
+#include "error.hpp"
 #include "integrate/joint_dynamics.hpp"
 #include "integrate/joint_solution.hpp"
 #include "integrate/joint_steps.hpp"
@@ -94,6 +96,12 @@ class JointDynamicsIn final : public JointDynamics {
             {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)},
             {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
         exchange_ends();
+    }
+    void refine() override {
+        if constexpr (std::is_same_v<Space, HostSpace>)
+            refine_on_host();
+        else
+            throw InputError("solutions that stay on a GPU are not refined", "--refine", "take --backend segments or openmp");
     }
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
     JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
@@ -230,6 +238,24 @@ class JointDynamicsIn final : public JointDynamics {
     }
 
   private:
+    void refine_on_host() {
+        auto lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
+        std::int64_t const tips = group_.has_tips() ? group_.size : 0;
+        Field<3> alpha(group_.size), acceleration(group_.size);
+        DirectionsField force(group_.size + 1, group_.directions), tip_force(tips, group_.directions);
+        solver_->solve({lacking.torque.view(), lacking.force.view(), {}, lacking.bias.view(), of_tips(group_, lacking.tip_bias)},
+                       {alpha.view(), acceleration.view(), force.view(), of_tips(group_, tip_force)});
+        for (std::int64_t k = 0; k < group_.size; ++k) {
+            alpha_.set(k, alpha_[k] + alpha[k]);
+            acceleration_.set(k, acceleration_[k] + acceleration[k]);
+        }
+        for (int i = 0; i < group_.directions; ++i) {
+            for (std::int64_t k = 0; k <= group_.size; ++k) joint_force_.view().at(k, i) += force.view().at(k, i);
+            for (std::int64_t k = 0; k < tips; ++k)
+                if (group_.has_jointed_tip(k)) tip_force_.view().at(k, i) += tip_force.view().at(k, i);
+        }
+        exchange_ends();
+    }
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
     JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view()}; }

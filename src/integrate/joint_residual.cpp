@@ -25,6 +25,12 @@ double balance(Vec3 const& inertial, std::vector<Vec3> const& terms, double more
     return relative(norm(difference), size);
 }
 
+Vec3 sum_of(std::vector<Vec3> const& terms) {
+    Vec3 sum = Vec3::zero();
+    for (Vec3 const& t : terms) sum = sum + t;
+    return sum;
+}
+
 double radius_of(ChainGroup const& group, std::int64_t k) {
     return radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0));
 }
@@ -63,17 +69,45 @@ Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 cons
     return {{a[0], a[1], a[2], turning[0], turning[1], turning[2], linear, angular}};
 }
 
-/// |D^T (outboard - inboard) + bias| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
+JointSolution::Terms JointSolution::terms_solved_for(std::int64_t k) const {
+    Terms t = terms(k);
+    if (!group.planar) return t;
+    Vec3 const axis = axes1(k).column(2);
+    for (Vec3& moment : t.moments) moment = dot(axis, moment) * axis;
+    return t;
+}
+Vec3 JointSolution::inertial_moment(std::int64_t k) const {
+    Vec3 const moment = as_symmetric(group.inertia[k]) * alpha.load(k);
+    if (!group.planar) return moment;
+    Vec3 const axis = axes1(k).column(2);
+    return dot(axis, moment) * axis;
+}
+
+Vector<double, 8> JointSolution::handle_before_first(Communicator const& communicator) const {
+    Vector<double, 8> before = Vector<double, 8>::zero();
+    Vector<double, 8> const last =
+        group.neighbour_outboard >= 0 ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1)) : before;
+    communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(before.data)),
+                          group.neighbour_inboard);
+    return before;
+}
+
+/// D^T (outboard - inboard) + bias; 0 along what is not restricted.
+Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<double, 8> const& in, Vector<double, 6> const& bias,
+                                         Screw<double> const& s, int restricted) {
+    Vector<double, 8> const d = out - in;
+    Vector<double, 6> e{{d[0], d[1], s.c * d[2] - s.s * d[5], d[3], d[4], s.s * d[2] + s.c * d[5]}};
+    for (int i = 0; i < 6; ++i) e[i] = i < restricted ? e[i] + bias[i] : 0.0;
+    return e;
+}
+
+/// |opening| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
 /// does not depend on the unit of length.
 double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView biases, std::int64_t at,
                               Screw<double> const& s, int restricted, double size) const {
-    Vector<double, 8> const d = out - in;
-    Vector<double, 6> e{{d[0], d[1], s.c * d[2] - s.s * d[5], d[3], d[4], s.s * d[2] + s.c * d[5]}},
-        b = load_first(biases, at, group.directions);
-    for (int i = 0; i < 6; ++i) {
-        if (i >= restricted) b[i] = 0.0;
-        e[i] = i < restricted ? e[i] + b[i] : 0.0;
-    }
+    Vector<double, 6> b = load_first(biases, at, group.directions);
+    for (int i = restricted; i < 6; ++i) b[i] = 0.0;
+    Vector<double, 6> const e = opening(out, in, b, s, restricted);
     auto const sizes = [&](Vector<double, 6> const& v) {
         return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) + size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
     };
@@ -82,23 +116,14 @@ double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> co
 
 double JointSolution::residual(Communicator const& communicator) const {
     auto const outboard_handle = [&](std::int64_t k) { return handle(k, r2(k), axes2(k)); };
-    Vector<double, 8> before = Vector<double, 8>::zero();  // handle 2 of body k - 1
-    Vector<double, 8> const last = group.neighbour_outboard >= 0 ? outboard_handle(group.size - 1) : before;
-    communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(before.data)),
-                          group.neighbour_inboard);
+    Vector<double, 8> before = handle_before_first(communicator);  // handle 2 of body k - 1
     double worst = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
-        Terms t = terms(k);
+        Terms const t = terms_solved_for(k);
         // The accelerated ground has taken the weight out of the forces: where bodies fall freely, only its rounding is left.
         double const mass = group.mass.view().at(k, 0), weight = mass * norm(given.gravity);
         worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
-        Vec3 inertial = as_symmetric(group.inertia[k]) * alpha.load(k);
-        if (group.planar) {  // the other moments are not solved for
-            Vec3 const axis = axes1(k).column(2);
-            inertial = dot(axis, inertial) * axis;
-            for (Vec3& moment : t.moments) moment = dot(axis, moment) * axis;
-        }
-        worst = larger(worst, balance(inertial, t.moments, t.moment_sizes + weight * norm(group.r1[k])));
+        worst = larger(worst, balance(inertial_moment(k), t.moments, t.moment_sizes + weight * norm(group.r1[k])));
         if (group.is_first[k]) before = Vector<double, 8>::zero();
         double const size = norm(group.r1[k]) + radius_of(group, k);
         worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size));
@@ -108,6 +133,28 @@ double JointSolution::residual(Communicator const& communicator) const {
                                       norm(r2(k)) + radius_of(group, k)));
     }
     return communicator.max(worst);
+}
+
+JointSolution::Defect JointSolution::defect(Communicator const& communicator) const {
+    std::int64_t const tips = group.has_tips() ? group.size : 0;
+    Defect d{Field<3>(group.size), Field<3>(group.size), DirectionsField(group.size + 1, group.directions),
+             DirectionsField(tips, group.directions)};
+    Vector<double, 8> before = handle_before_first(communicator);
+    for (std::int64_t k = 0; k < group.size; ++k) {
+        Terms const t = terms_solved_for(k);
+        d.torque.set(k, sum_of(t.moments) - inertial_moment(k));
+        d.force.set(k, sum_of(t.forces) - group.mass.view().at(k, 0) * acceleration.load(k));
+        if (group.is_first[k]) before = Vector<double, 8>::zero();
+        store_first(
+            d.bias.view(), k, group.directions,
+            opening(handle(k, group.r1[k], axes1(k)), before, load_first(bias, k, group.directions), screw(k), group.restricted(k)));
+        before = handle(k, r2(k), axes2(k));
+        if (group.has_jointed_tip(k))
+            store_first(d.tip_bias.view(), k, group.directions,
+                        opening(Vector<double, 8>::zero(), before, load_first(tip_bias, k, group.directions), outboard_screw(k),
+                                group.tip_of(k).restricted));
+    }
+    return d;
 }
 
 }  // namespace catena

@@ -21,6 +21,13 @@ struct JointSolution {
     /// Largest local backward residual: Newton-Euler of every body and the closing of every joint, each relative to the sizes of its
     /// own terms (formulas, "Residuals"). Over all ranks; collective.
     double residual(Communicator const&) const;
+    /// By how much the equations of bodies and joints fail, as loads for the solver: what it answers to them is missing in the solution.
+    /// Collective.
+    struct Defect {
+        Field<3> torque, force;
+        DirectionsField bias, tip_bias;
+    };
+    Defect defect(Communicator const&) const;
 
   private:
     void add_across_plane(Communicator const&, BodyResults&) const;
@@ -41,7 +48,14 @@ struct JointSolution {
     Pair along_axes(ConstDirectionsView forces, std::int64_t at, Screw<double> const&) const;
     Pair outboard_pair(std::int64_t k) const;
     Terms terms(std::int64_t k) const;
+    /// Planar: about the axis alone, the other moments are not solved for.
+    Terms terms_solved_for(std::int64_t k) const;
+    Vec3 inertial_moment(std::int64_t k) const;
     Vector<double, 8> handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const;
+    /// Handle 2 of the last body on the rank before.
+    Vector<double, 8> handle_before_first(Communicator const&) const;
+    static Vector<double, 6> opening(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, Vector<double, 6> const& bias,
+                                     Screw<double> const&, int restricted);
     double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, ConstDirectionsView biases, std::int64_t at,
                    Screw<double> const&, int restricted, double size) const;
 };

@@ -1,6 +1,7 @@
 #include "report/stability.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,14 +14,19 @@ namespace {
 
 constexpr std::int64_t largest_quad_here = 5000;
 constexpr std::int64_t few_nudges_above = 100000;
+constexpr int refinements = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double median(std::vector<double> const& values) { return spread_of(values).median; }
 
 /// One way to solve, over the seeds.
 struct Variant {
+    struct Errors {
+        std::vector<double> residual, error, cost;
+    };
     SolverSpec solver;
-    std::vector<double> residual, residual_bound, error, bound;
+    std::array<Errors, refinements + 1> after;  // so many steps of refinement
+    std::vector<double> residual_bound, bound;
     std::string refused;
 };
 
@@ -46,16 +52,28 @@ Solution layout_of(Scene const& scene) {
     return s;
 }
 
+template <class Action>
+double seconds_of(Action const& action) {
+    double const start = seconds_now();
+    action();
+    return seconds_now() - start;
+}
+
 void add(Variant& to, Scene& scene, ExactSolution const& exact) {
     auto const communicator = serial_communicator();
     scene.solver = to.solver;
     try {
         ChainSystem system(scene, Axes::joint, *communicator);
-        system.evaluate();
-        to.residual.push_back(system.residual());
+        double const evaluation = seconds_of([&] { system.evaluate(); });
         to.residual_bound.push_back(system.residual_bound());
-        to.error.push_back(largest_difference(scene, solution_of(system), exact.acceleration));
         to.bound.push_back(system.residual_bound() * exact.growth);
+        for (Variant::Errors& errors : to.after) {
+            bool const first = &errors == to.after.data();
+            if (!first && (system.joint().empty() || system.backend() == Backend::cuda)) break;
+            if (!first) errors.cost.push_back(seconds_of([&] { system.refine(); }) / evaluation);
+            errors.residual.push_back(system.residual());
+            errors.error.push_back(largest_difference(scene, solution_of(system), exact.acceleration));
+        }
     } catch (ComputationError const& error) {
         to.refused = error.what();
     }
@@ -65,6 +83,22 @@ double largest_ratio(std::vector<double> const& values, std::vector<double> cons
     double worst = 0;
     for (std::size_t i = 0; i < values.size(); ++i) worst = larger(worst, values[i] / bounds[i]);
     return worst;
+}
+
+StabilityPoint point_of(Variant const& v) {
+    Variant::Errors const& plain = v.after.front();
+    StabilityPoint point{name_of(v.solver.backend),
+                         name_of(v.solver.handles),
+                         median(plain.residual),
+                         median(v.residual_bound),
+                         median(plain.error),
+                         largest_ratio(plain.residual, v.residual_bound),
+                         largest_ratio(plain.error, v.bound),
+                         v.refused};
+    for (std::size_t i = 1; i < v.after.size() && !v.after[i].error.empty(); ++i)
+        point.refined.push_back({median(v.after[i].error), largest_ratio(v.after[i].residual, v.residual_bound),
+                                 largest_ratio(v.after[i].error, v.bound), median(v.after[i].cost)});
+    return point;
 }
 
 double error_in_double(Scene const& scene, Solution layout, ExactSolution const& exact) {
@@ -82,6 +116,8 @@ char const* name_of(Verdict verdict) {
     switch (verdict) {
         case Verdict::valid:
             return "VALID";
+        case Verdict::refined:
+            return "REFINED";
         case Verdict::beyond:
             return "BEYOND";
         default:
@@ -95,7 +131,9 @@ Verdict StabilityStudy::verdict() const {
     bool const nearby =
         std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return !p.refused.empty() || p.of_residual_bound <= 1; });
     if (beyond()) return nearby ? Verdict::beyond : Verdict::invalid;
-    return all_hold ? Verdict::valid : Verdict::invalid;
+    if (all_hold) return Verdict::valid;
+    return std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds_refined(); }) ? Verdict::refined
+                                                                                                                : Verdict::invalid;
 }
 
 StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends, std::vector<Handles> const& handles,
@@ -116,9 +154,7 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
     study.growth = median(growth);
     if (!condition.empty()) study.condition = median(condition);
     study.oracle_error = median(in_double);
-    for (Variant const& v : variants)
-        study.points.push_back({name_of(v.solver.backend), name_of(v.solver.handles), median(v.residual), median(v.residual_bound),
-                                median(v.error), largest_ratio(v.residual, v.residual_bound), largest_ratio(v.error, v.bound), v.refused});
+    for (Variant const& v : variants) study.points.push_back(point_of(v));
     return study;
 }
 

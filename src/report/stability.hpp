@@ -16,10 +16,16 @@ struct StabilityPoint {
     double residual = 0, residual_bound = 0, error = 0;  // medians over the seeds
     double of_residual_bound = 0, of_bound = 0;          // residual and forward error over their bounds, the largest of the seeds
     std::string refused = {};                            // why a seed had no answer; empty: all had one
+    struct Refined {
+        double error = 0, of_residual_bound = 0, of_bound = 0;
+        double cost = 0;  // of the step, over that of an evaluation; median
+    };
+    std::vector<Refined> refined = {};  // after one step, two, ...; empty: not for such chains or backends
     bool holds() const { return refused.empty() && of_residual_bound <= 1 && of_bound <= 1; }
+    bool holds_refined() const { return !refined.empty() && refined.back().of_residual_bound <= 1 && refined.back().of_bound <= 1; }
 };
 
-enum class Verdict { valid, beyond, invalid };
+enum class Verdict { valid, refined, beyond, invalid };
 
 struct StabilityStudy {
     std::string family, name, reference;

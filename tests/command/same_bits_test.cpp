@@ -20,12 +20,13 @@ std::string generated(std::string const& joint, int bodies, bool fixed) {
            ", joint: " + joint + ", seed: 5}}}\n";
 }
 
-Solution solve(Scene scene, Backend backend, Handles handles, int threads, Communicator const& communicator) {
+Solution solve(Scene scene, Backend backend, Handles handles, int threads, Communicator const& communicator, int refinements = 0) {
     scene.solver.backend = backend;
     scene.solver.handles = handles;
     scene.solver.threads = threads;
     ChainSystem system(scene, Axes::joint, communicator);
     system.evaluate();
+    for (int i = 0; i < refinements; ++i) system.refine();
     return solution_of(system);
 }
 
@@ -38,14 +39,15 @@ bool threads_fit() { return cpu_backends().size() > 2 && testing::world().size()
 
 std::vector<Handles> const both{Handles::projected, Handles::full};
 
-void expect_same_bits(Scene const& scene, std::string const& what, bool with_threads, std::vector<Handles> const& kinds = both) {
+void expect_same_bits(Scene const& scene, std::string const& what, bool with_threads, std::vector<Handles> const& kinds = both,
+                      int refinements = 0) {
     Communicator const& world = testing::world();
     auto const alone = serial_communicator();
     for (Handles const handles : kinds)
         for (Backend const backend : {Backend::serial, Backend::segments}) {
-            Solution const expected = solve(scene, backend, handles, 1, *alone);
+            Solution const expected = solve(scene, backend, handles, 1, *alone, refinements);
             auto const expect = [&](Backend other, int threads) {
-                Solution const found = solve(scene, other, handles, threads, world);
+                Solution const found = solve(scene, other, handles, threads, world, refinements);
                 if (world.rank() != 0) return;
                 std::string const name =
                     what + ", " + name_of(other) + ", " + name_of(handles) + ", " + std::to_string(threads) + " threads";
@@ -70,6 +72,11 @@ TEST(SameBits, SeveralChainsOfDifferentKinds) {
     expect_same_bits(scene_of(generated("link", 70, true) + generated("revolute", 9, false) + generated("link", 300, false) +
                               generated("spherical", 130, true) + generated("revolute", 1, true)),
                      "several chains", threads_fit() || (cpu_backends().size() > 2 && testing::world().size() == 2));
+}
+
+TEST(SameBits, RefinedSolutions) {
+    expect_same_bits(scene_of(generated("mixed", 300, true) + generated("spherical", 70, false) + generated("planar", 90, true)), "refined",
+                     threads_fit(), both, 2);
 }
 
 // Every rank packs the box by itself. Velocities made of the positions let accelerations tell places apart.

@@ -76,6 +76,16 @@ TEST(Solve, AccelerationsAreThoseOfTheOracle) {
     EXPECT_LE(difference, 1e-13 * largest);
 }
 
+TEST(Solve, RefinementKeepsTheAnswerAndSaysWhatItTook) {
+    Json const plain = solved({input("arm.yaml")}), refined = solved({input("arm.yaml"), "--refine", "2"});
+    EXPECT_TRUE(plain["refinement"]["seconds_of_each"].empty());
+    ASSERT_EQ(refined["refinement"]["seconds_of_each"].size(), 2U);
+    EXPECT_GT(refined["refinement"]["seconds_of_each"][0].get<double>(), 0);
+    EXPECT_LE(refined["residual"].get<double>(), refined["residual_bound"].get<double>());
+    EXPECT_NEAR(refined["joint_accelerations"][0].get<double>(), plain["joint_accelerations"][0].get<double>(), 1e-10);
+    expect_refused(catena({"solve", input("arm.yaml"), "--refine", "11"}), 2, "--refine");
+}
+
 TEST(Solve, AFreeBaseHasTwoAccelerations) {
     Json const json = solved({input("spherical-chain.yaml")});
     EXPECT_EQ(json["joint_accelerations"][0]["alpha"].size(), 3U);

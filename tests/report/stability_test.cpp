@@ -63,6 +63,14 @@ TEST(Stability, VerdictsSayWhichBoundHolds) {
     EXPECT_EQ(study_of(1e14, 1.5, 0.5).verdict(), Verdict::invalid);  // no answer of any chain nearby
 }
 
+TEST(Stability, WhatHoldsAfterRefinementAloneIsSaidSo) {
+    StabilityStudy study = study_of(1e3, 1.5, 0.5);
+    study.points[0].refined = {{1e-9, 1.2, 0.5, 1}, {1e-12, 0.5, 0.5, 1}};
+    EXPECT_EQ(study.verdict(), Verdict::refined);
+    study.points[0].refined[1].of_bound = 1.5;
+    EXPECT_EQ(study.verdict(), Verdict::invalid);
+}
+
 /// The same case, its answers spoilt by more than its bound, must not pass.
 TEST(Stability, AnErrorAboveTheBoundIsInvalid) {
     StabilityCase const good = stability_cases(16, true).front();
@@ -70,6 +78,54 @@ TEST(Stability, AnErrorAboveTheBoundIsInvalid) {
     EXPECT_EQ(study.verdict(), Verdict::valid);
     double const spoilt = study.points[0].error + study.points[0].residual_bound * study.growth;
     EXPECT_EQ(study_of(study.growth, 0.5, spoilt / (study.points[0].residual_bound * study.growth)).verdict(), Verdict::invalid);
+}
+
+StabilityCase case_of(std::string const& family, std::string const& name) {
+    for (StabilityCase const& each : stability_cases(256, false))
+        if (each.family == family && each.name == name) return each;
+    throw std::runtime_error("no such case: " + family + ", " + name);
+}
+
+/// Nearly parallel hinges, light bodies between heavy ones, thin bodies: the equations of joint forces lose digits there that
+/// articulated bodies keep.
+TEST(Refinement, BringsBackWhatTheEquationsOfForcesLose) {
+    for (auto const& [family, name] : {std::pair{"coil", "256 bodies"},
+                                       {"dill", "64 bodies"},
+                                       {"masses, bodies on hinges", "alternating, 1e8"},
+                                       {"thin bodies, spherical joints", "1e8"},
+                                       {"thin bodies, hinges", "1e6"}}) {
+        StabilityStudy const study = study_stability(case_of(family, name), {Backend::segments}, {Handles::projected}, 1);
+        StabilityPoint const& point = study.points.at(0);
+        ASSERT_EQ(point.refined.size(), 2U);
+        EXPECT_GT(point.error, 1e-10) << family;  // else there is nothing to bring back
+        EXPECT_LT(point.refined[1].error, std::max(4 * study.oracle_error, 1e-13)) << family;
+        EXPECT_LE(point.refined[1].of_residual_bound, 1) << family;
+        EXPECT_EQ(study.verdict(), point.of_residual_bound > 1 ? Verdict::refined : Verdict::valid) << family;
+    }
+}
+
+/// Tips, sliding joints, driven joints and planar chains have biases and directions of their own.
+TEST(Refinement, KeepsToTheEquationsOfEveryJoint) {
+    for (char const* const chain :
+         {"{name: a, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 40, joint: mixed, seed: 2}}}",
+          "{name: a, base: free, generator: {random: {bodies: 40, joint: helical, seed: 3}}}",
+          "{name: a, base: fixed, generator: {random: {bodies: 40, joint: planar, seed: 4}}}",
+          "{name: a, base: fixed, bodies: [{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], "
+          "motion: "
+          "{amplitude: 0.5, frequency: 2}}}, {mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, "
+          "0, 0]}}]}"}) {
+        Scene scene = scene_of("chains: [" + std::string(chain) + "]\nforces: {gravity: [0, -3, -5]}\n");
+        auto const communicator = serial_communicator();
+        ExactSolution const exact = exact_solution(scene, layout_of(scene), 100, 3);
+        ChainSystem system(scene, Axes::joint, *communicator);
+        system.evaluate();
+        for (int steps = 0; steps < 3; ++steps) {
+            double const bound = system.residual_bound();
+            EXPECT_LE(system.residual(), bound) << chain << " " << steps;
+            EXPECT_LE(largest_difference(scene, solution_of(system), exact.acceleration), bound * exact.growth) << chain << " " << steps;
+            system.refine();
+        }
+    }
 }
 
 TEST(Stability, EveryFamilyHasItsHardestCase) {
