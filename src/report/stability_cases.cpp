@@ -179,8 +179,8 @@ void Cases::masses() {
 void Cases::inertias() {
     powers({2, 4, 6, 8}, [&](double ratio, std::string const& name) {
         for (auto const& [joint, kind] : {std::pair{RandomJoint::spherical, "spherical joints"}, {RandomJoint::revolute, "hinges"}})
-            add(fmt::format("thin bodies, {}", kind), name, [ratio, joint = joint](std::uint64_t seed) {
-                ChainSpec chain = random_bodies_on(joint, seed);
+            add(fmt::format("thin bodies, {}", kind), name, [ratio, type = joint](std::uint64_t seed) {
+                ChainSpec chain = random_bodies_on(type, seed);
                 for (std::size_t k = 0; k < chain.size(); ++k) {
                     Mat3 const r = to_matrix(scene::Draws(seed, static_cast<std::int64_t>(k), 1).rotation());
                     double const j = 0.1 * chain.bodies.mass[k];
@@ -237,8 +237,8 @@ void Cases::units() {
     };
     for (Units const u : {Units{"molecule in SI", 1e-25, 1e-10, 1e-13}, {"tether in space", 1e4, 1e5, 1e3}, {"planets", 1e24, 1e11, 1e7}})
         for (auto const& [joint, kind] : {std::pair{RandomJoint::spherical, "spherical joints"}, {RandomJoint::revolute, "hinges"}})
-            add("units", fmt::format("{}, {}", u.name, kind), [u, joint = joint](std::uint64_t seed) {
-                return scene_of(in_units(random_bodies_on(joint, seed), u.mass, u.length, u.time), u.length / (u.time * u.time));
+            add("units", fmt::format("{}, {}", u.name, kind), [u, type = joint](std::uint64_t seed) {
+                return scene_of(in_units(random_bodies_on(type, seed), u.mass, u.length, u.time), u.length / (u.time * u.time));
             });
 }
 
