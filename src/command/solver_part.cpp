@@ -44,8 +44,14 @@ ReportSection section_of(SolverStudy const& study) {
     return {heading, table, {}};
 }
 
-/// One curve a backend and handle kind, through all studies of a kind of joints.
-CurveFamily picture(std::string const& kind, std::vector<SolverStudy const*> const& studies, double SolverPoint::* error,
+/// What chains of several lengths have in common.
+std::string series_of(SolverStudy const& study) {
+    std::string const length = fmt::format(", {} bodies", study.bodies);
+    return study.title.ends_with(length) ? study.title.substr(0, study.title.size() - length.size()) : study.title;
+}
+
+/// One curve a backend and handle kind, through all studies of a series.
+CurveFamily picture(std::string const& series, std::vector<SolverStudy const*> const& studies, double SolverPoint::* error,
                     std::string const& name) {
     std::map<std::string, NamedCurve> curves;
     NamedCurve oracle{"articulated bodies", {}, {}, true, true};
@@ -59,7 +65,7 @@ CurveFamily picture(std::string const& kind, std::vector<SolverStudy const*> con
         oracle.x.push_back(study->oracle_seconds.median);
         oracle.y.push_back(study->oracle_error);
     }
-    CurveFamily family{fmt::format("{}: {}", kind, name), "seconds of an evaluation", "relative " + name, {}};
+    CurveFamily family{fmt::format("{}: {}", series, name), "seconds of an evaluation", "relative " + name, {}};
     for (auto& [label, curve] : curves) {
         curve.name = label;
         family.curves.push_back(curve);
@@ -79,19 +85,19 @@ ReportPart solver_part(std::vector<SolverStudy> const& studies) {
         "difference of the joint accelerations from the reference, relative to the largest.",
         {},
         Json::array()};
-    std::map<std::string, std::vector<SolverStudy const*>> kinds;
+    std::map<std::string, std::vector<SolverStudy const*>> series;
     for (SolverStudy const& study : studies) {
-        kinds[study.kind].push_back(&study);
+        series[series_of(study)].push_back(&study);
         part.json.push_back(json_of(study));
         part.valid = part.valid && std::all_of(study.points.begin(), study.points.end(), [](SolverPoint const& p) { return p.valid; });
         part.sections.push_back(section_of(study));
     }
     for (ReportSection& section : part.sections) {
         SolverStudy const& study = studies[static_cast<std::size_t>(&section - part.sections.data())];
-        auto const& same = kinds.at(study.kind);
+        auto const& same = series.at(series_of(study));
         if (same.front() != &study) continue;
-        section.pictures = {picture(study.kind, same, &SolverPoint::forward_error, "forward error"),
-                            picture(study.kind, same, &SolverPoint::residual, "backward error")};
+        section.pictures = {picture(series_of(study), same, &SolverPoint::forward_error, "forward error"),
+                            picture(series_of(study), same, &SolverPoint::residual, "backward error")};
     }
     return part;
 }
