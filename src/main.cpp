@@ -34,8 +34,8 @@ int execute(Session const& session, ReportRequest const& request) {
     if (!request.suite.empty()) return session.conclude(report_stability(session.communicator(), request));
     std::vector<Scene> scenes;
     for (std::string const& file : request.scenes) scenes.push_back(session.load(file));
-    return session.conclude(report_scenes(scenes.empty() ? generated_report(request) : sorted_for_report(std::move(scenes)),
-                                          session.communicator(), request));
+    return session.conclude(
+        report_scenes(scenes.empty() ? generated_report(request) : sorted_for_report(std::move(scenes)), session.communicator(), request));
 }
 
 int execute(Session const& session, BenchRequest const& request) { return session.conclude(run_bench(session.communicator(), request)); }
