@@ -150,7 +150,7 @@ class CountingSpace : public HostAccess {
         }
     };
 
-    /// At most, for neighbouring short chains share a block.
+    /// Blocks as large as they get: smaller ones, where few chains are spread over the GPU, take up to 2 MB more.
     class Blocks {
       public:
         explicit Blocks(ChainGroup const& group) {

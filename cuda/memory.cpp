@@ -62,9 +62,10 @@ void count_levels(ChainGroup const& group, Scene const& scene) {
 
 void count_group(ChainGroup const& group, Scene const& scene, Backend backend, Communicator const& communicator) {
     if (backend == Backend::cuda_levels) return count_levels(group, scene);
+    if (group.axes != Axes::joint && group.directions == 1 && group.schedule.shared.empty())
+        CountingSpace::Blocks{group};  // made at the first step, where it pays
     if (group.beads) {
         BeadDynamics<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
-        if (group.schedule.shared.empty()) CountingSpace::Blocks{group};  // made at the first step, where it pays
     } else if (!group.linked && group.axes == Axes::joint) {
         JointDynamicsIn<CountingSpace>(group, scene, CountingSpace(), communicator, tree_of(group, communicator));
     } else {

@@ -77,7 +77,7 @@ ReportSection section_of(std::vector<DriftStudy> const& drifts) {
         table.add({d.title, d.name, exponent(d.step), std::to_string(d.steps), fmt::format("{:.4g}", d.kinetic_energy), exponent(d.scatter),
                    exponent(d.slope * time), exponent(d.slope_error * time), d.valid() ? "VALID" : "INVALID"});
     }
-    return {"Drift of the energy: a straight line through means over 50 blocks; VALID within three standard errors", table, {}};
+    return {"Drift of the energy: a straight line through means over 50 blocks; VALID within four standard errors", table, {}};
 }
 
 }  // namespace

@@ -118,14 +118,19 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
 Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
     if (communicator.size() > 1)
         throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"), "--suite", "run it without mpirun");
+    std::vector<Backend> backends = backends_of(request);
+    std::vector<std::string> left_out;
+    if (std::erase(backends, Backend::cuda) > 0)
+        left_out.emplace_back("cuda: it has the bits of segments, and its solutions are not refined");
+    if (backends.empty()) throw InputError("the stability suite on the GPU alone", "--backend", "take segments, which has the same bits");
     make_folder(communicator, request.output);
     std::vector<StabilityStudy> studies;
     for (StabilityCase const& each : stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick)) {
         int const seeds = each.bodies > 100000 ? 1 : 3;
-        studies.push_back(study_stability(each, backends_of(request), handles_of(request), seeds));
+        studies.push_back(study_stability(each, backends, handles_of(request), seeds));
         spdlog::info("{}, {}: {}", each.family, each.name, name_of(studies.back().verdict()));
     }
-    return conclude("stability suite", {stability_part(studies)}, {}, communicator, request);
+    return conclude("stability suite", {stability_part(studies)}, left_out, communicator, request);
 }
 
 }  // namespace catena::command

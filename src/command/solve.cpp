@@ -191,6 +191,8 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
     bool const thermal = starts_thermal(given);
     Scene const scene = with_start_velocities(given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
+    if (request.refine > 0 && system.joint().empty())
+        throw InputError("chains of beads and of linked bodies are not refined", "--refine", "leave it out");
     system.close_tips();  // as a run does: velocities then fit them
     Timing const timing = time_evaluations(system, request.repeat);
     std::vector<double> const refinement = refine(system, request.refine);
@@ -229,7 +231,8 @@ Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest 
     prepare_file(communicator, request.accelerations);
     Outcome outcome;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
-        return plan::choose(scene, Axes::joint, communicator, no_gpu);
+        bool const on_host = request.refine > 0 && no_gpu.empty();
+        return plan::choose(scene, Axes::joint, communicator, on_host ? "solutions on a GPU are not refined" : no_gpu);
     };
     plan::with_choice(std::move(given), choose, [&](Scene const& scene, plan::Choice const& choice) {
         outcome = solve_chosen(scene, communicator, request, choice.reason);

@@ -140,7 +140,7 @@ class TreeSolver final : public ChainSolver {
     /// Whether chains short enough for a team of threads each were left to such.
     bool assemble_by_teams() {
         if constexpr (Space::template has_teams<K>)
-            if (carries()) {
+            if (carries() && group_.partition.trees.front().run_length == longest_run) {
                 space_.each_block(blocks(), MatricesOfChains<Leaf>{sweeps_});
                 return true;
             }

@@ -80,7 +80,8 @@ class DeviceBeads {
     virtual void* stream() const = 0;
     /// The particles are where the beads are, once the stream has come here.
     virtual void put_positions(DeviceParticles const&) = 0;
-    /// Adds to the forces since set_simple_forces(): what the particles feel when the stream comes to where forces are needed.
+    /// Adds to the forces since set_simple_forces() what the particles feel when the stream comes to where forces are needed: before OpenMM
+    /// computes again.
     virtual void add_forces(DeviceParticles const&) = 0;
     /// On the host, W; waits for them.
     virtual ConstView<3> host_positions() = 0;

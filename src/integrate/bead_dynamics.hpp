@@ -138,6 +138,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     }
 
     double constraint_error() override {
+        settle_forces();  // whoever reads them says what is wrong with them
         solver_->check();
         exchange_from_inboard(communicator_, group_, position_.view(), space_);
         BeadChains const c = chains();
@@ -188,6 +189,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
     }
     PotentialEnergy potential() override {
+        settle_forces();  // OpenMM's energy takes the place of its forces
         PotentialEnergy energy = potential_in(gravity_, group_, space_.read(position_));
         if (fixman_) energy.fixman = fixman_->energy();
         return energy;
@@ -223,7 +225,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         }
     };
 
-    /// Into the array. Not private: nvcc asks for that.
+    /// Adds up the forces that are ahead: whoever reads the array comes here first. Not private: nvcc asks for that.
     void settle_forces() {
         if (std::exchange(forces_are_ahead_, false))
             space_.for_each(group_.size, [c = chains(), f = forces_] CATENA_LAMBDA(std::int64_t k) { c.take_forces(k, f); });

@@ -11,12 +11,18 @@
 namespace catena::plan {
 namespace {
 
-/// Why a GPU is not for `auto`, besides there being none. OpenMM computes on another platform with it, with another rounding.
+/// Why a GPU is not for `auto`, besides there being none.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
-    if (scene.dynamics.fixman) return "the Fixman force is computed on the host";
-    bool const other_forces = scene.forces.openmm && scene.forces.openmm->platform.empty();
-    return other_forces ? "with the GPU OpenMM's platform would be another: name it in forces.openmm.platform" : "";
+    return scene.dynamics.fixman ? "the Fixman force is computed on the host" : "";
+}
+/// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and the solver.
+bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {
+    if (!scene.forces.openmm || ranks > 1) return false;
+    OpenMmSpec const& openmm = *scene.forces.openmm;
+    bool const free = openmm.platform.empty() && openmm.device < 0 && (openmm.path == "auto" || openmm.path == "device");
+    bool const beads = std::all_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) { return chain.is_beads(); });
+    return free && beads && machine.openmm_on_gpu();
 }
 
 std::string text_of(Prediction const& p) {
@@ -26,12 +32,11 @@ std::string text_of(Prediction const& p) {
 
 /// A GPU that would be chosen must hold the scene, with room for what a sample chain does not show (lists of short chains, OpenMM).
 void refuse_what_does_not_fit(std::vector<Prediction>& predictions, std::vector<Share> const& shares, Machine const& machine) {
-    if (!uses_gpu(quickest(predictions).arrangement.backend)) return;
     double constexpr reserve = 1 << 28, margin = 1.25;
     double needed = reserve;
     for (Share const& share : shares) needed += margin * machine.gpu_memory(share.family, share.bodies);
     for (Prediction& p : predictions)
-        if (uses_gpu(p.arrangement.backend))
+        if (uses_gpu(p.arrangement.backend) && p.unusable.empty())
             p.unusable = cuda::too_little_memory(static_cast<std::int64_t>(needed), static_cast<std::int64_t>(machine.free_gpu_memory()));
 }
 
@@ -44,9 +49,13 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     std::vector<Share> const shares = shares_of(scene, axes, ranks);
     std::vector<Prediction> predictions;
     for (Arrangement const& each : usable) predictions.push_back(planner.predict(shares, each));
-    refuse_what_does_not_fit(predictions, shares, planner.machine());
-    Prediction const& best = quickest(predictions);
-    std::string reason = "auto: predicted " + text_of(best);
+    bool const for_forces = no_gpu.empty() && forces_ask_for_gpu(scene, planner.machine(), ranks);
+    if (for_forces || uses_gpu(quickest(predictions).arrangement.backend)) refuse_what_does_not_fit(predictions, shares, planner.machine());
+    auto const on_gpu = std::find_if(predictions.begin(), predictions.end(),
+                                     [](Prediction const& p) { return uses_gpu(p.arrangement.backend) && p.unusable.empty(); });
+    bool const with_forces = for_forces && on_gpu != predictions.end();
+    Prediction const& best = with_forces ? *on_gpu : quickest(predictions);
+    std::string reason = std::string(with_forces ? "auto: where OpenMM's forces are, " : "auto: ") + "predicted " + text_of(best);
     for (Prediction const& p : predictions)
         if (&p != &best) reason += ", " + text_of(p);
     return {best.arrangement, {}, reason + without};

@@ -6,6 +6,7 @@
 
 #include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
+#include "force/openmm_force.hpp"
 #include "report/hardware.hpp"
 
 namespace catena::plan {
@@ -62,6 +63,10 @@ Machine this_machine(Communicator const& communicator, int threads) {
         return measure_level_costs(family, bodies, place == Place::gpu ? cuda::make_levels : dca::host_levels(*executor));
     };
     m.gpu_memory = gpu_memory_of;
+    m.openmm_on_gpu = [] {
+        auto const platforms = openmm_platforms();
+        return std::find(platforms.begin(), platforms.end(), "CUDA") != platforms.end();
+    };
     m.free_gpu_memory = [&communicator] { return static_cast<double>(cuda::free_memory(communicator)); };
     return m;
 }

@@ -24,6 +24,8 @@ struct Machine {
     /// Bytes that a GPU must have for chains of a family; those that are free.
     std::function<double(Family const&, std::int64_t bodies)> gpu_memory;
     std::function<double()> free_gpu_memory;
+    /// Whether OpenMM can compute there.
+    std::function<bool()> openmm_on_gpu;
 };
 
 /// `threads`: 0: as many as this rank has cores, and fewer; else this number alone.

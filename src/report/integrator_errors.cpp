@@ -113,7 +113,10 @@ std::optional<double> finest_slope(std::vector<IntegratorPoint> const& points, d
 }  // namespace
 
 bool IntegratorStudy::valid() const {
-    return std::all_of(curves.begin(), curves.end(), [](IntegratorCurve const& c) { return c.as_promised(); });
+    auto const finite = [](IntegratorPoint const& p) { return std::isfinite(p.error) && std::isfinite(p.energy_error); };
+    return std::isfinite(reference_error) && std::all_of(curves.begin(), curves.end(), [&](IntegratorCurve const& c) {
+               return c.as_promised() && std::all_of(c.points.begin(), c.points.end(), finite);
+           });
 }
 
 bool integrators_can_be_compared(Scene const& scene) {

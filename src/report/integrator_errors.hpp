@@ -45,10 +45,10 @@ struct DriftStudy {
     std::string title, name;
     double step = 0;
     std::int64_t steps = 0;
-    double kinetic_energy = 0;                                                     // mean
-    double scatter = 0;                                                            // standard deviation of the energy about its mean
-    double slope = 0, slope_error = 0;                                             // per unit of time
-    bool valid() const { return slope * slope <= 9 * slope_error * slope_error; }  // three standard errors
+    double kinetic_energy = 0;                                                      // mean
+    double scatter = 0;                                                             // standard deviation of the energy about its mean
+    double slope = 0, slope_error = 0;                                              // per unit of time
+    bool valid() const { return slope * slope <= 16 * slope_error * slope_error; }  // four standard errors
 };
 DriftStudy study_drift(Scene const&, Communicator const&, Integrator, double step, std::int64_t steps);
 

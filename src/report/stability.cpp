@@ -17,7 +17,10 @@ constexpr std::int64_t few_nudges_above = 100000;
 constexpr int refinements = 2;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-double median(std::vector<double> const& values) { return spread_of(values).median; }
+double median(std::vector<double> const& values) {
+    auto const number = [](double v) { return v == v; };
+    return std::all_of(values.begin(), values.end(), number) ? spread_of(values).median : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// One way to solve, over the seeds.
 struct Variant {
@@ -128,12 +131,12 @@ char const* name_of(Verdict verdict) {
 /// Beyond double precision an answer must still be the exact one of a chain nearby, or refused.
 Verdict StabilityStudy::verdict() const {
     bool const all_hold = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds(); });
-    bool const nearby =
-        std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return !p.refused.empty() || p.of_residual_bound <= 1; });
+    bool const nearby = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.of_residual_bound <= 1; });
     if (beyond()) return nearby ? Verdict::beyond : Verdict::invalid;
     if (all_hold) return Verdict::valid;
-    return std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds_refined(); }) ? Verdict::refined
-                                                                                                                : Verdict::invalid;
+    bool const with_refinement =
+        std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds() || p.holds_refined(); });
+    return with_refinement ? Verdict::refined : Verdict::invalid;
 }
 
 StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends, std::vector<Handles> const& handles,

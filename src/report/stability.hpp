@@ -22,7 +22,9 @@ struct StabilityPoint {
     };
     std::vector<Refined> refined = {};  // after one step, two, ...; empty: not for such chains or backends
     bool holds() const { return refused.empty() && of_residual_bound <= 1 && of_bound <= 1; }
-    bool holds_refined() const { return !refined.empty() && refined.back().of_residual_bound <= 1 && refined.back().of_bound <= 1; }
+    bool holds_refined() const {
+        return refused.empty() && !refined.empty() && refined.back().of_residual_bound <= 1 && refined.back().of_bound <= 1;
+    }
 };
 
 enum class Verdict { valid, refined, beyond, invalid };

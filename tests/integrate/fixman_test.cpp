@@ -118,7 +118,7 @@ TEST_P(Fixman, IsTheLogDeterminantAndItsForceTheSlope) {
         for (int c = 0; c < beads.group().scene_chain(k); ++c)
             first += static_cast<std::int64_t>(scene.chains[static_cast<std::size_t>(c)].size());
         Point const slope = downhill(links_of(chain), static_cast<std::size_t>(beads.group().scene_index(k) - first));
-        for (int c = 0; c < 3; ++c) worst = std::max(worst, std::abs(force.at(k, c) - static_cast<double>(kt * slope[c])) / kt);
+        for (int c = 0; c < 3; ++c) worst = larger(worst, std::abs(force.at(k, c) - static_cast<double>(kt * slope[c])) / kt);
     }
     // Differences err by h^2 and eps / h, eps of extended precision: some 1e-12 of a slope of the order of 1 / length.
     EXPECT_LE(worst, 1e-9);
@@ -136,7 +136,7 @@ TEST(FixmanEnergy, IsKeptToSecondOrder) {
         double largest = 0;
         for (int i = 0; i < 16; ++i) {
             run.run(static_cast<std::int64_t>(std::lround(0.25 / step)));
-            largest = std::max(largest, std::abs(run.energy() - start));
+            largest = larger(largest, std::abs(run.energy() - start));
         }
         return largest;
     };

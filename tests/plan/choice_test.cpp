@@ -8,9 +8,9 @@ namespace {
 
 using plan::Arrangement;
 
-plan::Choice choose(Scene const& scene, plan::Machine machine) {
+plan::Choice choose(Scene const& scene, plan::Machine machine, int ranks = 1) {
     plan::Planner planner(std::move(machine), {}, 65536);
-    return plan::choose(scene, Axes::joint, planner, 1);
+    return plan::choose(scene, Axes::joint, planner, ranks);
 }
 
 TEST(Choice, PredictionsAreTheMachinesTimes) {
@@ -52,6 +52,35 @@ TEST(Choice, WhatDoesNotFitOnTheGpuStaysOnTheHost) {
     plan::Choice const choice = choose(told_scene(10000), machine);
     EXPECT_EQ(choice.arrangement, (Arrangement{Backend::openmp, 4}));
     EXPECT_NE(choice.reason.find("GiB of GPU memory are needed"), std::string::npos) << choice.reason;
+}
+
+TEST(Choice, ChainsGoWhereOpenMmTakesTheGpu) {
+    Arrangement const core{Backend::segments, 1}, gpu{Backend::cuda, 4};
+    plan::Machine const machine = told_machine(true);
+    Scene scene = parse_scene("chains: [{name: a, generator: {freely_jointed: {beads: 10, length: 1}}}]", "told.yaml");
+    EXPECT_EQ(choose(scene, machine).arrangement, core);  // quicker
+    scene.forces.openmm.emplace();
+    EXPECT_EQ(choose(scene, machine).arrangement, gpu);
+    EXPECT_EQ(choose(scene, machine, 2).arrangement, core) << "OpenMM of several ranks computes on processors";
+    plan::Machine without = machine, small = machine;
+    without.openmm_on_gpu = [] { return false; };
+    EXPECT_EQ(choose(scene, without).arrangement, core);
+    small.free_gpu_memory = [] { return 1e6; };
+    EXPECT_EQ(choose(scene, small).arrangement, core);
+    plan::Machine broken = machine;
+    broken.measure = [told = machine.measure](plan::Family const& family, std::int64_t bodies, Arrangement const& on) {
+        if (on.backend == Backend::cuda) throw std::runtime_error("no kernels");
+        return told(family, bodies, on);
+    };
+    EXPECT_EQ(choose(scene, broken).arrangement, core);
+    scene.forces.openmm->path = "inline";
+    EXPECT_EQ(choose(scene, machine).arrangement, core);
+    scene.forces.openmm->path = "auto";
+    scene.forces.openmm->platform = "CPU";
+    EXPECT_EQ(choose(scene, machine).arrangement, core);
+    Scene bodies = told_scene(10);
+    bodies.forces.openmm.emplace();
+    EXPECT_EQ(choose(bodies, machine).arrangement, core);
 }
 
 /// As on another rank's GPU, or where OpenMM is there as well: known when everything is about to be made.

@@ -30,6 +30,7 @@ inline plan::Machine told_machine(bool gpu) {
     };
     m.gpu_memory = [](plan::Family const&, std::int64_t bodies) { return 1000.0 * static_cast<double>(bodies); };
     m.free_gpu_memory = [] { return 1e9; };
+    m.openmm_on_gpu = [] { return true; };
     return m;
 }
 
