@@ -4,7 +4,7 @@
 #include "dca/tree_solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
 #include "mpi/communicator.hpp"
-#include "tests/support/same_bits.hpp"
+#include "tests/integrate/same_steps.hpp"
 
 namespace catena::test {
 namespace {
@@ -56,24 +56,8 @@ class StepByBlocks : public ::testing::TestWithParam<std::tuple<Case, bool, int>
 };
 
 TEST_P(StepByBlocks, LeavesTheSameBits) {
-    ConstrainedStep step;
-    step.langevin = std::get<1>(GetParam());
-    step.kick = step.drift = 0.005;
-    step.sweeps = 3;
-    step.thermostat = thermostat_of(0.9, 2.5, 11);
     ASSERT_TRUE(carries<dca::BeadLeaf<1>>() || carries<dca::BeadLeaf<3>>());
-    auto const before = together_->state();
-    for (step.number = 0; step.number < 5; ++step.number) {
-        for (AbsoluteDynamics* const d : {alone_.get(), together_.get()}) {
-            d->assemble_matrices();
-            d->set_simple_forces();
-        }
-        alone_->step(step);
-        together_->AbsoluteDynamics::step(step);
-        auto const alone = alone_->state(), together = together_->state();
-        for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_TRUE(same_bits(alone[i].values, together[i].values)) << alone[i].name;
-    }
-    EXPECT_FALSE(same_bits(before[0].values, together_->state()[0].values)) << "nothing moved";
+    expect_same_steps(*alone_, *together_, std::get<1>(GetParam()), 5);
     SolverReport const a = alone_->solver().report(), t = together_->solver().report();
     EXPECT_EQ(a.matrix_sweeps, t.matrix_sweeps);
     EXPECT_EQ(a.bias_sweeps, t.bias_sweeps);

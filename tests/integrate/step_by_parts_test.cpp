@@ -11,7 +11,7 @@
 #include "integrate/absolute_dynamics.hpp"
 #include "integrate/bead_dynamics.hpp"
 #include "mpi/communicator.hpp"
-#include "tests/support/same_bits.hpp"
+#include "tests/integrate/same_steps.hpp"
 
 namespace catena::test {
 namespace {
@@ -149,26 +149,7 @@ class StepByParts : public ::testing::TestWithParam<bool> {
     std::vector<std::unique_ptr<ChainGroup>> groups_ = make_groups(scene_, Axes::world, Handles::projected, false, *communicator_);
 };
 
-TEST_P(StepByParts, LeavesTheSameBits) {
-    ConstrainedStep step;
-    step.langevin = GetParam();
-    step.kick = step.drift = 0.005;
-    step.sweeps = 3;
-    step.thermostat = thermostat_of(0.9, 2.5, 11);
-    auto const in_registers = dynamics<TeamSpace>(), in_arrays = dynamics<HostSpace>();
-    auto const before = in_arrays->state();
-    for (step.number = 0; step.number < 3; ++step.number) {
-        for (AbsoluteDynamics* const d : {in_registers.get(), in_arrays.get()}) {
-            d->assemble_matrices();
-            d->set_simple_forces();
-        }
-        in_registers->step(step);
-        in_arrays->AbsoluteDynamics::step(step);
-        auto const found = in_registers->state(), expected = in_arrays->state();
-        for (std::size_t i = 0; i < found.size(); ++i) EXPECT_TRUE(same_bits(found[i].values, expected[i].values)) << found[i].name;
-    }
-    EXPECT_FALSE(same_bits(before[0].values, in_arrays->state()[0].values)) << "nothing moved";
-}
+TEST_P(StepByParts, LeavesTheSameBits) { expect_same_steps(*dynamics<TeamSpace>(), *dynamics<HostSpace>(), GetParam(), 3); }
 INSTANTIATE_TEST_SUITE_P(Steps, StepByParts, ::testing::Bool(),
                          [](auto const& each) { return std::string(each.param ? "langevin" : "rattle"); });
 
