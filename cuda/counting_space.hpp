@@ -136,17 +136,23 @@ class CountingSpace : public HostAccess {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, int /*directions*/) {
-            constexpr std::int64_t fewest_threads = 128;  // of a block: no tree has more ranges than with these
-            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, fewest_threads);
-            std::size_t merges = 0;
-            for (auto const& level : levels) merges += level.size();
-            Count::add(static_cast<std::int64_t>(runs.size() * sizeof(dca::Run)));
-            Count::add(static_cast<std::int64_t>(merges * sizeof(dca::Merge)));
-            Count::add(static_cast<std::int64_t>(plan.roots.size() * sizeof(dca::Root)));
-            for (dca::Stage const& stage : plan.stages)
-                for (auto const* ranges : {&stage.run, &stage.merge, &stage.root})
-                    Count::add(static_cast<std::int64_t>(ranges->size() * sizeof(dca::Range)));
+             std::int64_t slots, int directions) {
+            constexpr std::int64_t shared_bytes = 227 << 10, together = 8;  // of an H100; others' plans take about as much
+            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, dca::stage_sizes(directions, shared_bytes, together));
+            count(runs);
+            for (dca::Stage const& stage : plan.stages) {
+                count(stage.items);
+                count(stage.merges);
+                count(stage.roots);
+                for (auto const* handed : {&stage.segments_up, &stage.forces_down}) count(*handed);
+                for (auto const* ranges : {&stage.item, &stage.merge, &stage.root, &stage.up, &stage.down}) count(*ranges);
+            }
+        }
+
+      private:
+        template <class T>
+        static void count(std::vector<T> const& items) {
+            Count::add(static_cast<std::int64_t>(items.size() * sizeof(T)));
         }
     };
 

@@ -70,30 +70,67 @@ class DeviceSpace {
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
              std::int64_t slots, int directions)
             : runs_(runs) {
-            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, kernels::threads_for(directions));
-            std::vector<dca::Merge> all;
-            for (auto const& level : levels) all.insert(all.end(), level.begin(), level.end());
-            merges_ = Buffer<dca::Merge>(all);
-            roots_ = Buffer<dca::Root>(plan.roots);
+            dca::StageSizes const sizes = sizes_here(directions);
+            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, sizes);
             runs_apart_ = plan.runs_apart;
-            for (dca::Stage const& stage : plan.stages) {
-                blocks_.push_back(static_cast<unsigned>(stage.blocks()));
-                for (auto const* ranges : {&stage.run, &stage.merge, &stage.root}) ranges_.emplace_back(*ranges);
-                auto const* ranges = &ranges_[ranges_.size() - 3];
-                stages_.push_back(
-                    {stage.levels, ranges[0].data(), ranges[1].data(), ranges[2].data(), runs_.data(), merges_.data(), roots_.data()});
-            }
+            for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
+            together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
         }
 
       private:
         friend class DeviceSpace;
+        struct StageHere {
+            StageHere(dca::Stage const& stage, dca::Run const* runs, dca::StageSizes const& sizes)
+                : items(stage.items),
+                  merges(stage.merges),
+                  roots(stage.roots),
+                  segments_up(stage.segments_up),
+                  forces_down(stage.forces_down),
+                  item(stage.item),
+                  merge(stage.merge),
+                  root(stage.root),
+                  up(stage.up),
+                  down(stage.down),
+                  blocks(static_cast<unsigned>(stage.blocks())),
+                  threads(dca::threads_for(stage, sizes)),
+                  view{static_cast<unsigned>(stage.blocks()),
+                       stage.levels,
+                       static_cast<int>(stage.width),
+                       static_cast<int>(stage.forces),
+                       runs,
+                       items.data(),
+                       merges.data(),
+                       roots.data(),
+                       segments_up.data(),
+                       forces_down.data(),
+                       item.data(),
+                       merge.data(),
+                       root.data(),
+                       up.data(),
+                       down.data()} {}
+            Buffer<dca::StageItem> items;
+            Buffer<dca::StageMerge> merges;
+            Buffer<dca::StageRoot> roots;
+            Buffer<dca::Handed> segments_up, forces_down;
+            Buffer<dca::Range> item, merge, root, up, down;
+            unsigned blocks;
+            int threads;
+            kernels::DeviceStage view;
+        };
+        static dca::StageSizes sizes_here(int directions) {
+            int shared_bytes = 0, clusters = 0;
+            auto const ask = [](int& answer, cudaDeviceAttr of) {
+                int device = 0;
+                check(cudaGetDevice(&device), "say which it is");
+                check(cudaDeviceGetAttribute(&answer, of, device), "say how large it is");
+            };
+            ask(shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin);
+            ask(clusters, cudaDevAttrClusterLaunch);
+            return dca::stage_sizes(directions, shared_bytes, clusters ? kernels::most_in_cluster : 0);
+        }
         Buffer<dca::Run> runs_;
-        Buffer<dca::Merge> merges_;
-        Buffer<dca::Root> roots_;
-        std::vector<Buffer<dca::Range>> ranges_;
-        std::vector<kernels::DeviceStage> stages_;
-        std::vector<unsigned> blocks_;
-        bool runs_apart_ = false;
+        std::vector<StageHere> stages_;
+        bool runs_apart_ = false, together_ = false;
     };
 
     using Blocks = DeviceBlocks;
@@ -133,23 +170,23 @@ class DeviceSpace {
     }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
-        climb_runs(tree, sweep);
-        for (std::size_t i = 0; i < tree.stages_.size(); ++i) climb_stage(tree, i, sweep);
+        climb_below(tree, tree.stages_.size(), sweep);
     }
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
-        for (std::size_t i = tree.stages_.size(); i-- > 0;) descend_stage(tree, i, sweep);
-        descend_runs(tree, sweep);
+        descend_below(tree, tree.stages_.size(), sweep);
     }
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.stages_.empty()) return;
-        std::size_t const last = tree.stages_.size() - 1;
-        climb_runs(tree, sweep);
-        for (std::size_t i = 0; i < last; ++i) climb_stage(tree, i, sweep);
-        launch<typename Sweep::Segment>(kernels::turn<Sweep>, tree.blocks_[last], kernels::threads_of<Sweep>, tree.stages_[last], sweep);
-        for (std::size_t i = last; i-- > 0;) descend_stage(tree, i, sweep);
-        descend_runs(tree, sweep);
+        auto const& last = tree.stages_.back();
+        std::size_t const apart = tree.stages_.size() - (tree.together_ ? 2 : 1);
+        climb_below(tree, apart, sweep);
+        if (tree.together_)
+            launch_together(tree.stages_[apart], last, sweep);
+        else
+            launch(kernels::turn<Sweep>, last, sweep);
+        descend_below(tree, apart, sweep);
     }
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {
@@ -289,40 +326,66 @@ class DeviceSpace {
         started();
         return count;
     }
-    /// A kernel whose threads keep a segment each in shared memory.
-    template <class Segment, class... Parameters, class... Arguments>
-    void launch(void (*kernel)(Parameters...), unsigned blocks, int threads, Arguments const&... arguments) const {
-        std::size_t const bytes = kernels::SharedRecords<Segment>::bytes(threads);
+    template <class... Parameters>
+    static void allow_shared(void (*kernel)(Parameters...), std::size_t bytes) {
         constexpr std::size_t without_asking = 48 << 10;
         if (bytes > without_asking)
             check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
                                        static_cast<int>(bytes)),
                   "have enough shared memory");
-        kernel<<<blocks, static_cast<unsigned>(threads), bytes, stream()>>>(arguments...);
+    }
+    template <class Sweep>
+    static std::size_t shared_bytes(Tree::StageHere const& stage) {
+        return sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, stage.threads));
+    }
+    template <class Sweep>
+    void launch(void (*kernel)(kernels::DeviceStage, Sweep), Tree::StageHere const& stage, Sweep const& sweep) const {
+        std::size_t const bytes = shared_bytes<Sweep>(stage);
+        allow_shared(kernel, bytes);
+        kernel<<<stage.blocks, static_cast<unsigned>(stage.threads), bytes, stream()>>>(stage.view, sweep);
         started();
     }
     template <class Sweep>
-    void climb_stage(Tree const& tree, std::size_t i, Sweep const& sweep) const {
-        launch<typename Sweep::Segment>(kernels::climb<Sweep>, tree.blocks_[i], kernels::threads_of<Sweep>, tree.stages_[i], sweep);
+    void launch_together(Tree::StageHere const& lower, Tree::StageHere const& upper, Sweep const& sweep) const {
+        int const of_block = std::max(lower.threads, upper.threads);
+        auto const numbers = [&](Tree::StageHere const& stage) {
+            return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
+        };
+        std::size_t const bytes = sizeof(double) * (numbers(lower) + numbers(upper));
+        allow_shared(kernels::turn_together<Sweep>, bytes);
+        cudaLaunchAttribute cluster{};
+        cluster.id = cudaLaunchAttributeClusterDimension;
+        cluster.val.clusterDim = {lower.blocks, 1, 1};
+        cudaLaunchConfig_t config{};
+        config.gridDim = {lower.blocks};
+        config.blockDim = {static_cast<unsigned>(of_block)};
+        config.dynamicSmemBytes = bytes;
+        config.stream = stream();
+        config.attrs = &cluster;
+        config.numAttrs = 1;
+        check(cudaLaunchKernelEx(&config, kernels::turn_together<Sweep>, lower.view, upper.view, sweep), "start a kernel");
+    }
+    /// Of the first `stages` stages.
+    template <class Sweep>
+    void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) const {
+        if (tree.runs_apart_) {
+            over_runs(tree, sweep, kernels::SharedRecords<typename Sweep::Segment>::size(kernels::threads), kernels::climb_runs<Sweep>);
+        }
+        for (std::size_t i = 0; i < stages; ++i) launch(kernels::climb<Sweep>, tree.stages_[i], sweep);
     }
     template <class Sweep>
-    void descend_stage(Tree const& tree, std::size_t i, Sweep const& sweep) const {
-        kernels::descend<<<tree.blocks_[i], kernels::threads_of<Sweep>, 0, stream()>>>(tree.stages_[i], sweep);
-        started();
+    void descend_below(Tree const& tree, std::size_t stages, Sweep const& sweep) const {
+        for (std::size_t i = stages; i-- > 0;) launch(kernels::descend<Sweep>, tree.stages_[i], sweep);
+        if (tree.runs_apart_) over_runs(tree, sweep, 0, kernels::descend_runs<Sweep>);
     }
+    /// `numbers` of shared memory that it needs.
     template <class Sweep>
-    void climb_runs(Tree const& tree, Sweep const& sweep) const {
-        if (!tree.runs_apart_) return;
+    void over_runs(Tree const& tree, Sweep const& sweep, std::size_t numbers, void (*kernel)(dca::Run const*, std::int64_t, Sweep)) const {
         auto const count = static_cast<std::int64_t>(tree.runs_.size());
-        launch<typename Sweep::Segment>(kernels::climb_runs<Sweep>, blocks(count * dca::parts_of_run), kernels::threads, tree.runs_.data(),
-                                        count, sweep);
-    }
-    template <class Sweep>
-    void descend_runs(Tree const& tree, Sweep const& sweep) const {
-        if (!tree.runs_apart_) return;
-        auto const count = static_cast<std::int64_t>(tree.runs_.size());
-        kernels::descend_runs<<<blocks((count + 31) / 32 * 32 * dca::parts_of_run), kernels::threads, 0, stream()>>>(tree.runs_.data(),
-                                                                                                                     count, sweep);
+        std::int64_t const in_groups = (count + 31) / 32 * 32;  // that walk side by side
+        std::size_t const bytes = sizeof(double) * numbers;
+        allow_shared(kernel, bytes);
+        kernel<<<blocks(in_groups * dca::parts_of_run), kernels::threads, bytes, stream()>>>(tree.runs_.data(), count, sweep);
         started();
     }
     std::shared_ptr<Stream> stream_;

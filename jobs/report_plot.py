@@ -24,12 +24,14 @@ FLOOR = 1e-17  # an error of zero still has a place
 
 
 def decades(values):
-    """The powers of ten around all values."""
+    """The powers of ten around all values that there are."""
+    values = [value for value in values if value is not None and value > 0] or [1.0]
     return 10.0 ** math.floor(math.log10(min(values)) - 0.05), 10.0 ** math.ceil(math.log10(max(values)) + 0.05)
 
 
-def shown(errors):
-    return [max(error, FLOOR) for error in errors]
+def shown(error):
+    """A place for every error; what was not finite is null in the report, and has none."""
+    return math.nan if error is None else max(error, FLOOR)
 
 
 def panels(count, title, x_label, y_label):
@@ -69,12 +71,11 @@ def solver(report, hardware):
             style = {"color": COLOURS[point["backend"]], "marker": MARKERS[point["handles"]], "markersize": 7, "linestyle": ""}
             used += [point["backend"]] if point["backend"] not in used else []
             for key, fill in (("forward_error", "full"), ("residual", "none")):
-                if point[key] is not None:
-                    axes.plot(point["seconds"]["median"], max(point[key], FLOOR), fillstyle=fill, **style)
+                axes.plot(point["seconds"]["median"], shown(point[key]), fillstyle=fill, **style)
         oracle = study["oracle"]
-        axes.plot(oracle["seconds"]["median"], max(oracle["forward_error"], FLOOR), "*", color=COLOURS["oracle"], markersize=9)
+        axes.plot(oracle["seconds"]["median"], shown(oracle["forward_error"]), "*", color=COLOURS["oracle"], markersize=9)
         axes.set_xlim(decades([point["seconds"]["median"] for point in study["points"]] + [oracle["seconds"]["median"]]))
-        axes.set_ylim(decades(shown(errors)))
+        axes.set_ylim(decades([shown(error) for error in errors]))
         note = f", condition {study['condition']:.0e}" if study["condition"] else ""
         axes.set_title(f"{study['title']}{note}", fontsize=9)
     entries = [entry(name) for name in used] + [entry(f"{kind} handles", MARKERS[kind]) for kind in MARKERS]
@@ -95,7 +96,7 @@ def integrators(report, hardware):
             used += [name] if name not in used else []
             times = [point["seconds"]["median"] for point in points]
             for key, line in (("error", "-"), ("energy_error", ":")):
-                axes.plot(times, shown(point[key] for point in points), line, color=COLOURS[name], marker="o", markersize=3)
+                axes.plot(times, [shown(point[key]) for point in points], line, color=COLOURS[name], marker="o", markersize=3)
         axes.set_title(scene["title"], fontsize=9)
     entries = [entry(name) for name in used] + [entry("error at the end", "", linestyle="-"), entry("error of the energy", "", linestyle=":")]
     figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
@@ -108,7 +109,7 @@ def forces(report, hardware):
     figure, all_axes = panels(len(studies), f"OpenMM's forces\n{hardware}", "median time of an evaluation / s", "relative error (rms)")
     for axes, study in zip(all_axes, studies):
         for point in study["points"]:
-            axes.plot(point["seconds"]["median"], max(point["error"], FLOOR), "o", label=f"{point['platform']}, {point['precision']}")
+            axes.plot(point["seconds"]["median"], shown(point["error"]), "o", label=f"{point['platform']}, {point['precision']}")
         axes.set_title(f"{study['title']}, {study['beads']:,} beads", fontsize=9)
         axes.legend(fontsize=8, frameon=False)
     return figure
@@ -119,16 +120,17 @@ def stability(report, hardware):
     figure, (axes,) = panels(1, f"Stability suite: forward error over growth\n{hardware}", "growth of roundings", "forward error")
     figure.set_size_inches(8, 5.5)
     backends = {}
-    for study in report["stability"]:
-        axes.plot(study["growth"], max(study["oracle"]["forward_error"] or 1, FLOOR), "*", color=COLOURS["oracle"], markersize=6)
+    studies = [study for study in report["stability"] if study["growth"] is not None]
+    for study in studies:
+        axes.plot(study["growth"], shown(study["oracle"]["forward_error"]), "*", color=COLOURS["oracle"], markersize=6)
         for point in study["points"]:
             if point["handles"] == "projected" and not point["refused"]:
                 backends[point["backend"]] = True
-                axes.plot(study["growth"], max(point["forward_error"], FLOOR), "o", color=COLOURS[point["backend"]], markersize=4)
+                axes.plot(study["growth"], shown(point["forward_error"]), "o", color=COLOURS[point["backend"]], markersize=4)
                 if point["refined"]:
-                    error = max(point["refined"][-1]["forward_error"], FLOOR)
+                    error = shown(point["refined"][-1]["forward_error"])
                     axes.plot(study["growth"], error, "o", fillstyle="none", color=COLOURS[point["backend"]], markersize=4)
-    growths = decades([study["growth"] for study in report["stability"]])
+    growths = decades([study["growth"] for study in studies])
     axes.plot(growths, [2.0**-53 * growth for growth in growths], "--", color="black", linewidth=0.8)
     entries = [entry(name) for name in backends] + [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]),
                                                     entry("2^-53 growth", "", linestyle="--"),

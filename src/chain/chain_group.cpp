@@ -83,7 +83,9 @@ bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
         std::lower_bound(driven.begin(), driven.end(), body, [](DrivenJoint const& d, std::int64_t k) { return d.body < k; });
     return found != driven.end() && found->body == body;
 }
+/// In a ring the first body's joint is the one that closes it.
 int restricted_at(ChainSpec const& spec, std::int64_t body) {
+    if (body == 0 && spec.is_ring()) return restricted_directions(spec.tip_joint.type);
     return is_driven_joint(spec, body) ? 6 : restricted_directions(joint_type(spec, body));
 }
 
@@ -131,7 +133,12 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     group.r2.set(k, last ? Vec3::zero() : b.translation[body + 1] - b.com[body]);
     group.axes2.set(k, flat(last ? Mat3::identity() : b.rotation[body + 1] * axes(body + 1)));
     if (group.has_universal && b.joint[body] == JointType::universal) group.first_axis.set(k, b.first_axis[body]);
-    if (group.has_screws) group.screw.set(k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
+    if (!group.has_screws) return;
+    bool const closing = body == 0 && spec.is_ring();  // a ring's first body has no other joint
+    if (closing)
+        group.screw.set(k, screw_of(spec.tip_joint.type, spec.tip_joint.pitch));
+    else
+        group.screw.set(k, screw_of(b.joint[body], b.joint[body] == JointType::helical ? b.pitch[body] : 0));
 }
 
 void fill_linked(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std::int64_t k) {
@@ -167,9 +174,7 @@ void fill_carried(ChainGroup& group, Scene const& scene) {
 
 void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     TipJoint const& tip = spec.tip_joint;
-    LocalTip local{k, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
-                   std::min(group.directions, restricted_directions(tip.type))};
-    if (group.planar) local.axes = joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()), Vec3::zero());
+    LocalTip const local = local_tip(group, spec, k);
     group.jointed_tip[k] = static_cast<std::int32_t>(group.tips.size());
     if (!group.beads && !group.linked) {
         group.r2.set(k, tip.translation - spec.bodies.com.back());
@@ -251,6 +256,25 @@ void find_neighbours(ChainGroup& group, int rank) {
     if (!group.pieces.back().ends) group.neighbour_outboard = p.owner(end);
 }
 
+void find_rings(ChainGroup& group, int rank) {
+    dca::Partition const& p = group.partition;
+    for (int chain = 0; chain < p.chains(); ++chain) {
+        if (p.tip[chain] != dca::TipTo::first_body) continue;
+        std::int64_t const first = p.first_of_chain[chain], last = p.first_of_chain[chain + 1] - 1, begin = p.first_of_rank[rank];
+        int const owner = p.owner(first), other = p.owner(last);
+        if (rank != owner && rank != other) continue;
+        group.rings.push_back({chain, rank == owner ? first - begin : -1, rank == other ? last - begin : -1,
+                               owner == other  ? -1
+                               : rank == owner ? other
+                                               : owner});
+    }
+}
+
+dca::TipTo tip_of(ChainSpec const& spec) {
+    if (spec.tip == Tip::free) return dca::TipTo::nothing;
+    return spec.is_ring() ? dca::TipTo::first_body : dca::TipTo::ground;
+}
+
 /// What kinds of joints a group's chains have.
 void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     auto const look = [&](JointType type) {
@@ -273,7 +297,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.chain = chains;
     group.smallest_directions = 1;
     std::vector<std::int64_t> lengths;
-    std::vector<std::uint8_t> tips;
+    std::vector<dca::TipTo> tips;
     std::vector<std::int64_t> first_in_scene{0};
     for (ChainSpec const& spec : scene.chains) first_in_scene.push_back(first_in_scene.back() + static_cast<std::int64_t>(spec.size()));
     for (int const chain : chains) {
@@ -282,7 +306,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
         group.name.push_back(spec.name);
         group.base.push_back(spec.base);
         group.first_in_scene.push_back(first_in_scene[chain]);
-        tips.push_back(spec.tip == Tip::jointed);
+        tips.push_back(tip_of(spec));
         look_at_joints(group, spec);
     }
     group.directions = directions_of(group);
@@ -291,13 +315,14 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
-    group.tips_in_scene = std::find(tips.begin(), tips.end(), 1) != tips.end();
+    group.tips_in_scene = std::any_of(tips.begin(), tips.end(), [](dca::TipTo t) { return t != dca::TipTo::nothing; });
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
     fill(group, scene);
     if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene);
     find_neighbours(group, communicator.rank());
+    find_rings(group, communicator.rank());
     if (group.has_screws) exchange_from_outboard(communicator, group, group.screw.view());
     return group;
 }
@@ -312,65 +337,16 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles) {
 
 }  // namespace
 
-char const* ChainGroup::kind() const { return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1)); }
-
-bool ChainGroup::is_driven(std::int64_t k) const {
-    auto const found =
-        std::lower_bound(drives.begin(), drives.end(), k, [](LocalDrive const& d, std::int64_t body) { return d.body < body; });
-    return found != drives.end() && found->body == k;
-}
-
 int ChainGroup::restricted(std::int64_t k) const {
     return std::min(directions, !drives.empty() && is_driven(k) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
 }
 
-namespace {
-
-dca::Piece const& piece_of(std::vector<dca::Piece> const& pieces, std::int64_t k) {
-    return *(std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1);
-}
-
-}  // namespace
-
-std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const& tips) {
-    std::vector<std::int64_t> bodies;
-    for (LocalTip const& tip : tips) bodies.push_back(tip.body);
-    return bodies;
-}
-
-std::int64_t ChainGroup::scene_index(std::int64_t k) const {
-    dca::Piece const& piece = piece_of(pieces, k);
-    return first_in_scene[piece.chain] + piece.body + (k - piece.local);
-}
-
-GroupView ChainGroup::view() const {
-    return {size,
-            is_first.data(),
-            is_last.data(),
-            jointed_tip.empty() ? nullptr : jointed_tip.data(),
-            tip_screw.data(),
-            inverse_mass.view(),
-            inverse_inertia.view(),
-            r1.view(),
-            r2.view(),
-            axes1.view(),
-            axes2.view(),
-            screw.view()};
-}
-
-int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }
-
-std::vector<LocalUnit> local_units(ChainGroup const& group) {
-    std::vector<LocalUnit> units;
-    for (std::size_t p = 0; p < group.pieces.size(); ++p) {
-        dca::Piece const& piece = group.pieces[p];
-        dca::ChainTree const& tree = group.partition.trees[piece.chain];
-        for (std::int64_t unit = piece.first_unit; unit < piece.first_unit + piece.units; ++unit) {
-            std::int64_t const begin = tree.first_body_of_unit(unit), end = tree.first_body_of_unit(unit + 1);
-            units.push_back({p, piece.local + begin - piece.body, end - begin, unit});
-        }
-    }
-    return units;
+LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t last) {
+    TipJoint const& tip = spec.tip_joint;
+    LocalTip local{last, tip, joint_axes(tip.type, tip.axis, tip.first_axis), screw_of(tip.type, tip.pitch),
+                   std::min(group.directions, restricted_directions(tip.type))};
+    if (group.planar) local.axes = joint_axes(JointType::revolute, transposed_times(tip.rotation, spec.bodies.axis.back()), Vec3::zero());
+    return local;
 }
 
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,

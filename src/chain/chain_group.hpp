@@ -18,13 +18,21 @@ namespace catena {
 /// Axes of a handle's directions. joint: those of the joint frame (state in joint coordinates). world: ground axes (absolute coordinates).
 enum class Axes { joint, world };
 
-/// A chain's joint from its last body to the ground, where this rank holds that body.
+/// A chain's joint from its last body to the ground or to its first body, where this rank holds that last body.
 struct LocalTip {
     std::int64_t body = 0;  // local
     TipJoint joint;
     Mat3 axes;   // its axes in the meeting frame, as ChainGroup::axes1
     Vec3 screw;  // as ChainGroup::screw
     int restricted = 0;
+};
+
+/// A chain closed on itself, one end of which at least is on this rank.
+struct LocalRing {
+    int chain = 0;                       // of the group
+    std::int64_t first = -1, last = -1;  // its first and last bodies, local; -1 on another rank
+    int neighbour = -1;                  // the rank that holds the other end; -1: this one does
+    bool is_whole() const { return neighbour < 0; }
 };
 
 /// A joint that follows a prescribed course, on this rank.
@@ -79,6 +87,7 @@ struct ChainGroup {
     std::vector<LocalDrive> drives;
     std::vector<LocalTip> tips;
     std::vector<Vec3> tip_screw;  // of `tips`
+    std::vector<LocalRing> rings;
 
     int neighbour_inboard = -1, neighbour_outboard = -1;  // ranks that hold the bodies before and after, where a chain goes on there
     GroupView view() const;
@@ -88,7 +97,8 @@ struct ChainGroup {
     std::vector<std::uint8_t> restricted_of_joint;
     bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] >= 0; }
     /// Precondition: has_jointed_tip(k).
-    LocalTip const& tip_of(std::int64_t k) const { return tips[static_cast<std::size_t>(jointed_tip[static_cast<std::size_t>(k)])]; }
+    std::size_t tip_index(std::int64_t k) const { return static_cast<std::size_t>(jointed_tip[static_cast<std::size_t>(k)]); }
+    LocalTip const& tip_of(std::int64_t k) const { return tips[tip_index(k)]; }
     std::int64_t carried_beads() const { return bead_offset.empty() ? 0 : bead_offset.back(); }
     bool has_tips() const { return tips_in_scene; }
     /// Whether handle 2 of a body depends on the joint there.
@@ -102,6 +112,9 @@ struct ChainGroup {
     int scene_chain(std::int64_t k) const;
     std::vector<std::int64_t> const& first_of_rank() const { return partition.first_of_rank; }
 };
+
+/// Of a chain of the group, with directions and planarity known. `last`: its last body, local.
+LocalTip local_tip(ChainGroup const&, ChainSpec const&, std::int64_t last);
 
 /// That the tips belong to, local, in their order.
 std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const&);

@@ -18,6 +18,15 @@ struct Motion {
     Vec3 velocity;     // of B's origin against A, B
     static CATENA_HD Motion none() { return {Quat::identity(), Vec3::zero(), Vec3::zero(), Vec3::zero()}; }
 };
+/// As numbers, for storage and messages.
+CATENA_HD Vector<double, 13> as_numbers(Motion const& m) {
+    Quat const q = m.rotation;
+    Vec3 const w = m.omega, x = m.translation, v = m.velocity;
+    return {{q.w, q.x, q.y, q.z, w[0], w[1], w[2], x[0], x[1], x[2], v[0], v[1], v[2]}};
+}
+CATENA_HD Motion as_motion(Vector<double, 13> const& n) {
+    return {{n[0], n[1], n[2], n[3]}, {{n[4], n[5], n[6]}}, {{n[7], n[8], n[9]}}, {{n[10], n[11], n[12]}}};
+}
 /// Motion of C against A from those of B against A and C against B. Without `positions` translation and velocity stay zero.
 template <bool positions>
 CATENA_HD Motion compose(Motion const& ab, Motion const& bc) {

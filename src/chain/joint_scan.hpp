@@ -97,15 +97,10 @@ struct JointScan {
     }
 
     CATENA_HD void show_unit(std::int64_t i, dca::SharedUnit const& unit) const {
-        if (unit.source < 0) return;
-        Motion const m = whole[unit.source];
-        Quat const q = m.rotation;
-        Vec3 const w = m.omega, x = m.translation, v = m.velocity;
-        shared.store(i, Vector<double, 13>{{q.w, q.x, q.y, q.z, w[0], w[1], w[2], x[0], x[1], x[2], v[0], v[1], v[2]}});
+        if (unit.source >= 0) shared.store(i, as_numbers(whole[unit.source]));
     }
     CATENA_HD void take_unit(std::int64_t i, dca::SharedUnit const& unit) const {
-        Vector<double, 13> const n = shared.load(i);
-        whole[unit.slot] = {{n[0], n[1], n[2], n[3]}, {{n[4], n[5], n[6]}}, {{n[7], n[8], n[9]}}, {{n[10], n[11], n[12]}}};
+        whole[unit.slot] = as_motion(shared.load(i));
     }
     CATENA_HD void show_first_meeting() const {
         Meeting const m = joints.meeting(state, 0);

@@ -23,13 +23,14 @@ Outcome list() {
         "cuda: the GPU's)\n"
         "evaluation  the solver alone, with everything it reads and writes in place: many evaluations of random chains in absolute\n"
         "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n"
+        "peers       forward dynamics of random chains beside Pinocchio, Simbody and MuJoCo, and where each of them stops\n"
         "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
         "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n"
         "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this machine, beside the chapter's numbers\n"
         "            (--figure, --output)\n"
         "network     latency and bandwidth between ranks, and the solver's own gathers; catena plan --network takes what --json writes\n"
         "plan        the planner's predictions of an evaluation beside what is measured, and its choices beside the best of all\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve", "openmm", "overlap", "figures", "network", "plan"}}};
+    outcome.json = {{"benchmarks", {"evaluation", "solve", "peers", "openmm", "overlap", "figures", "network", "plan"}}};
     return outcome;
 }
 
@@ -52,6 +53,7 @@ struct Measured {
     std::int64_t bodies = 0;
     std::string backend;
     int threads = 1;
+    SimdLevel simd = SimdLevel::off;
     Timing timing;
     double residual = 0, bound = 0;
     bool valid() const { return residual <= bound; }
@@ -61,7 +63,8 @@ struct Measured {
 Measured measure(Scene& scene, std::string const& joint, Backend backend, Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
     ChainSystem system(scene, Axes::joint, communicator);
-    Measured m{joint, scene.bodies(), name_of(backend), system.executor().threads(), time_evaluations(system, repeat), 0, 0};
+    Executor const& executor = system.executor();
+    Measured m{joint, scene.bodies(), name_of(backend), executor.threads(), executor.simd(), time_evaluations(system, repeat), 0, 0};
     m.residual = system.residual();
     m.bound = system.residual_bound();
     spdlog::info("{} {} {}: {:.3g} ns a body", joint, m.bodies, m.backend, m.a_body(m.timing.evaluation));
@@ -78,6 +81,7 @@ Json json_of(Measured const& m, Scene const& scene, Spread const& oracle) {
             {"backend", m.backend},
             {"handles", name_of(scene.solver.handles)},
             {"threads", m.threads},
+            {"simd", name_of(m.simd)},
             {"repeat", m.timing.evaluation.count},
             {"ns_per_body",
              {{"matrix_sweep", nanoseconds(m.timing.matrix_sweep)},
@@ -151,6 +155,7 @@ struct AtOnce {
     Spread seconds;
     double residual = 0, bound = 0;
     int threads = 1;
+    SimdLevel simd = SimdLevel::off;
 };
 AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
@@ -161,6 +166,7 @@ AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communica
     found.residual = system.residual();
     found.bound = system.residual_bound();
     found.threads = system.executor().threads();
+    found.simd = system.executor().simd();
     found.seconds = spread_of(system.absolute().front()->time_at_once(chained_for(scene.bodies()), repeat));
     return found;
 }
@@ -212,6 +218,7 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                      {"bodies", bodies},
                      {"backend", name_of(backend)},
                      {"threads", found.threads},
+                     {"simd", name_of(found.simd)},
                      {"chained", chained_for(bodies)},
                      {"repeat", found.seconds.count},
                      {"microseconds",
@@ -238,6 +245,7 @@ Outcome run_bench(Communicator const& communicator, BenchRequest const& request)
     if (request.name == "network") return bench_network(communicator, request);
     if (request.name == "evaluation") return evaluation(communicator, request);
     if (request.name == "plan") return bench_plan(communicator, request);
+    if (request.name == "peers") return bench_peers(communicator, request);
     if (request.name == "openmm") return bench_openmm(communicator, request);
     return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);
 }

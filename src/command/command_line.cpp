@@ -17,24 +17,23 @@ constexpr std::string_view handle_names[] = {"projected", "full"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
 constexpr std::string_view suite_names[] = {"stability"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "openmm", "overlap", "figures", "network", "plan"};
+constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "peers", "openmm", "overlap", "figures", "network", "plan"};
 
 /// What the contract promises for later versions, by command.
 std::map<std::string, std::vector<std::string>> const later_options{
     {"check", {}},
     {"plan", {}},
     {"solve", {"--precision"}},
-    {"run", {"--precision", "--refine"}},
+    {"run", {"--precision"}},
     {"report", {"--precision"}},
     {"bench", {"--precision"}},
 };
-std::vector<std::string> const later_benches{"sweeps", "peers"};
+std::vector<std::string> const later_benches{"sweeps"};
 
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite,
-        refine;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite;
     std::vector<std::string> scenes;
     bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
 };
@@ -50,6 +49,10 @@ void add_common(CLI::App& command, Words& words) {
         .add_option("--threads", c.threads,
                     "threads a rank of openmp, and of what cuda-levels leaves to the host (0: its cores over its ranks)")
         ->type_name("N");
+    command
+        .add_option("--simd", c.simd,
+                    "runs of bodies side by side in the processor's vectors: auto (default: the widest) | avx512 | avx2 | off")
+        ->type_name("LEVEL");
     command
         .add_option(
             "--gpu-levels", c.gpu_levels,
@@ -71,6 +74,14 @@ void add_backend(CLI::App& command, Words& words) {
 void add_scene(CLI::App& command, Words& words) { command.add_option("SCENE", words.scene, "scene file (YAML)")->type_name(""); }
 void add_repeat(CLI::App& command, Words& words, char const* otherwise) {
     command.add_option("--repeat", words.repeat, std::string("timed evaluations of each kind (default ") + otherwise + ")")->type_name("R");
+}
+
+void add_refine(CLI::App& command, Words& words) {
+    command
+        .add_option("--refine", words.common.refine,
+                    "steps of iterative refinement of solutions in joint coordinates (default: the scene's solver.refine, 0): 1 or 2 bring "
+                    "back what nearly parallel hinges, light bodies between heavy ones and thin bodies lose")
+        ->type_name("K");
 }
 
 void add_commands(CLI::App& app, Words& words) {
@@ -97,11 +108,7 @@ void add_commands(CLI::App& app, Words& words) {
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
     add_repeat(*command, words, "11");
-    command
-        ->add_option("--refine", words.refine,
-                     "steps of iterative refinement, of bodies on joints (default 0): 1 or 2 bring back what nearly parallel hinges, light "
-                     "bodies between heavy ones and thin bodies lose")
-        ->type_name("K");
+    add_refine(*command, words);
     command
         ->add_option("--accelerations", words.accelerations,
                      "write accelerations and forces of joints and tips, of any number of bodies (HDF5)")
@@ -118,6 +125,7 @@ void add_commands(CLI::App& app, Words& words) {
         ->type_name("DIR");
     command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
+    add_refine(*command, words);
     command->footer(
         "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
         "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
@@ -145,13 +153,14 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
     command
         ->add_option("--sizes", words.sizes,
-                     "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out above 1e6; openmm: 140,9940,99960,1000020, "
+                     "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out above 1e6; peers: 100,200,500,1e3,1e4,1e5; "
+                     "openmm: 140,9940,99960,1000020, "
                      "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to 2048)")
         ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,
                      "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute; "
-                     "evaluation takes the first two)")
+                     "evaluation takes the first two, peers these and planar)")
         ->type_name("J,...");
     add_repeat(*command, words, "21");
     command
@@ -217,6 +226,7 @@ CommonOptions checked(CommonOptions c) {
     if (!c.backend.empty()) backend_named("--backend", c.backend);
     if (!c.handles.empty()) known_value("--handles", c.handles, handle_names);
     if (!c.threads.empty()) c.threads = std::to_string(whole_number("--threads", c.threads, 0, 4096));
+    if (!c.refine.empty()) c.refine = std::to_string(whole_number("--refine", c.refine, 0, 10));
     known_value("--log-level", c.log_level, log_levels);
     return c;
 }
@@ -267,6 +277,17 @@ RunRequest run_request(Words const& words) {
     return request;
 }
 
+/// The suite has chains of its own, whose errors it looks for, not their times.
+void refuse_with_suite(Words const& words) {
+    for (auto const& [option, given] : {std::pair{"--set", !words.common.set.empty()},
+                                        {"--repeat", !words.repeat.empty()},
+                                        {"--threads", !words.common.threads.empty()},
+                                        {"--gpu-levels", !words.common.gpu_levels.empty()}})
+        if (given)
+            throw InputError("both --suite and " + std::string(option), "command line",
+                             "the suite has chains of its own, and its errors hang neither on threads nor on repetition: leave it out");
+}
+
 ReportRequest report_request(Words const& words) {
     ReportRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
@@ -275,6 +296,7 @@ ReportRequest report_request(Words const& words) {
     if (!words.suite.empty()) request.suite = known_value("--suite", words.suite, suite_names);
     if (!request.suite.empty() && !request.scenes.empty())
         throw InputError("both --suite and a scene", "command line", "the suite has chains of its own: leave the scene out");
+    if (!request.suite.empty()) refuse_with_suite(words);
     if (!words.output.empty()) request.output = words.output;
     request.repeat = repeat_of(words, request.quick ? 3 : request.repeat);
     return request;
@@ -288,6 +310,7 @@ BenchRequest bench_request(Words const& words) {
         throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
     if (request.name == "solve" || request.name == "evaluation") request.sizes = {1000, 10000, 100000};
+    if (request.name == "peers") request.sizes = {100, 200, 500, 1000, 10000, 100000};
     if (request.name == "evaluation") request.joints = {"link", "spherical"};
     if (request.name == "plan") request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
     if (request.name == "plan")
@@ -319,7 +342,6 @@ Request request_of(std::string const& command, Words const& words) {
     if (command == "bench") return bench_request(words);
     auto request = scene_request<SolveRequest>(words, "solve");
     request.accelerations = words.accelerations;
-    if (!words.refine.empty()) request.refine = static_cast<int>(whole_number("--refine", words.refine, 0, 10));
     request.repeat = repeat_of(words, request.repeat);
     return request;
 }

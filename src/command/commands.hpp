@@ -25,7 +25,8 @@ Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 /// What `report` measures: the solver's error on all scenes, the integrators' and forces' on those that have them.
 struct ReportScenes {
     std::vector<Scene> solver, integrators, forces, drift;
-    double time = 0;  // of the integrators; 0: 32 steps of each scene's own
+    double time = 0;                    // of the integrators; 0: 32 steps of each scene's own
+    std::vector<std::string> left_out;  // what is measured of some scenes and not of others, and why
 };
 /// Error against run time, or the stability suite (no scenes); writes report.json, report.html and, where Python can draw them, pictures.
 Outcome report_scenes(ReportScenes const&, Communicator const&, ReportRequest const&);
@@ -33,6 +34,8 @@ Outcome report_stability(Communicator const&, ReportRequest const&);
 
 /// `solve`, or the list of benchmarks.
 Outcome run_bench(Communicator const&, BenchRequest const&);
+/// Forward dynamics by Pinocchio, Simbody and MuJoCo beside Catena's. One rank.
+Outcome bench_peers(Communicator const&, BenchRequest);
 /// Catena's steps beside OpenMM's own; what overlap brings. One rank.
 Outcome bench_openmm(Communicator const&, BenchRequest const&);
 Outcome bench_overlap(Communicator const&, BenchRequest const&);

@@ -21,7 +21,10 @@ char const* contents_of(ChainSpec const& chain) {
     return beads == 0 ? "bodies" : "bodies and beads";
 }
 
-std::string tip_name(ChainSpec const& chain) { return chain.tip == Tip::free ? "free" : name_of(chain.tip_joint.type); }
+std::string tip_name(ChainSpec const& chain) {
+    if (chain.tip == Tip::free) return "free";
+    return std::string(chain.is_ring() ? "ring, " : "") + name_of(chain.tip_joint.type);
+}
 
 char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
 

@@ -2,18 +2,27 @@
 
 #include "command/describe.hpp"
 #include "dca/segment.hpp"
+#include "dca/simd/level.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::command {
 namespace {
 
 struct SolverSizes {
-    double segment, joint;
+    double segment, joint, node;
 };
 template <int K>
 SolverSizes sizes() {
     return {static_cast<double>(sizeof(dca::SegmentMatrix<double, K>) + sizeof(dca::SegmentBias<double, K>)),
-            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>))};
+            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)),
+            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + sizeof(Vector<double, K>))};
+}
+/// Of a run among those that go side by side (dca/simd/runs.hpp): body, slot and what follows.
+constexpr double bytes_of_place = 3 * sizeof(std::int64_t);
+
+bool goes_side_by_side(Scene const& scene) {
+    return scene.solver.simd.value_or(best_simd_level()) != SimdLevel::off && scene.solver.handles == Handles::projected &&
+           !scene.solver.pairwise();
 }
 SolverSizes sizes_for(int directions) {
     switch (directions) {
@@ -67,6 +76,8 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
+        if (goes_side_by_side(scene))
+            m.solver += static_cast<double>(tree.runs) * ((dca::parts_of_run - 1) * size.node + bytes_of_place) / ranks;
     }
     return m;
 }

@@ -38,7 +38,7 @@ Cut cut_on(ChainGroup const& group, bool pairwise, std::int64_t ranks) {
     dca::Partition const& here = group.partition;
     std::vector<std::int64_t> lengths;
     for (dca::ChainTree const& tree : here.trees) lengths.push_back(tree.bodies);
-    dca::Partition const there(lengths, pairwise, static_cast<int>(ranks), here.jointed_tip);
+    dca::Partition const there(lengths, pairwise, static_cast<int>(ranks), here.tip);
     Cut cut;
     for (int chain = 0; chain < there.chains(); ++chain)
         if (there.is_split(chain)) cut.shared_units += there.trees[static_cast<std::size_t>(chain)].units;

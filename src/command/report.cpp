@@ -101,7 +101,7 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
         spdlog::info("{} done", scene.title);
     }
     std::vector<ReportPart> parts;
-    std::vector<std::string> left_out;
+    std::vector<std::string> left_out = scenes.left_out;
     if (communicator.rank() == 0) parts.push_back(solver_part(solver));
     if (communicator.size() > 1 && !(scenes.integrators.empty() && scenes.forces.empty()))
         left_out.emplace_back("integrators and forces: they are compared on one rank");

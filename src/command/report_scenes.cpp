@@ -27,7 +27,11 @@ ReportScenes generated_report(ReportRequest const& request) {
 ReportScenes sorted_for_report(std::vector<Scene> all) {
     ReportScenes scenes;
     for (Scene& scene : all) {
-        if (scene.dynamics.given && integrators_can_be_compared(scene)) scenes.integrators.push_back(scene);
+        std::string const why = scene.dynamics.given ? why_integrators_cannot_be_compared(scene) : "it has no `dynamics`";
+        if (why.empty())
+            scenes.integrators.push_back(scene);
+        else
+            scenes.left_out.push_back("integrators of " + scene.file + ": " + why);
         if (scene.forces.openmm) scenes.forces.push_back(scene);
         scenes.solver.push_back(std::move(scene));
     }

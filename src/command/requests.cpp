@@ -10,7 +10,9 @@ std::vector<std::string> overrides_of(CommonOptions const& options) {
     add("backend", options.backend);
     add("gpu_levels", options.gpu_levels);
     add("handles", options.handles);
+    add("simd", options.simd);
     add("threads", options.threads);
+    add("refine", options.refine);
     return all;
 }
 

@@ -12,9 +12,9 @@
 namespace catena::command {
 
 struct CommonOptions {
-    std::vector<std::string> set;                       // key.path=value
-    std::string backend, gpu_levels, handles, threads;  // empty: the scene's
-    std::string json;                                   // file; empty: none; "-": standard output, in the place of the text
+    std::vector<std::string> set;                                     // key.path=value
+    std::string backend, gpu_levels, handles, simd, threads, refine;  // empty: the scene's
+    std::string json;                                                 // file; empty: none; "-": standard output, in the place of the text
     std::string log_level = "warn";
     bool quiet = false;
     std::string command_line;
@@ -34,7 +34,6 @@ struct PlanRequest : SceneOptions {  // the scene may be missing where the machi
 struct SolveRequest : SceneOptions {
     int repeat = 11;
     std::string accelerations;  // HDF5 file
-    int refine = 0;             // steps of refinement
 };
 struct RunRequest : SceneOptions {
     std::optional<std::int64_t> steps;

@@ -113,6 +113,7 @@ Json summary_json(ChainSystem const& system, Timing const& timing) {
             {"backend", name_of(system.backend())},
             {"ranks", system.communicator().size()},
             {"threads", system.executor().threads()},
+            {"simd", name_of(system.executor().simd())},
             {"gpu_levels", gpu_levels_json(scene)},
             {"handles", name_of(scene.solver.handles)},
             {"tree_table", dca::tree_table_version},
@@ -191,15 +192,16 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
     bool const thermal = starts_thermal(given);
     Scene const scene = with_start_velocities(given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
-    if (request.refine > 0 && system.joint().empty())
-        throw InputError("chains of beads and of linked bodies are not refined", "--refine", "leave it out");
+    int const refinements = scene.solver.refine;
+    if (refinements > 0 && system.joint().empty())
+        throw InputError("chains of beads and of linked bodies are not refined", "solver.refine", "leave it out");
     system.close_tips();  // as a run does: velocities then fit them
     Timing const timing = time_evaluations(system, request.repeat);
-    std::vector<double> const refinement = refine(system, request.refine);
+    std::vector<double> const refinement = refine(system, refinements);
     Outcome outcome;
     Json& json = outcome.json = summary_json(system, timing);
     json["backend_reason"] = reason;
-    json["refinement"] = {{"steps", request.refine}, {"seconds_of_each", refinement}};
+    json["refinement"] = {{"steps", refinements}, {"seconds_of_each", refinement}};
     double const residual = system.residual(), bound = system.residual_bound();
     std::vector<EnergyTerm> const energies = system.potential_energy();
     // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.
@@ -231,8 +233,7 @@ Outcome solve_scene(Scene given, Communicator const& communicator, SolveRequest 
     prepare_file(communicator, request.accelerations);
     Outcome outcome;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
-        bool const on_host = request.refine > 0 && no_gpu.empty();
-        return plan::choose(scene, Axes::joint, communicator, on_host ? "solutions on a GPU are not refined" : no_gpu);
+        return plan::choose(scene, Axes::joint, communicator, no_gpu);
     };
     plan::with_choice(std::move(given), choose, [&](Scene const& scene, plan::Choice const& choice) {
         outcome = solve_chosen(scene, communicator, request, choice.reason);

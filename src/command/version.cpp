@@ -1,10 +1,13 @@
 #include "command/version.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "cuda/solver.hpp"
+#include "dca/simd/level.hpp"
 #include "force/openmm_force.hpp"
 #include "io/output.hpp"
 #include "mpi/communicator.hpp"
@@ -12,17 +15,23 @@
 
 namespace catena::command {
 
+namespace {
+
+/// Levels of --simd that can run here.
+std::string simd_names() {
+    std::vector<char const*> names;
+    for (SimdLevel const level : simd_levels()) names.insert(names.begin(), name_of(level));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+}  // namespace
+
 std::string version() { return CATENA_VERSION; }
 
 nlohmann::ordered_json version_json() {
-    return {{"catena", version()},
-            {"compiler", compiler_name()},
-            {"instruction_set", instruction_set()},
-            {"mpi", message_passing_library()},
-            {"openmp", CATENA_OPENMP},
-            {"openmm", openmm_version()},
-            {"hdf5", hdf5_version()},
-            {"cuda", cuda::version()}};
+    return {{"catena", version()},    {"compiler", compiler_name()},      {"flags", CATENA_FLAGS},   {"instruction_set", instruction_set()},
+            {"simd", simd_names()},   {"mpi", message_passing_library()}, {"openmp", CATENA_OPENMP}, {"openmm", openmm_version()},
+            {"hdf5", hdf5_version()}, {"cuda", cuda::version()}};
 }
 
 nlohmann::ordered_json hardware_json() {
@@ -40,7 +49,7 @@ std::string version_text() {
     std::string text = fmt::format("catena {} ({}, {})\n", version(), compiler_name(), instruction_set());
     nlohmann::ordered_json const all = version_json();
     for (auto const& [label, key] :
-         {std::pair{"MPI", "mpi"}, {"OpenMP", "openmp"}, {"OpenMM", "openmm"}, {"HDF5", "hdf5"}, {"CUDA", "cuda"}})
+         {std::pair{"SIMD", "simd"}, {"MPI", "mpi"}, {"OpenMP", "openmp"}, {"OpenMM", "openmm"}, {"HDF5", "hdf5"}, {"CUDA", "cuda"}})
         text += fmt::format("  {:<8}{}\n", label, all.at(key).get<std::string>());
     return text;
 }

@@ -8,7 +8,7 @@ namespace catena::command {
 std::string version();
 /// Several lines: catena, compiler, and what is in the build.
 std::string version_text();
-/// {"catena", "compiler", "instruction_set", "mpi", "openmp", "openmm", "hdf5", "cuda"}
+/// {"catena", "compiler", "instruction_set", "simd", "mpi", "openmp", "openmm", "hdf5", "cuda"}
 nlohmann::ordered_json version_json();
 /// {"processor", "hardware_threads", "gpu"}: what a time was measured on; "gpu" is null where none can be used.
 nlohmann::ordered_json hardware_json();

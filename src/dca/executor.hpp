@@ -5,14 +5,19 @@
 #include <functional>
 #include <memory>
 
+#include "dca/simd/level.hpp"
+
 namespace catena {
 
 class Executor {
   public:
+    explicit Executor(SimdLevel simd) : simd_(simd) {}
     virtual ~Executor() = default;
     /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side by side.
     virtual void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
     virtual int threads() const = 0;
+    /// Of each thread, where several items go side by side.
+    SimdLevel simd() const { return simd_; }
 
     template <class Item>
     void for_each(std::int64_t count, Item const& item) const {
@@ -20,11 +25,14 @@ class Executor {
             for (std::int64_t i = begin; i < end; ++i) item(i);
         });
     }
+
+  private:
+    SimdLevel simd_;
 };
 
-std::unique_ptr<Executor> serial_executor();
+std::unique_ptr<Executor> serial_executor(SimdLevel = best_simd_level());
 /// `threads` OpenMP threads. Throws "built without OpenMP" where it is absent.
-std::unique_ptr<Executor> openmp_executor(int threads);
+std::unique_ptr<Executor> openmp_executor(int threads, SimdLevel = best_simd_level());
 bool openmp_is_built();
 
 }  // namespace catena

@@ -6,14 +6,16 @@
 
 #if defined(__CUDACC__)
 #define CATENA_HD __host__ __device__ inline
-#define CATENA_HD_IN_PLACE __host__ __device__ __forceinline__  // never called: arrays that it is given may stay in registers
-#define CATENA_EITHER_SIDE _Pragma("nv_exec_check_disable")     // before a template that calls what its arguments have on one side alone
-#define CATENA_LAMBDA __device__                                // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
+#define CATENA_HD_IN_PLACE __host__ __device__ __forceinline__   // never called: arrays that it is given may stay in registers
+#define CATENA_HD_APART __host__ __device__ __noinline__ inline  // seldom called: it is to cost its callers no registers
+#define CATENA_EITHER_SIDE _Pragma("nv_exec_check_disable")      // before a template that calls what its arguments have on one side alone
+#define CATENA_LAMBDA __device__                                 // of what a Space runs: [=] CATENA_LAMBDA (std::int64_t k) { ... }
 #define CATENA_UNROLL _Pragma("unroll")
 #define CATENA_NO_UNROLL _Pragma("unroll 1")
 #else
 #define CATENA_HD inline
 #define CATENA_HD_IN_PLACE inline
+#define CATENA_HD_APART [[gnu::noinline]] inline
 #define CATENA_EITHER_SIDE
 #define CATENA_LAMBDA
 #define CATENA_UNROLL _Pragma("GCC unroll 8")
@@ -59,14 +61,14 @@ CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
 /// The order of bodies in a GPU's arrays: in tiles of `lanes` runs of `steps` bodies, the runs' first bodies next to each other, then
 /// their second ones, ..., so that threads that walk along a run each touch whole cache lines together.
 namespace gpu_order {
-inline constexpr std::int64_t lanes = 32, steps = 16, tile = lanes * steps;
+inline constexpr std::int32_t lanes = 32, steps = 16, tile = lanes * steps;
 CATENA_HD constexpr std::int64_t place(std::int64_t k) {
-    std::int64_t const in_tile = k & (tile - 1);
-    return k - in_tile + (in_tile % steps) * lanes + in_tile / steps;
+    auto const in_tile = static_cast<std::int32_t>(k & (tile - 1));  // what fits is computed in 32 bits
+    return k + ((in_tile % steps) * lanes + in_tile / steps - in_tile);
 }
 CATENA_HD constexpr std::int64_t body(std::int64_t place) {
-    std::int64_t const in_tile = place & (tile - 1);
-    return place - in_tile + (in_tile % lanes) * steps + in_tile / lanes;
+    auto const in_tile = static_cast<std::int32_t>(place & (tile - 1));
+    return place + ((in_tile % lanes) * steps + in_tile / lanes - in_tile);
 }
 /// Of whole tiles that hold `bodies`.
 CATENA_HD constexpr std::int64_t padded(std::int64_t bodies) { return (bodies + tile - 1) / tile * tile; }

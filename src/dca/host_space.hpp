@@ -12,6 +12,10 @@
 #include "dca/records.hpp"
 #include "dca/solver.hpp"
 
+/// Of what a loop does with one item: all that it calls is inlined, small vectors and matrices then stay in registers. By itself gcc stops
+/// at a size that these functions are beyond, and they take two to three times as long.
+#define CATENA_WHOLE __attribute__((flatten))
+
 namespace catena {
 
 class HostSpace : public HostAccess {
@@ -96,7 +100,7 @@ class HostSpace : public HostAccess {
 
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
-        executor_->for_each(count, action);
+        executor_->for_each(count, [&](std::int64_t i) CATENA_WHOLE { action(i); });
     }
     template <class T, class Action>
     void over(List<T> const& items, Action const& action) const {
@@ -113,16 +117,16 @@ class HostSpace : public HostAccess {
     /// A sweep (tree_sweeps.hpp) from the leaves to the roots, and from the roots to the leaves.
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
-        over(tree.runs_, [&](dca::Run const& run) { climb_run(sweep, run); });
+        over(tree.runs_, [&](dca::Run const& run) CATENA_WHOLE { climb_run(sweep, run); });
         for (std::vector<dca::Merge> const& level : tree.levels_)
-            over(std::span(level), [&](dca::Merge const& m) { climb_merge(sweep, m); });
-        over(tree.roots_, [&](dca::Root const& root) { sweep.close(root); });
+            over(std::span(level), [&](dca::Merge const& m) CATENA_WHOLE { climb_merge(sweep, m); });
+        over(tree.roots_, [&](dca::Root const& root) { close_root(sweep, root); });
     }
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
         for (std::size_t l = tree.levels_.size(); l-- > 0;)
-            over(std::span(tree.levels_[l]), [&](dca::Merge const& m) { descend_merge(sweep, m, sweep.node(m.joint)); });
-        over(tree.runs_, [&](dca::Run const& run) { descend_run(sweep, run); });
+            over(std::span(tree.levels_[l]), [&](dca::Merge const& m) CATENA_WHOLE { descend_merge(sweep, m, sweep.node(m.joint)); });
+        over(tree.runs_, [&](dca::Run const& run) CATENA_WHOLE { descend_run(sweep, run); });
     }
     /// Both.
     template <class Sweep>
@@ -194,6 +198,12 @@ class HostSpace : public HostAccess {
     /// Until everything asked for so far is done.
     void wait() const {}
     int threads() const { return executor_->threads(); }
+    SimdLevel simd() const { return executor_->simd(); }
+    /// action(begin, end) on ranges that together cover [0, count); they may run side by side.
+    template <class Action>
+    void over_ranges(std::int64_t count, Action const& action) const {
+        executor_->for_ranges(count, action);
+    }
 
   private:
     Executor const* executor_;

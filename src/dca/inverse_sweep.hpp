@@ -9,7 +9,7 @@
 
 namespace catena::dca {
 
-/// Precondition: one restricted direction a joint at most.
+/// Precondition: one restricted direction a joint at most, no rings.
 template <class Leaf>
 struct InverseSweep {
     TreeSweeps<Leaf> s;
@@ -19,10 +19,10 @@ struct InverseSweep {
 
     void operator()(Root const& root) const {
         double const first = s.joints.load(root.first).factor(0, 0);
-        Entries const tip = root.jointed_tip ? entries(root.next, first, 0, 0) : Entries{};
+        Entries const tip = root.tip == TipTo::ground ? entries(root.next, first, 0, 0) : Entries{};
         own.store(root.first, first);
         across.store(root.slot, tip.inboard);
-        if (root.jointed_tip) own.store(root.next, tip.own);
+        if (root.tip == TipTo::ground) own.store(root.next, tip.own);
     }
     void operator()(Merge const& m) const {
         Entries const e = entries(m.joint, own.load(m.first), across.load(m.slot), own.load(m.next));

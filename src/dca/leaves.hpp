@@ -3,34 +3,35 @@
 
 #include "dca/leaf.hpp"
 #include "dca/moving_beads.hpp"
-#include "dca/solver.hpp"
+#include "dca/places.hpp"
 
 namespace catena::dca {
 
-template <int D>
-CATENA_HD Vector<double, D> load_or_zero(ConstView<D> const& view, std::int64_t k) {
-    return view.origin ? view.load(k) : Vector<double, D>::zero();
+template <int D, class Place>
+CATENA_HD Vector<RealAt<Place>, D> read_or_zero(ConstView<D> const& view, Place k) {
+    return view.origin ? read(view, k) : Vector<RealAt<Place>, D>::zero();
 }
 
 /// Direction of the link on the outboard side of body k; 0 where there is none.
-CATENA_HD Vec3 outboard_direction(GroupView const& group, ConstView<3> direction, ConstView<3> tip_direction, std::int64_t k) {
-    if (!group.is_last[k]) return direction.load(k + 1);
-    return group.has_jointed_tip(k) ? tip_direction.load(k) : Vec3::zero();
+template <class Place>
+CATENA_HD Vector<RealAt<Place>, 3> outboard_direction(GroupView const& group, ConstView<3> direction, ConstView<3> tip_direction, Place k) {
+    if (!ends_chain(group, k)) return read(direction, k + 1);
+    return has_jointed_tip(group, k) ? read(tip_direction, k) : Vector<RealAt<Place>, 3>::zero();
 }
 
 /// The velocity terms of the inboard joint, and of a jointed tip: the ground's handle 1 there is as good as the body's handle 2.
-template <int K>
-CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, std::int64_t k, SegmentBias<double, K>& b) {
-    if (loads.bias) b.b1 = b.b1 + loads.bias.load<K>(k);
-    if (loads.tip_bias && group.has_jointed_tip(k)) b.b2 = b.b2 - loads.tip_bias.load<K>(k);
+template <int K, class Place>
+CATENA_HD void add_joint_biases(GroupView const& group, LoadsView const& loads, Place k, SegmentBias<RealAt<Place>, K>& b) {
+    if (loads.bias) b.b1 = b.b1 + read_directions<K>(loads.bias, k);
+    if (loads.tip_bias && has_jointed_tip(group, k)) b.b2 = b.b2 - read_directions<K>(loads.tip_bias, k);
 }
 
 /// What is wanted of the forces at body k's two joints.
-template <int K>
-CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, std::int64_t k, Vector<double, K> const& inboard,
-                            Vector<double, K> const& outboard) {
-    if (out.joint_force) out.joint_force.template store<K>(k, inboard);
-    if (out.tip_force && group.has_jointed_tip(k)) out.tip_force.template store<K>(k, outboard);
+template <int K, class Place>
+CATENA_HD void store_forces(GroupView const& group, AccelerationsView const& out, Place k, Vector<RealAt<Place>, K> const& inboard,
+                            Vector<RealAt<Place>, K> const& outboard) {
+    if (out.joint_force) write_directions<K>(out.joint_force, k, inboard);
+    if (out.tip_force && has_jointed_tip(group, k)) write_directions<K>(out.tip_force, k, outboard);
 }
 
 /// Point beads; K = 1 projected, 3 full.
@@ -40,6 +41,7 @@ class BeadLeaf {
     static constexpr int K = K_;
     /// Whether matrices and biases in one sweep beat one sweep after the other: with more directions registers run out.
     static constexpr bool at_once = K == 1;
+    static constexpr bool beads = true, projected = K == 1;
     using Moving = MovingBeads<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
@@ -48,60 +50,82 @@ class BeadLeaf {
     }
     CATENA_HD GroupView const& group() const { return group_; }
 
-    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
-        return bead_matrix(group_.inverse_mass.at(k, 0), direction_.load(k), outboard(k), Vector<double, K>{});
+    template <class Place>
+    CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Place k) const {
+        return bead_matrix(inverse_mass(k), read(direction_, k), outboard(k), Vector<RealAt<Place>, K>{});
     }
-    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
-        SegmentBias<double, K> b{Vector<double, K>::zero(), Vector<double, K>::zero()};
+    template <class Place>
+    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Place k) const {
+        using Real = RealAt<Place>;
+        auto b = SegmentBias<Real, K>::zero();
         if (loads.force.origin)
-            b = bead_bias(group_.inverse_mass.at(k, 0), loads.force.load(k), direction_.load(k), outboard(k), Vector<double, K>{});
+            b = bead_bias(inverse_mass(k), read(loads.force, k), read(direction_, k), outboard(k), Vector<RealAt<Place>, K>{});
         add_joint_biases(group_, loads, k, b);
         return b;
     }
-    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force,
-                              Vector<double, K> const& outboard_force, AccelerationsView const& out) const {
+    template <class Place>
+    CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
-        out.acceleration.store(k, bead_acceleration(group_.inverse_mass.at(k, 0), load_or_zero(loads.force, k), inboard_force[0],
-                                                    direction_.load(k), outboard_force[0], outboard(k)));
+        write(out.acceleration, k,
+              bead_acceleration(inverse_mass(k), read_or_zero(loads.force, k), inboard_force[0], read(direction_, k), outboard_force[0],
+                                outboard(k)));
     }
 
   private:
-    CATENA_HD Vec3 outboard(std::int64_t k) const { return outboard_direction(group_, direction_, tip_direction_, k); }
+    template <class Place>
+    CATENA_HD RealAt<Place> inverse_mass(Place k) const {
+        return read(group_.inverse_mass, k)[0];
+    }
+    template <class Place>
+    CATENA_HD Vector<RealAt<Place>, 3> outboard(Place k) const {
+        return outboard_direction(group_, direction_, tip_direction_, k);
+    }
     GroupView group_;
     ConstView<3> direction_, tip_direction_;
 };
 
 /// The two handles of a body, and the rotation from B to the axes in which forces are kept.
-template <int K>
+template <class Real, int K>
 struct HandlePair {
-    Handle<double, K> h1, h2;
-    Mat3 to_force_axes;
+    Handle<Real, K> h1, h2;
+    Matrix<Real, 3, 3> to_force_axes;
 };
 
 /// Joint coordinates: handles along the axes of the meeting frames, forces in B. `sliding`: prismatic and helical joints too.
 template <int K, bool sliding>
 class MeetingFrames {
   public:
-    static constexpr bool any_forces = sliding, at_once = true;
+    static constexpr bool any_forces = sliding, at_once = false, in_joints = true, on_links = false;
     explicit MeetingFrames(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
         if (c.axes2.origin) axes2_ = c.axes2;
         if (c.r2.origin) r2_ = c.r2;
     }
-    CATENA_HD Vec3 r1(std::int64_t k) const { return group_.r1.load(k); }
-    CATENA_HD Vec3 r2(std::int64_t k) const { return r2_.load(k); }
-    CATENA_HD HandlePair<K> handles(std::int64_t k) const {
-        Vector<double, 4> const q = rotation_.load(k);
-        Mat3 const e1 = transposed_times(to_matrix(as_quaternion(q)), as_matrix(group_.axes1.load(k)));
-        Mat3 const e2 = as_matrix(axes2_.load(k));
-        HandlePair<K> pair{make_handle<K>(r1(k), e1, e1), make_handle<K>(r2(k), e2, e2), Mat3::identity()};
+    template <class Real>
+    struct State {
+        Vector<Real, 3> r1, r2;
+        Vector<Real, 4> rotation;
+        Vector<Real, 9> axes1, axes2;
+    };
+    template <class Place>
+    CATENA_HD State<RealAt<Place>> state(Place k) const {
+        return {read(group_.r1, k), read(r2_, k), read(rotation_, k), read(group_.axes1, k), read(axes2_, k)};
+    }
+    template <class Place>
+    CATENA_HD HandlePair<RealAt<Place>, K> handles(State<RealAt<Place>> const& state, Place k) const {
+        using Real = RealAt<Place>;
+        using Axes = Matrix<Real, 3, 3>;
+        Axes const turn = to_matrix(as_quaternion(state.rotation));
+        Axes const e1 = transposed_times(turn, as_matrix(state.axes1)), e2 = as_matrix(state.axes2);
+        HandlePair<Real, K> pair{make_handle<K>(state.r1, e1, e1), make_handle<K>(state.r2, e2, e2), Axes::identity()};
         if constexpr (sliding) {
-            Vec3 const s1 = group_.screw.load(k);
-            turn_to_screw(Screw<double>{s1[0], s1[1]}, r1(k), e1, e1, pair.h1);
-            if (!group_.is_last[k] || group_.has_jointed_tip(k)) {
-                Vec3 const s2 = group_.outboard_screw(k);
-                turn_to_screw(Screw<double>{s2[0], s2[1]}, r2(k), e2, e2, pair.h2);
+            auto const s1 = read(group_.screw, k);
+            turn_to_screw(Screw<Real>{s1[0], s1[1]}, state.r1, e1, e1, pair.h1);
+            if (!ends_chain(group_, k) || has_jointed_tip(group_, k)) {
+                auto const s2 = outboard_screw(group_, k);
+                turn_to_screw(Screw<Real>{s2[0], s2[1]}, state.r2, e2, e2, pair.h2);
             }
         }
         return pair;
@@ -118,15 +142,24 @@ class MeetingFrames {
 template <int K>
 class GroundFrames {
   public:
-    static constexpr bool any_forces = false, at_once = true;
+    static constexpr bool any_forces = false, at_once = true, in_joints = false, on_links = false;
     explicit GroundFrames(GroupView const& group) : r1_(group.r1), r2_(group.r2) {}
     void set(ConfigurationView const& c) { rotation_ = c.rotation; }
-    CATENA_HD Vec3 r1(std::int64_t k) const { return r1_.load(k); }
-    CATENA_HD Vec3 r2(std::int64_t k) const { return r2_.load(k); }
-    CATENA_HD HandlePair<K> handles(std::int64_t k) const {
-        Vector<double, 4> const q = rotation_.load(k);
-        Mat3 const turn = to_matrix(as_quaternion(q)), to_body = transpose(turn), unit = Mat3::identity();
-        return {make_handle<K>(r1(k), to_body, unit), make_handle<K>(r2(k), to_body, unit), turn};
+    template <class Real>
+    struct State {
+        Vector<Real, 3> r1, r2;
+        Vector<Real, 4> rotation;
+    };
+    template <class Place>
+    CATENA_HD State<RealAt<Place>> state(Place k) const {
+        return {read(r1_, k), read(r2_, k), read(rotation_, k)};
+    }
+    template <class Place>
+    CATENA_HD HandlePair<RealAt<Place>, K> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
+        using Axes = Matrix<RealAt<Place>, 3, 3>;
+        Axes const turn = to_matrix(as_quaternion(state.rotation));
+        Axes const to_body = transpose(turn), unit = Axes::identity();
+        return {make_handle<K>(state.r1, to_body, unit), make_handle<K>(state.r2, to_body, unit), turn};
     }
 
   private:
@@ -138,26 +171,35 @@ class GroundFrames {
 template <int K>
 class LinkFrames {
   public:
-    static constexpr bool any_forces = false, at_once = false;
+    static constexpr bool any_forces = false, at_once = false, in_joints = false, on_links = true;
     explicit LinkFrames(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
         direction_ = c.direction;
         tip_direction_ = c.tip_direction;
     }
-    CATENA_HD Vec3 r1(std::int64_t k) const { return group_.r1.load(k); }
-    CATENA_HD Vec3 r2(std::int64_t k) const { return group_.r2.load(k); }
-    CATENA_HD HandlePair<K> handles(std::int64_t k) const {
-        Vector<double, 4> const q = rotation_.load(k);
-        Mat3 const turn = to_matrix(as_quaternion(q));
-        Mat3 const e1 = axes(direction_.load(k)), e2 = axes(outboard_direction(group_, direction_, tip_direction_, k));
-        return {make_handle<K>(r1(k), transposed_times(turn, e1), e1), make_handle<K>(r2(k), transposed_times(turn, e2), e2), turn};
+    template <class Real>
+    struct State {
+        Vector<Real, 3> r1, r2, inboard, outboard;  // directions
+        Vector<Real, 4> rotation;
+    };
+    template <class Place>
+    CATENA_HD State<RealAt<Place>> state(Place k) const {
+        return {read(group_.r1, k), read(group_.r2, k), read(direction_, k), outboard_direction(group_, direction_, tip_direction_, k),
+                read(rotation_, k)};
+    }
+    template <class Place>
+    CATENA_HD HandlePair<RealAt<Place>, K> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
+        using Axes = Matrix<RealAt<Place>, 3, 3>;
+        Axes const turn = to_matrix(as_quaternion(state.rotation)), e1 = axes(state.inboard), e2 = axes(state.outboard);
+        return {make_handle<K>(state.r1, transposed_times(turn, e1), e1), make_handle<K>(state.r2, transposed_times(turn, e2), e2), turn};
     }
 
   private:
-    CATENA_HD static Mat3 axes(Vec3 const& direction) {
+    template <class Real>
+    CATENA_HD static Matrix<Real, 3, 3> axes(Vector<Real, 3> const& direction) {
         if constexpr (K == 1) {
-            Mat3 m = Mat3::zero();
+            auto m = Matrix<Real, 3, 3>::zero();
             m.set_column(0, direction);
             return m;
         } else {
@@ -170,50 +212,77 @@ class LinkFrames {
 };
 
 /// Rigid bodies; K = 1 links, 2 planar, 3 spherical, 4 universal, 5 revolute and sliding, 6 full.
-template <int K_, class Frames>
+template <int K_, class Frames_>
 class BodyLeaf {
   public:
     static constexpr int K = K_;
+    using Frames = Frames_;
     static constexpr bool at_once = K <= 3 && Frames::at_once;
+    static constexpr bool beads = false, projected = Frames::on_links ? K == 1 : K < 6;
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
     CATENA_HD GroupView const& group() const { return group_; }
 
-    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
-        HandlePair<K> const h = frames_.handles(k);
-        return leaf_matrix<Frames::any_forces>(group_.inverse_mass.at(k, 0), inverse_inertia(k), h.h1, h.h2);
+    /// All that is read of a body: first that, so that reads need not wait for what is computed from others.
+    template <class Place>
+    struct Body {
+        using Real = RealAt<Place>;
+        Place k;
+        Real inverse_mass;
+        Symmetric<Real, 3> inverse_inertia;
+        typename Frames::template State<Real> state;
+        Vector<Real, 3> force, torque, omega;
+    };
+    template <class Place>
+    CATENA_HD Body<Place> body(LoadsView const& loads, Place k) const {
+        return {k,
+                read(group_.inverse_mass, k)[0],
+                as_symmetric(read(group_.inverse_inertia, k)),
+                frames_.state(k),
+                read_or_zero(loads.force, k),
+                read_or_zero(loads.torque, k),
+                read_or_zero(loads.omega, k)};
     }
-    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
-        HandlePair<K> const h = frames_.handles(k);
-        Vec3 a1 = group_.inverse_mass.at(k, 0) * load_or_zero(loads.force, k), a2 = a1;
-        Vec3 const alpha = loads.torque.origin ? inverse_inertia(k) * applied_torque(loads, k) : Vec3::zero();
+    template <class Place>
+    CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body) const {
+        auto const h = frames_.handles(body.state, body.k);
+        return leaf_matrix<Frames::any_forces>(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);
+    }
+    template <class Place>
+    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body) const {
+        using Real = RealAt<Place>;
+        auto const h = frames_.handles(body.state, body.k);
+        Vector<Real, 3> a1 = body.inverse_mass * body.force, a2 = a1;
+        Vector<Real, 3> const alpha = loads.torque.origin ? body.inverse_inertia * applied_torque(loads, body) : Vector<Real, 3>::zero();
         if (loads.omega.origin) {
-            Vec3 const w = loads.omega.load(k);
-            a1 = a1 + h.to_force_axes * cross(w, cross(w, frames_.r1(k)));
-            a2 = a2 + h.to_force_axes * cross(w, cross(w, frames_.r2(k)));
+            Vector<Real, 3> const& w = body.omega;
+            a1 = a1 + h.to_force_axes * cross(w, cross(w, body.state.r1));
+            a2 = a2 + h.to_force_axes * cross(w, cross(w, body.state.r2));
         }
-        SegmentBias<double, K> b{along(h.h1, alpha, a1), along(h.h2, alpha, a2)};
-        add_joint_biases(group_, loads, k, b);
+        SegmentBias<Real, K> b{along(h.h1, alpha, a1), along(h.h2, alpha, a2)};
+        add_joint_biases(group_, loads, body.k, b);
         return b;
     }
-    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, Vector<double, K> const& inboard_force,
-                              Vector<double, K> const& outboard_force, AccelerationsView const& out) const {
+    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const { return matrix(body(LoadsView{}, k)); }
+    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const { return bias(loads, body(loads, k)); }
+    template <class Place>
+    CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
-        HandlePair<K> const h = frames_.handles(k);
-        Vec3 const torque = applied_torque(loads, k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
-        Vec3 const force = load_or_zero(loads.force, k) + (h.h1.force * inboard_force - h.h2.force * outboard_force);
-        out.alpha.store(k, inverse_inertia(k) * torque);
-        out.acceleration.store(k, group_.inverse_mass.at(k, 0) * force);
+        auto const at_k = body(loads, k);
+        auto const h = frames_.handles(at_k.state, k);
+        auto const torque = applied_torque(loads, at_k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
+        auto const force = at_k.force + (h.h1.force * inboard_force - h.h2.force * outboard_force);
+        write(out.alpha, k, at_k.inverse_inertia * torque);
+        write(out.acceleration, k, at_k.inverse_mass * force);
     }
 
   private:
-    CATENA_HD Vec3 applied_torque(LoadsView const& loads, std::int64_t k) const {
-        Vec3 const torque = load_or_zero(loads.torque, k);
-        if (!loads.gyroscopic) return torque;
-        Vec3 const w = loads.omega.load(k);
-        return torque - cross(w, times_inverse_of(inverse_inertia(k), w));
+    template <class Place>
+    CATENA_HD static Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body) {
+        if (!loads.gyroscopic) return body.torque;
+        return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega));
     }
-    CATENA_HD Sym3 inverse_inertia(std::int64_t k) const { return as_symmetric(group_.inverse_inertia.load(k)); }
 
     GroupView group_;
     Frames frames_;

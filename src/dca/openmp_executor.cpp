@@ -11,7 +11,7 @@ constexpr std::int64_t worth_a_thread = 64;
 
 class OpenMpExecutor final : public Executor {
   public:
-    explicit OpenMpExecutor(int threads) : threads_(threads) {}
+    OpenMpExecutor(int threads, SimdLevel simd) : Executor(simd), threads_(threads) {}
 
     void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
         if (count <= 0) return;
@@ -37,6 +37,8 @@ class OpenMpExecutor final : public Executor {
 
 bool openmp_is_built() { return true; }
 
-std::unique_ptr<Executor> openmp_executor(int threads) { return std::make_unique<OpenMpExecutor>(std::max(threads, 1)); }
+std::unique_ptr<Executor> openmp_executor(int threads, SimdLevel simd) {
+    return std::make_unique<OpenMpExecutor>(std::max(threads, 1), simd);
+}
 
 }  // namespace catena

@@ -12,7 +12,10 @@ struct Quaternion {
     static CATENA_HD Quaternion identity() { return {Real(1), Real(0), Real(0), Real(0)}; }
 };
 using Quat = Quaternion<double>;
-CATENA_HD Quat as_quaternion(Vector<double, 4> const& v) { return {v[0], v[1], v[2], v[3]}; }
+template <class Real>
+CATENA_HD Quaternion<Real> as_quaternion(Vector<Real, 4> const& v) {
+    return {v[0], v[1], v[2], v[3]};
+}
 CATENA_HD Vector<double, 4> as_vector(Quat const& q) { return {{q.w, q.x, q.y, q.z}}; }
 
 /// Q_AC = Q_AB Q_BC.

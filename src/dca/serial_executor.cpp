@@ -5,6 +5,7 @@ namespace {
 
 class SerialExecutor final : public Executor {
   public:
+    using Executor::Executor;
     void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
         if (count > 0) body(0, count);
     }
@@ -13,6 +14,6 @@ class SerialExecutor final : public Executor {
 
 }  // namespace
 
-std::unique_ptr<Executor> serial_executor() { return std::make_unique<SerialExecutor>(); }
+std::unique_ptr<Executor> serial_executor(SimdLevel simd) { return std::make_unique<SerialExecutor>(simd); }
 
 }  // namespace catena

@@ -39,11 +39,9 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
         body = schedule.top_body_of_joint[joint - schedule.first_top_joint()];
     }
     bool const tip = body == group.partition.trees[chain].bodies;
-    throw ComputationError(
-        "the matrix of a joint is not positive definite (chain " + group.name[chain] +
-        (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
-        "): masses, inertias or positions there are extreme or not finite" +
-        (group.partition.jointed_tip[chain] ? ", or base and tip hold the chain more than once (stretched straight?)" : ""));
+    throw ComputationError("the matrix of a joint is not positive definite (chain " + group.name[chain] +
+                           (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
+                           "): masses, inertias or positions there are extreme or not finite");
 }
 
 }  // namespace catena

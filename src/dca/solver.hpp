@@ -134,6 +134,7 @@ struct SplitSeconds {
 
 struct SolverReport {
     std::string backend, handles;
+    SimdLevel simd = SimdLevel::off;  // of runs that go side by side, where there are any
     int directions = 0, threads = 1, ranks = 1;
     std::int64_t run_length = 0, depth = 0, merges = 0;
     std::int64_t memory_bytes = 0;
@@ -152,6 +153,10 @@ class ChainSolver {
     virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
     /// Both, where nothing is to be hidden: the matrices are not kept for solve(). Collective.
     virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
+        solve_once(configuration, loads, out);
+    }
+    /// The same with the bits of assemble_matrices() and solve() one after the other. Collective.
+    virtual void solve_once(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         assemble_matrices(configuration);
         solve(loads, out);
     }

@@ -16,7 +16,7 @@ struct Climb {
     Sweep sweep;
     CATENA_HD void operator()(Run const& run) const { climb_run(sweep, run); }
     CATENA_HD void operator()(Merge const& m) const { climb_merge(sweep, m); }
-    CATENA_HD void operator()(Root const& root) const { sweep.close(root); }
+    CATENA_HD void operator()(Root const& root) const { close_root(sweep, root); }
 };
 template <class Sweep>
 struct Descend {

@@ -8,130 +8,264 @@ namespace {
 
 /// So many runs keep a GPU busy with one thread each and no help from others.
 constexpr std::int64_t many_runs = 16384;
-/// What the last stage's only block may be left with: blocks of the first stage.
-constexpr std::uint64_t blocks_of_first_stage = 512;
+/// Runs that are worth a block of their own.
+constexpr std::int64_t fewest_of_block = 8;
+
+std::int64_t bit_ceil(std::int64_t n) {
+    return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(std::max<std::int64_t>(n, 1))));
+}
+/// Of merges above so many items.
+int levels_above(std::int64_t items) { return std::bit_width(static_cast<std::uint64_t>(items)) - 1; }
 
 class Planner {
   public:
-    Planner(std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots, std::int64_t slots)
-        : levels_(levels), roots_(roots), up_(static_cast<std::size_t>(slots), -1), level_(up_.size(), -1), block_(up_.size(), -1) {
-        offset_.push_back(0);
-        for (auto const& level : levels) {
-            for (Merge const& m : level) {
-                up_[m.inboard] = up_[m.outboard] = m.slot;
-                level_[m.slot] = static_cast<int>(offset_.size()) - 1;
+    Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots, std::int64_t slots)
+        : runs_(runs), levels_(levels), roots_(roots), node_(static_cast<std::size_t>(slots)) {
+        for (Run const& run : runs) know(run.slot, run.body, run.next);
+        for (int l = 0; l < end(); ++l)
+            for (Merge const& m : levels[static_cast<std::size_t>(l)]) {
+                know(m.slot, m.first, m.next);
+                know(m.inboard, m.first, m.joint);
+                know(m.outboard, m.joint, m.next);
+                of(m.inboard).met = of(m.outboard).met = l;
+                of(m.inboard).up = of(m.outboard).up = m.slot;
             }
-            offset_.push_back(offset_.back() + std::ssize(level));
-        }
-        closed_.assign(roots.size(), false);
+    }
+    int end() const { return static_cast<int>(levels_.size()); }
+
+    std::vector<std::int64_t> runs() const {
+        std::vector<std::int64_t> slots;
+        for (Run const& run : runs_) slots.push_back(run.slot);
+        return slots;
+    }
+    /// What the merges of levels `first` to `end_level` - 1 need and do not make themselves, along the chains.
+    std::vector<std::int64_t> needed(int first, int end_level) const {
+        std::vector<std::uint8_t> made(node_.size(), 0);
+        std::vector<std::int64_t> slots;
+        for (int l = first; l < end_level; ++l)
+            for (Merge const& m : levels_[static_cast<std::size_t>(l)]) {
+                for (std::int64_t const slot : {m.inboard, m.outboard})
+                    if (!made[static_cast<std::size_t>(slot)]) slots.push_back(slot);
+                made[static_cast<std::size_t>(m.slot)] = 1;
+            }
+        std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) { return of(a).joint < of(b).joint; });
+        return slots;
     }
 
-    /// From level `first` on. `bottom`: the slots of what is dealt out, runs or the first level's merges, `width` to a block.
-    Stage stage(std::size_t first, std::vector<std::int64_t> const& bottom, std::int64_t width, int most_levels, StagePlan& plan) {
+    /// Levels `first` to `end_level` - 1 above these items, up to `width` of them to a block.
+    Stage stage(std::vector<std::int64_t> const& items, std::int64_t width, int first, int end_level) {
         Stage s;
-        s.levels = std::min(static_cast<int>(levels_.size() - first), most_levels);
-        std::vector<Range> const dealt = deal(bottom, width, static_cast<int>(first) + s.levels);
-        s.run = dealt;
-        s.merge.resize(dealt.size() * static_cast<std::size_t>(s.levels));
-        for (int l = 0; l < s.levels; ++l) add_level(s, l, first + static_cast<std::size_t>(l));
-        add_roots(s, static_cast<int>(first) + s.levels, plan);
+        s.levels = end_level - first;
+        deal(items, width, end_level, s);
+        for (std::size_t b = 0; b < s.item.size(); ++b) place_items(s, b);
+        s.merge.resize(s.item.size() * static_cast<std::size_t>(s.levels));
+        for (int l = first; l < end_level; ++l) add_level(s, l, l - first);
+        sort_by_block(s);
+        hand_over(s, items, first, end_level);
+        for (Range const& item : s.item) s.width = std::max(s.width, item.end - item.begin);
         return s;
     }
 
   private:
-    /// Blocks of neighbours: what meets below level `end` stays together.
-    std::vector<Range> deal(std::vector<std::int64_t> const& bottom, std::int64_t width, int end_level) {
-        std::vector<Range> blocks;
-        for (std::int64_t i = 0; i < std::ssize(bottom);) {
-            std::int64_t end = i;
-            std::int64_t const top = ancestor(bottom[i], end_level);
-            while (end < std::ssize(bottom) && ancestor(bottom[end], end_level) == top) ++end;
-            if (blocks.empty() || end - blocks.back().begin > width) blocks.push_back({i, i});
-            blocks.back().end = end;
-            for (; i < end; ++i) block_[bottom[i]] = std::ssize(blocks) - 1;
-        }
-        return blocks;
-    }
+    struct Node {
+        std::int64_t joint = 0, next = 0;  // of storage
+        std::int64_t up = -1;              // what it becomes part of
+        int met = -1;                      // at this level; -1: never
+        std::int64_t block = -1;
+        std::int32_t place = 0, next_place = 0;
+    };
+    Node& of(std::int64_t slot) { return node_[static_cast<std::size_t>(slot)]; }
+    Node const& of(std::int64_t slot) const { return node_[static_cast<std::size_t>(slot)]; }
+    void know(std::int64_t slot, std::int64_t joint, std::int64_t next) { of(slot).joint = joint, of(slot).next = next; }
+    bool is_top(std::int64_t slot, int end_level) const { return of(slot).met < 0 || of(slot).met >= end_level; }
     std::int64_t ancestor(std::int64_t slot, int end_level) const {
-        while (up_[slot] >= 0 && level_[up_[slot]] < end_level) slot = up_[slot];
+        while (!is_top(slot, end_level)) slot = of(slot).up;
         return slot;
     }
-    void add_level(Stage& s, int l, std::size_t level) {
-        std::int64_t at = offset_[level];
-        for (Merge const& m : levels_[level]) {
-            // The lowest merges of a later stage were dealt out themselves.
-            if (block_[m.slot] < 0) block_[m.slot] = block_[m.inboard];
-            Range& range = s.merge[static_cast<std::size_t>(block_[m.slot] * s.levels + l)];
-            if (range.begin == range.end) range.begin = at;
-            range.end = ++at;
+
+    /// Blocks of neighbours: what meets below `end_level` stays together.
+    void deal(std::vector<std::int64_t> const& items, std::int64_t width, int end_level, Stage& s) {
+        for (std::int64_t i = 0; i < std::ssize(items);) {
+            std::int64_t next = i;
+            std::int64_t const top = ancestor(items[static_cast<std::size_t>(i)], end_level);
+            while (next < std::ssize(items) && ancestor(items[static_cast<std::size_t>(next)], end_level) == top) ++next;
+            if (s.item.empty() || next - s.item.back().begin > width) s.item.push_back({i, i});
+            s.item.back().end = next;
+            i = next;
+        }
+        for (std::int64_t const slot : items) s.items.push_back({slot, of(slot).joint, 0, false});
+    }
+    /// A force after an item that is not the block's next item's comes from elsewhere.
+    void place_items(Stage& s, std::size_t b) {
+        Range const range = s.item[b];
+        std::vector<Handed> from_elsewhere;
+        for (std::int64_t i = range.begin; i < range.end; ++i) {
+            StageItem& item = s.items[static_cast<std::size_t>(i)];
+            Node& node = of(item.slot);
+            node.block = static_cast<std::int64_t>(b);
+            node.place = static_cast<std::int32_t>(i - range.begin);
+            if (i + 1 < range.end && s.items[static_cast<std::size_t>(i + 1)].joint == node.next) {
+                item.next = node.place + 1;
+            } else {
+                auto found =
+                    std::find_if(from_elsewhere.rbegin(), from_elsewhere.rend(), [&](Handed const& h) { return h.at == node.next; });
+                if (found == from_elsewhere.rend()) {
+                    from_elsewhere.push_back({static_cast<std::int32_t>(range.end - range.begin + std::ssize(from_elsewhere)), node.next});
+                    found = from_elsewhere.rbegin();
+                }
+                item.next = found->place;
+            }
+            node.next_place = item.next;
+        }
+        s.down.push_back({std::ssize(s.forces_down), 0});
+        s.forces_down.insert(s.forces_down.end(), from_elsewhere.begin(), from_elsewhere.end());
+        s.down.back().end = std::ssize(s.forces_down);
+        s.forces = std::max(s.forces, range.end - range.begin + std::ssize(from_elsewhere));
+    }
+    void add_level(Stage& s, int level, int l) {
+        for (Merge const& m : levels_[static_cast<std::size_t>(level)]) {
+            Node const inboard = of(m.inboard), outboard = of(m.outboard);
+            Node& joined = of(m.slot);
+            joined.block = inboard.block, joined.place = inboard.place, joined.next_place = outboard.next_place;
+            Range& range = s.merge[static_cast<std::size_t>(joined.block * s.levels + l)];
+            if (range.begin == range.end) range.begin = range.end = std::ssize(s.merges);
+            ++range.end;
+            s.merges.push_back({inboard.place, outboard.place, outboard.next_place, m.joint});
         }
     }
-    /// Roots whose segments are there once the levels below `end_level` are.
-    void add_roots(Stage& s, int end_level, StagePlan& plan) {
-        std::vector<std::vector<Root>> of_block(s.run.size());
-        for (std::size_t i = 0; i < roots_.size(); ++i) {
-            if (closed_[i] || up_[roots_[i].slot] >= 0 || block_[roots_[i].slot] < 0 || level_[roots_[i].slot] >= end_level) continue;
-            closed_[i] = true;
-            of_block[static_cast<std::size_t>(block_[roots_[i].slot])].push_back(roots_[i]);
+    static void sort_by_block(Stage& s) {
+        std::vector<StageMerge> sorted;
+        sorted.reserve(s.merges.size());
+        for (Range& range : s.merge) {
+            auto const begin = std::ssize(sorted);
+            sorted.insert(sorted.end(), s.merges.begin() + range.begin, s.merges.begin() + range.end);
+            range = {begin, std::ssize(sorted)};
         }
-        for (std::vector<Root> const& roots : of_block) {
-            s.root.push_back({std::ssize(plan.roots), std::ssize(plan.roots) + std::ssize(roots)});
-            plan.roots.insert(plan.roots.end(), roots.begin(), roots.end());
+        s.merges = std::move(sorted);
+    }
+    /// What is complete below `end_level`: roots are closed, other segments go up, and the forces at all of their first joints come down.
+    void hand_over(Stage& s, std::vector<std::int64_t> const& items, int first, int end_level) {
+        std::vector<std::vector<std::int64_t>> tops(s.item.size());
+        auto const see = [&](std::int64_t slot) {
+            if (is_top(slot, end_level)) tops[static_cast<std::size_t>(of(slot).block)].push_back(slot);
+        };
+        for (std::int64_t const slot : items) see(slot);
+        for (int l = first; l < end_level; ++l)
+            for (Merge const& m : levels_[static_cast<std::size_t>(l)]) see(m.slot);
+        if (root_of_.empty()) {
+            root_of_.assign(node_.size(), -1);
+            for (std::size_t i = 0; i < roots_.size(); ++i)
+                root_of_[static_cast<std::size_t>(roots_[i].slot)] = static_cast<std::int64_t>(i);
         }
+        std::vector<Handed> down;
+        for (std::size_t b = 0; b < tops.size(); ++b) {
+            Range root{std::ssize(s.roots), 0}, up{std::ssize(s.segments_up), 0};
+            auto const begin = std::ssize(down);
+            down.insert(down.end(), s.forces_down.begin() + s.down[b].begin, s.forces_down.begin() + s.down[b].end);
+            for (std::int64_t const slot : tops[b]) {
+                Node const& top = of(slot);
+                std::int64_t const closed = root_of_[static_cast<std::size_t>(slot)];
+                if (closed >= 0)
+                    s.roots.push_back({top.place, roots_[static_cast<std::size_t>(closed)]});
+                else
+                    s.segments_up.push_back({top.place, slot});
+                down.push_back({top.place, top.joint});
+                s.items[static_cast<std::size_t>(s.item[b].begin + top.place)].given = true;
+            }
+            root.end = std::ssize(s.roots);
+            up.end = std::ssize(s.segments_up);
+            s.root.push_back(root);
+            s.up.push_back(up);
+            s.down[b] = {begin, std::ssize(down)};
+        }
+        s.forces_down = std::move(down);
     }
 
+    std::vector<Run> const& runs_;
     std::vector<std::vector<Merge>> const& levels_;
     std::vector<Root> const& roots_;
-    std::vector<bool> closed_;
-    std::vector<std::int64_t> up_;  // the slot of the merge that takes a slot
-    std::vector<int> level_;        // of the merge that makes a slot; -1: a run does
-    std::vector<std::int64_t> block_, offset_;
+    std::vector<Node> node_;             // by slot
+    std::vector<std::int64_t> root_of_;  // by slot
 };
+
+/// Of the first stage's blocks.
+std::int64_t width_of_runs(std::int64_t runs, bool apart, StageSizes const& sizes) {
+    if (apart) {
+        std::int64_t width = std::min(sizes.most, 2 * sizes.threads);
+        while (width < sizes.most && runs / width > sizes.most * sizes.together) width *= 2;
+        return width;
+    }
+    std::int64_t const at_once = std::max<std::int64_t>(1, sizes.threads / parts_of_run);
+    bool const small = runs <= sizes.together * at_once;
+    return std::min(sizes.most, small ? std::max(fewest_of_block, bit_ceil((runs - 1) / sizes.together + 1)) : at_once);
+}
 
 }  // namespace
 
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
-                      std::int64_t slots, std::int64_t threads) {
-    Planner planner(levels, roots, slots);
+                      std::int64_t slots, StageSizes const& sizes) {
+    Planner planner(runs, levels, roots, slots);
     StagePlan plan;
     plan.runs_apart = std::ssize(runs) > many_runs;
-    std::size_t level = 0;
+    int level = 0;
     if (!runs.empty()) {
-        std::vector<std::int64_t> bottom;
-        for (Run const& run : runs) bottom.push_back(run.slot);
-        std::int64_t const at_once = std::max<std::int64_t>(1, threads / parts_of_run);  // of a block
-        auto const shared = static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(bottom.size()) / blocks_of_first_stage));
-        bool const one_block = std::ssize(bottom) <= threads;
-        std::int64_t const width = one_block ? std::ssize(bottom) : std::max(plan.runs_apart ? 2 * threads : at_once, shared);
-        int const most_levels = one_block ? static_cast<int>(levels.size()) : std::bit_width(static_cast<std::uint64_t>(width)) - 1;
-        plan.stages.push_back(planner.stage(0, bottom, width, most_levels, plan));
-        if (plan.runs_apart) plan.stages.back().run.clear();
-        level = static_cast<std::size_t>(plan.stages.back().levels);
+        std::int64_t const width = width_of_runs(std::ssize(runs), plan.runs_apart, sizes);
+        level = std::ssize(runs) <= width ? planner.end() : std::min(planner.end(), levels_above(width));
+        plan.stages.push_back(planner.stage(planner.runs(), width, 0, level));
+        plan.stages.back().of_runs = !plan.runs_apart;
     }
-    while (level < levels.size() && levels[level].empty()) ++level;
-    if (level == levels.size()) return plan;
-    std::vector<std::int64_t> bottom;
-    for (Merge const& m : levels[level]) bottom.push_back(m.slot);
-    plan.stages.push_back(planner.stage(level, bottom, std::ssize(bottom), static_cast<int>(levels.size()), plan));
-    plan.stages.back().run.clear();
+    for (std::vector<std::int64_t> left = planner.needed(level, planner.end()); !left.empty();
+         left = planner.needed(level, planner.end())) {
+        int const end_level = std::ssize(left) <= sizes.most ? planner.end() : std::min(planner.end(), level + levels_above(sizes.most));
+        plan.stages.push_back(planner.stage(planner.needed(level, end_level), sizes.most, level, end_level));
+        level = end_level;
+    }
     return plan;
 }
 
-BlockPlan plan_blocks(Schedule const& schedule, std::vector<std::int64_t> const& tip, std::int64_t width) {
+StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t together) {
+    std::int64_t const k = directions;
+    std::int64_t const numbers = k * (k + 1) + k * k + 2 * k + 2 * k + 3;  // of a segment with its biases, of two forces, of a merge
+    StageSizes sizes{stage_threads(directions), 2, together};
+    auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
+    while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
+    return sizes;
+}
+
+int threads_for(Stage const& stage, StageSizes const& sizes) {
+    constexpr std::int64_t fewest = 32;
+    std::int64_t const wanted = stage.of_runs ? parts_of_run * stage.width : stage.width / 2;
+    return static_cast<int>(std::clamp(bit_ceil(wanted), fewest, sizes.threads));
+}
+
+BlockPlan plan_blocks(Schedule const& schedule, std::vector<std::int64_t> const& tip) {
     BlockPlan plan;
-    if (schedule.runs.empty()) return plan;
-    std::vector<std::int64_t> bottom;
-    for (Run const& run : schedule.runs) bottom.push_back(run.slot);
-    StagePlan of_stage;
-    plan.stage = Planner(schedule.levels, schedule.roots, schedule.slots)
-                     .stage(0, bottom, width, static_cast<int>(schedule.levels.size()), of_stage);
-    plan.roots = std::move(of_stage.roots);
-    for (Range const& runs : plan.stage.run) {
-        Run const &first = schedule.runs[static_cast<std::size_t>(runs.begin)],
-                  &last = schedule.runs[static_cast<std::size_t>(runs.end - 1)];
-        plan.body.push_back({first.body, last.body + last.count});
+    plan.levels = static_cast<int>(schedule.levels.size());
+    std::int64_t run = 0;
+    std::vector<std::size_t> next_merge(schedule.levels.size(), 0);
+    for (std::int64_t r = 0; r < std::ssize(schedule.roots); ++r) {
+        std::int64_t const begin = schedule.roots[static_cast<std::size_t>(r)].first;
+        std::int64_t const end =
+            r + 1 < std::ssize(schedule.roots) ? schedule.roots[static_cast<std::size_t>(r + 1)].first : schedule.bodies;
+        plan.body.push_back({begin, end});
         auto const place = [&](std::int64_t body) { return std::lower_bound(tip.begin(), tip.end(), body) - tip.begin(); };
-        plan.tip.push_back({place(plan.body.back().begin), place(plan.body.back().end)});
+        plan.tip.push_back({place(begin), place(end)});
+        plan.root.push_back({r, r + 1});
+        plan.run.push_back({run, run});
+        for (std::int64_t& last = plan.run.back().end;
+             last < std::ssize(schedule.runs) && schedule.runs[static_cast<std::size_t>(last)].body < end; ++last) {
+        }
+        run = plan.run.back().end;
+        std::int64_t offset = 0;
+        for (std::size_t l = 0; l < schedule.levels.size(); ++l) {
+            std::vector<Merge> const& merges = schedule.levels[l];
+            std::size_t& next = next_merge[l];
+            Range range{offset + static_cast<std::int64_t>(next), 0};
+            while (next < merges.size() && merges[next].joint < end) ++next;
+            range.end = offset + static_cast<std::int64_t>(next);
+            plan.merge.push_back(range);
+            offset += std::ssize(merges);
+        }
     }
     return plan;
 }

@@ -13,36 +13,74 @@ struct Range {
     std::int64_t begin = 0, end = 0;
 };
 
-/// One launch upwards and one downwards. Block b does the runs of `run[b]`, then, level by level, the merges of `merge[b * levels + l]` and
-/// at last the roots of `root[b]`. Between blocks of a stage nothing is shared.
+/// What a block starts from, a run or what another stage made. Item i has place i of the block's segments, and its inboard joint place i
+/// of the block's forces.
+struct StageItem {
+    std::int64_t slot = 0, joint = 0;  // where its segment and its inboard joint are for everybody
+    std::int32_t next = 0;             // place of the force after it
+    bool given = false;                // its inboard joint's force comes from above
+};
+/// The joined segment takes the place of the inboard one.
+struct StageMerge {
+    std::int32_t inboard = 0, outboard = 0;
+    std::int32_t next = 0;  // place of the force after it
+    std::int64_t joint = 0;
+};
+struct StageRoot {
+    std::int32_t place = 0;
+    Root root;
+};
+/// A segment or a force that comes from or goes to another stage.
+struct Handed {
+    std::int32_t place = 0;
+    std::int64_t at = 0;  // slot or joint
+};
+
+/// One launch upwards and one downwards. A block's merges stand together. Block b takes the items of `item[b]`, does, level by level, the
+/// merges of `merge[b * levels + l]`, gives the segments of `up[b]` away and closes `root[b]`; on its way back it is given the forces of
+/// `down[b]`. Between blocks of a stage nothing is shared.
 struct Stage {
     int levels = 0;
-    std::vector<Range> run;    // in the schedule's runs; empty but in the first stage
-    std::vector<Range> merge;  // in the list of all levels' merges, one after the other
-    std::vector<Range> root;   // in StagePlan::roots
-    int blocks() const { return static_cast<int>(root.size()); }
+    bool of_runs = false;                // items are the schedule's runs
+    std::int64_t width = 0, forces = 0;  // most places of a block
+    std::vector<StageItem> items;
+    std::vector<StageMerge> merges;
+    std::vector<StageRoot> roots;
+    std::vector<Handed> segments_up, forces_down;
+    std::vector<Range> item, merge, root, up, down;
+    std::int64_t blocks() const { return std::ssize(item); }
 };
 
 struct StagePlan {
     std::vector<Stage> stages;  // from the leaves up
-    std::vector<Root> roots;    // the schedule's, in the order of stages and blocks
-    bool runs_apart = false;    // runs are in no stage: they come before all of them
+    bool runs_apart = false;    // runs come before all stages, which find them in their slots
 };
 
-/// Blocks of `threads`. There are at most two stages, runs apart: five launches for a sweep up and down.
-StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
-                      std::int64_t slots, std::int64_t threads);
+struct StageSizes {
+    std::int64_t threads = 0;   // of a block
+    std::int64_t most = 0;      // items of a block, 2 or more
+    std::int64_t together = 0;  // blocks that one launch takes through two stages
+};
+/// Threads of a block that find registers for merges of handles with so many directions.
+constexpr int stage_threads(int directions) { return directions <= 3 ? 256 : 128; }
+/// Of a GPU whose blocks may share so many bytes, in clusters of so many.
+StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t together);
+/// That a stage needs.
+int threads_for(Stage const&, StageSizes const&);
 
-/// For work that whole chains do alone, one block each: no block needs another.
+/// With enough blocks together: five launches for a sweep up and down of any chain, one for a small one.
+StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
+                      std::int64_t slots, StageSizes const& sizes);
+
+/// Chains that one thread of the host takes whole: nothing is shared.
 struct BlockPlan {
-    Stage stage;
-    std::vector<Root> roots;
+    int levels = 0;
     std::vector<Range> body, tip;  // of every block: its bodies, and its chains' jointed tips
+    std::vector<Range> run, root;  // of the schedule
+    std::vector<Range> merge;      // merge[b * levels + l]: of all levels' merges, one after the other
     std::int64_t blocks() const { return std::ssize(body); }
 };
-
-/// Neighbouring chains share a block while they have at most `width` runs together. `tip`: the last bodies of chains with a jointed tip.
-/// Precondition: no chain is shared with other ranks.
-BlockPlan plan_blocks(Schedule const&, std::vector<std::int64_t> const& tip, std::int64_t width);
+/// A chain a block. `tip`: the last bodies of chains with a jointed tip. Precondition: no chain is shared with other ranks.
+BlockPlan plan_blocks(Schedule const&, std::vector<std::int64_t> const& tip);
 
 }  // namespace catena::dca

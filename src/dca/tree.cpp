@@ -25,9 +25,9 @@ int ChainTree::levels() const {
     return level;
 }
 
-Partition::Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks, std::vector<std::uint8_t> const& jointed_tips)
-    : first_of_chain{0}, jointed_tip(jointed_tips) {
-    jointed_tip.resize(lengths.size(), 0);
+Partition::Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks, std::vector<TipTo> const& tips)
+    : first_of_chain{0}, tip(tips) {
+    tip.resize(lengths.size(), TipTo::nothing);
     for (std::int64_t const n : lengths) {
         trees.emplace_back(n, run_length_for(pairwise));
         first_of_chain.push_back(first_of_chain.back() + n);
@@ -116,7 +116,7 @@ class Builder {
         s_.halo = s_.bodies;
         s_.none = s_.bodies + 1;
         for (Piece const& piece : pieces_)
-            if (piece.ends && partition.jointed_tip[piece.chain]) s_.tip_chain.push_back(piece.chain);
+            if (piece.ends && partition.has_jointed_tip(piece.chain)) s_.tip_chain.push_back(piece.chain);
         s_.joints = s_.first_top_joint();
     }
 
@@ -166,7 +166,7 @@ class Builder {
             return;
         }
         for (std::size_t level = tree.cut_level; units.size() > 1; ++level) units = pair_up(units, level_of(s_.levels, level), s_.slots);
-        s_.roots.push_back({units.front().slot, units.front().first, units.front().next, piece.chain, tip(piece.chain)});
+        s_.roots.push_back({units.front().slot, units.front().first, units.front().next, piece.chain, partition_.tip[piece.chain]});
     }
 
     void add_shared(int chain) {
@@ -190,12 +190,11 @@ class Builder {
         }
         if (!mine) return;
         units.back().next = s_.none;
-        if (tip(chain)) add_shared_tip(chain, units.back().next);
+        if (partition_.has_jointed_tip(chain)) add_shared_tip(chain, units.back().next);
         for (std::size_t level = 0; units.size() > 1; ++level) units = pair_up(units, level_of(s_.top_levels, level), s_.slots);
-        s_.top_roots.push_back({units.front().slot, units.front().first, units.front().next, chain, tip(chain)});
+        s_.top_roots.push_back({units.front().slot, units.front().first, units.front().next, chain, partition_.tip[chain]});
     }
 
-    bool tip(int chain) const { return partition_.jointed_tip[chain] != 0; }
     /// Every rank that finishes the top has the tip's joint there; the rank of the last body takes its force over.
     void add_shared_tip(int chain, std::int64_t& next) {
         next = s_.joints++;

@@ -39,23 +39,27 @@ struct ChainTree {
     std::int64_t depth() const { return run_length - 1 + levels(); }
 };
 
+/// What a chain's last body is joined to.
+enum class TipTo : std::uint8_t { nothing, ground, first_body };
+
 /// Chains laid one after the other, cut into whole units for the ranks.
 class Partition {
   public:
     Partition() = default;
     /// `lengths` of the chains; every rank gets a run of units of about equal numbers of bodies. Ranks may be left without any.
-    /// `jointed_tips`: one a chain, whether its last body is on a joint to the ground; empty: none is.
-    Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks, std::vector<std::uint8_t> const& jointed_tips = {});
+    /// `tips`: one a chain; empty: free.
+    Partition(std::vector<std::int64_t> const& lengths, bool pairwise, int ranks, std::vector<TipTo> const& tips = {});
 
     std::vector<ChainTree> trees;              // one a chain
     std::vector<std::int64_t> first_of_chain;  // chains + 1
     std::vector<std::int64_t> first_of_rank;   // ranks + 1
-    std::vector<std::uint8_t> jointed_tip;     // one a chain
+    std::vector<TipTo> tip;                    // one a chain
 
     std::int64_t bodies() const { return first_of_chain.back(); }
     int chains() const { return static_cast<int>(trees.size()); }
     int owner(std::int64_t body) const;
     int chain_of(std::int64_t body) const;
+    bool has_jointed_tip(int chain) const { return tip[chain] != TipTo::nothing; }
     bool is_split(int chain) const { return owner(first_of_chain[chain]) != owner(first_of_chain[chain + 1] - 1); }
 };
 
@@ -89,7 +93,7 @@ struct Root {
     std::int64_t slot = 0;
     std::int64_t first = 0, next = 0;
     int chain = 0;
-    bool jointed_tip = false;  // `next` is a joint to the ground
+    TipTo tip = TipTo::nothing;  // whether `next` is a joint to the ground, or the same as `first`: that of a ring
 };
 /// A unit of a chain that several ranks share.
 struct SharedUnit {

@@ -9,6 +9,7 @@
 #include "dca/host_space.hpp"
 #include "dca/inverse_sweep.hpp"
 #include "dca/parts.hpp"
+#include "dca/simd/side_by_side.hpp"
 
 namespace catena::dca {
 
@@ -19,6 +20,7 @@ class TreeSolver final : public ChainSolver {
     using Sweeps = TreeSweeps<Leaf>;
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
+    static constexpr bool has_lanes = goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
 
   public:
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
@@ -39,6 +41,13 @@ class TreeSolver final : public ChainSolver {
           sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
                   joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
         space_.put(lost_.data(), none_lost);
+        if constexpr (has_lanes) {
+            aside_.emplace(group, space.simd());
+            if (aside_->items() > 0)
+                rest_.emplace(aside_->others(), schedule_.levels, schedule_.roots, schedule_.slots, K);
+            else
+                aside_.reset();
+        }
     }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
@@ -58,14 +67,20 @@ class TreeSolver final : public ChainSolver {
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         Stopwatch const watch(*this, report_.bias_seconds);
-        up_and_down(BiasSweep<Leaf>{sweeps_, loads, out}, [&] { gather_shared(biases_); }, out);
+        up_and_down(tree_, BiasSweep<Leaf>{sweeps_, loads, out}, [&] { gather_shared(biases_); }, out);
         ++report_.bias_sweeps;
     }
 
     void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
         if constexpr (Leaf::at_once)
             if (at_once()) return evaluate(configuration, loads, out);
-        ChainSolver::assemble_and_solve(configuration, loads, out);
+        solve_once(configuration, loads, out);
+    }
+    /// What several runs side by side compute again is kept otherwise, and then memory sets the pace.
+    void solve_once(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
+        if constexpr (!Leaf::at_once && has_lanes)
+            if (aside_) return evaluate(configuration, loads, out);
+        ChainSolver::solve_once(configuration, loads, out);
     }
     /// The chapter's tree of pairs stays plain.
     bool at_once() const override { return Leaf::at_once && group_.partition.trees.front().run_length > 1; }
@@ -127,6 +142,11 @@ class TreeSolver final : public ChainSolver {
         add_tree(group_, communicator_, r);
         r.threads = space_.threads();
         r.memory_bytes = Sweeps::bytes(schedule_);
+        if constexpr (has_lanes)
+            if (aside_) {
+                r.simd = space_.simd();
+                r.memory_bytes += aside_->bytes();
+            }
         return r;
     }
 
@@ -150,17 +170,33 @@ class TreeSolver final : public ChainSolver {
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
+        if constexpr (!Leaf::at_once)
+            sweep_at_once(BothSweeps<Leaf>{sweeps_, {sweeps_}, {sweeps_, loads, out}}, configuration, loads, out);
+        else if constexpr (Leaf::beads)
+            sweep_at_once(Evaluation<Leaf, typename Leaf::Moving>{sweeps_, {model_.view(), model_.restricted(), configuration, loads}, out},
+                          configuration, loads, out);
+        else
+            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{sweeps_, {sweeps_.leaf, model_.restricted(), loads}, out}, configuration, loads,
+                          out);
+        ++report_.evaluations;
+        if (Space::answers_at_once) check();
+    }
+
+    /// Runs that go side by side, and around them the others and the tree.
+    template <class Sweep>
+    void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         auto const gather = [&] {
             gather_shared(matrices_);
             gather_shared(biases_);
         };
-        if constexpr (requires { typename Leaf::Moving; })
-            up_and_down(Evaluation<Leaf, typename Leaf::Moving>{sweeps_, {model_.view(), model_.restricted(), configuration, loads}, out},
-                        gather, out);
-        else
-            up_and_down(Evaluation<Leaf, Resting<Leaf>>{sweeps_, {sweeps_.leaf, loads}, out}, gather, out);
-        ++report_.evaluations;
-        if (Space::answers_at_once) check();
+        if constexpr (has_lanes)
+            if (aside_) {
+                RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
+                aside_->climb(space_, work);
+                up_and_down(*rest_, sweep, gather, out);
+                return aside_->descend(space_, work);
+            }
+        up_and_down(tree_, sweep, gather, out);
     }
 
     /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
@@ -182,15 +218,15 @@ class TreeSolver final : public ChainSolver {
     };
 
     template <class Sweep, class Gather>
-    void up_and_down(Sweep const& sweep, Gather const& gather, AccelerationsView const& out) {
+    void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Gather const& gather, AccelerationsView const& out) {
         if (schedule_.shared.empty()) {
-            space_.climb_and_descend(tree_, sweep);
+            space_.climb_and_descend(tree, sweep);
         } else {
-            space_.climb(tree_, sweep);
+            space_.climb(tree, sweep);
             gather();
             space_.climb_and_descend(top_, sweep);
             space_.over(top_copies_, CopyForces<Leaf>{sweeps_});
-            space_.descend(tree_, sweep);
+            space_.descend(tree, sweep);
         }
         if (out.joint_force && group_.neighbour_outboard >= 0)
             space_.for_each(1, ForceOfNextRank<Leaf>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
@@ -227,6 +263,8 @@ class TreeSolver final : public ChainSolver {
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;
+    std::optional<SideBySide<Leaf>> aside_;  // whose runs are not in `rest_`
+    std::optional<typename Space::Tree> rest_;
     /// Of invert(), where it is asked for.
     struct Inverse {
         explicit Inverse(Schedule const& schedule) : own(schedule.joints), across(schedule.slots) {}

@@ -49,13 +49,20 @@ DirectionsView of_tips(ChainGroup const& group, Directions& field) {
 
 /// The group's chains on this rank.
 std::vector<LocalPiece> local_pieces(ChainGroup const&, Scene const&);
-/// And where they are held; `end(k)`: where the outboard end of last body k starts, W.
+/// And where they are held, rings that only begin here behind the others; `end(k)`: where the outboard end of last body k starts, W.
 template <class End>
 std::vector<HeldTip> held_tips(ChainGroup const& group, End const& end) {
     std::vector<HeldTip> tips;
     for (LocalTip const& tip : group.tips) {
-        Vec3 const start = end(tip.body), anchor = tip.joint.type == JointType::link ? *tip.joint.anchor : start;
+        Vec3 const start = end(tip.body), anchor = tip.joint.anchor.value_or(start);
         tips.push_back({tip.body, anchor, tip.joint.length > 0 ? tip.joint.length : norm(anchor - start)});
+    }
+    for (std::size_t i = 0; i < group.rings.size(); ++i) {
+        LocalRing const& ring = group.rings[i];
+        if (ring.last < 0) tips.emplace_back();
+        HeldTip& tip = ring.last < 0 ? tips.back() : tips[group.tip_index(ring.last)];
+        tip.ring = static_cast<std::int64_t>(i);
+        tip.first = ring.first;
     }
     return tips;
 }

@@ -7,6 +7,7 @@
 #include "dca/solver.hpp"
 #include "integrate/bead_forces.hpp"
 #include "integrate/link_geometry.hpp"
+#include "integrate/ring_ends.hpp"
 
 namespace catena {
 
@@ -43,6 +44,7 @@ struct BeadChainsIn {
     Given<1> mass, inverse_mass, length, half_over_length;
     HeldTip const* tip = nullptr;
     Found<3> position, velocity, observed, force, momentum, change, direction, tip_direction;
+    RingEndsView ring_ends;
     typename Fields::Biases bias, tip_bias;  // the link's direction comes first; full handles' other directions stay 0
 
     CATENA_HD_IN_PLACE bool linked(std::int64_t k) const { return places.linked(k); }
@@ -50,15 +52,25 @@ struct BeadChainsIn {
     CATENA_HD_IN_PLACE Vec3 link(std::int64_t k) const {
         return position.load(k) - (to_ground(k) ? places.piece_of(k).anchor : position.load(k - 1));
     }
-    CATENA_HD_IN_PLACE Vec3 tip_link(std::int64_t i) const { return tip[i].anchor - position.load(tip[i].body); }
+    /// What tip i is joined to, and its last bead: of their positions or velocities; `at_ground`: of the ground. Rings that a rank has
+    /// whole are read as they are, the others' other ends were shown.
+    CATENA_HD_IN_PLACE Vec3 beyond_tip(std::int64_t i, Found<3> const& of, Vec3 const& at_ground) const {
+        HeldTip const& t = tip[i];
+        return t.ring < 0 ? at_ground : t.first >= 0 ? of.load(t.first) : ring_ends.first.load(t.ring);
+    }
+    CATENA_HD_IN_PLACE Vec3 at_tip(std::int64_t i, Found<3> const& of) const {
+        return tip[i].body >= 0 ? of.load(tip[i].body) : ring_ends.last.load(tip[i].ring);
+    }
+    CATENA_HD_IN_PLACE Vec3 tip_link(std::int64_t i) const { return beyond_tip(i, position, tip[i].anchor) - at_tip(i, position); }
 
     CATENA_HD_IN_PLACE void set_direction(std::int64_t k) const {
         Vec3 const d = linked(k) ? link(k) : Vec3::zero();
         direction.store(k, linked(k) ? (1.0 / norm(d)) * d : d);
     }
     CATENA_HD_IN_PLACE void set_tip_direction(std::int64_t i) const {
-        Vec3 const d = tip_link(i);
-        tip_direction.store(tip[i].body, (1.0 / norm(d)) * d);
+        Vec3 const d = tip_link(i), u = (1.0 / norm(d)) * d;
+        if (tip[i].body >= 0) tip_direction.store(tip[i].body, u);
+        if (tip[i].first >= 0) direction.store(tip[i].first, u);
     }
     CATENA_HD_IN_PLACE void take_forces(std::int64_t k, BeadForces const& forces) const { force.store(k, forces.on(k, mass.at(k, 0))); }
     CATENA_HD_IN_PLACE void set_momentum(std::int64_t k, double h) const {
@@ -69,7 +81,7 @@ struct BeadChainsIn {
         bias.at(k, 0) = linked(k) ? excess(link(k), length.at(k, 0), half_over_length.at(k, 0)) : 0.0;
     }
     CATENA_HD_IN_PLACE void set_tip_excess(std::int64_t i) const {
-        tip_bias.at(tip[i].body, 0) = excess(tip_link(i), tip[i].length, 0.5 / tip[i].length);
+        if (tip[i].body >= 0) tip_bias.at(tip[i].body, 0) = excess(tip_link(i), tip[i].length, 0.5 / tip[i].length);
     }
     CATENA_HD_IN_PLACE void close(std::int64_t k, double per_step) const {
         Vec3 const c = change.load(k);
@@ -87,15 +99,19 @@ struct BeadChainsIn {
         return swing(v, direction.load(k), length.at(k, 0));
     }
     CATENA_HD_IN_PLACE double tip_swing(std::int64_t i) const {
-        return swing(observed.load(tip[i].body), tip_direction.load(tip[i].body), tip[i].length);
+        return swing(beyond_tip(i, observed, Vec3::zero()) - at_tip(i, observed), tip_direction.load(tip[i].body), tip[i].length);
     }
     CATENA_HD_IN_PLACE void set_swing(std::int64_t k) const { bias.at(k, 0) = linked(k) ? swing_of(k) : 0.0; }
-    CATENA_HD_IN_PLACE void set_tip_swing(std::int64_t i) const { tip_bias.at(tip[i].body, 0) = tip_swing(i); }
+    CATENA_HD_IN_PLACE void set_tip_swing(std::int64_t i) const {
+        if (tip[i].body >= 0) tip_bias.at(tip[i].body, 0) = tip_swing(i);
+    }
     /// Of a link's length, relative.
     CATENA_HD_IN_PLACE double error(std::int64_t k) const {
         return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0;
     }
-    CATENA_HD_IN_PLACE double tip_error(std::int64_t i) const { return std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length; }
+    CATENA_HD_IN_PLACE double tip_error(std::int64_t i) const {
+        return tip[i].body >= 0 ? std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length : 0.0;
+    }
 };
 using BeadChains = BeadChainsIn<BeadFields>;
 

@@ -56,10 +56,17 @@ double BeadSolution::residual(Communicator const& communicator, ConstView<3> vel
         terms.set(k, {{a[0], a[1], a[2], group.inverse_mass.view().at(k, 0) * size}});
     }
     exchange_from_inboard(communicator, group, terms.view());
+    auto const beyond = beyond_tips_of<7>(group, communicator, [&](std::int64_t k) {
+        Vector<double, 4> const t = terms[k];
+        Vec3 const v = velocity.load(k);
+        return Vector<double, 7>{{t[0], t[1], t[2], t[3], v[0], v[1], v[2]}};
+    });
     for (HeldTip const& tip : tips) {
-        Vec3 const u = tip_direction.load(tip.body);
-        double const turning = swing(velocity.load(tip.body), u, tip.length);
-        worst = larger(worst, relative(turning - dot(u, acceleration.load(tip.body)), terms[tip.body][3] + turning));
+        if (tip.body < 0) continue;
+        Vector<double, 7> const b = beyond[group.tip_index(tip.body)];
+        Vec3 const u = tip_direction.load(tip.body), there{{b[0], b[1], b[2]}};
+        double const turning = swing(Vec3{{b[4], b[5], b[6]}} - velocity.load(tip.body), u, tip.length);
+        worst = larger(worst, relative(turning + dot(u, there - acceleration.load(tip.body)), terms[tip.body][3] + b[3] + turning));
     }
     for (std::int64_t k = 0; k < group.size; ++k) {
         if (group.joint[k] != JointType::link) continue;

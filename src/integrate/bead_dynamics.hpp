@@ -66,7 +66,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
           bias_(group.size + 1, group.directions),
           joint_force_(group.size + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
-          tip_force_(group.has_tips() ? group.size : 0, group.directions) {
+          tip_force_(group.has_tips() ? group.size : 0, group.directions),
+          ring_ends_(group, space, communicator) {
         space_.edit(position_, [&](View<3> position) {
             space_.edit(velocity_, [&](View<3> velocity) { place_beads(group, scene, position, velocity); });
         });
@@ -141,6 +142,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         settle_forces();  // whoever reads them says what is wrong with them
         solver_->check();
         exchange_from_inboard(communicator_, group_, position_.view(), space_);
+        ring_ends_.take(position_.view(), position_.view());
         BeadChains const c = chains();
         double const along = space_.largest(group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
         double const at_tips = space_.largest(tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
@@ -161,6 +163,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     void evaluate() override {
         settle_forces();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
+        ring_ends_.take(observed_.view(), observed_.view());
         BeadChains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_swing(k); });
         space_.for_each(tips(), [c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_swing(i); });
@@ -216,7 +219,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         void each_tip(Action const& action) const {
             d.space_.for_each(d.tips(), action);
         }
-        void from_inboard() const { exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
+        void from_inboard() const {
+            exchange_from_inboard(d.communicator_, d.group_, d.position_.view(), d.space_);
+            d.ring_ends_.take(d.position_.view(), d.position_.view());
+        }
         void from_outboard() const { exchange_from_outboard(d.communicator_, d.group_, d.position_.view(), d.space_); }
         void assemble() const { d.assemble_matrices(); }
         void project(View<3> momentum, View<3> out) const { d.solver_->solve({{}, momentum, {}, {}, {}}, {{}, out, {}, {}}); }
@@ -284,6 +290,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         c.change = change_.view();
         c.direction = direction_.view();
         c.tip_direction = tip_direction_.view();
+        c.ring_ends = ring_ends_.view();
         c.bias = bias_.view();
         c.tip_bias = of_tips(group_, tip_bias_);
         return c;
@@ -312,6 +319,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     typename Space::template Fixed<1> mass_, inverse_mass_, length_, half_over_length_;
     Field3 position_, velocity_, observed_, force_, momentum_, change_, direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    RingEnds<Space> ring_ends_;
     typename Space::template Mirror<3> position_mirror_, force_mirror_;
     BeadForces forces_;
     bool forces_are_ahead_ = false, forces_are_out_ = false;

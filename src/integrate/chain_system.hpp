@@ -17,6 +17,8 @@ namespace catena {
 Backend choose_backend(Scene const&, Communicator const&);
 /// Threads of this rank with openmp, and of what cuda-levels leaves to the host: solver.threads, else the host's cores over its ranks.
 int choose_threads(Scene const&, Communicator const&);
+/// What the scene asks for, or the best; the weakest of all ranks'. Collective. InputError where a rank cannot run what is asked for.
+SimdLevel choose_simd_level(Scene const&, Communicator const&);
 
 class ChainSystem {
   public:
@@ -74,7 +76,10 @@ class ChainSystem {
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;
     std::vector<JointDynamics*> joint() const;
-    /// Accelerations of the groups in joint coordinates at their states; OpenMM computes while matrices are assembled. Collective.
+    /// Whether matrices have nothing to hide and are not needed again.
+    bool solves_once() const { return !openmm_ && scene_.solver.refine == 0; }
+    /// Accelerations of the groups in joint coordinates at their states, refined `solver.refine` times; OpenMM computes while matrices are
+    /// assembled. Collective.
     void solve_joint_groups();
     /// JointDynamics::close_tips of every group. Collective.
     void close_tips(int corrections = JointDynamics::usual_corrections);

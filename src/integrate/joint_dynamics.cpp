@@ -9,7 +9,7 @@ std::vector<JointedTip> tips_at_start(ChainGroup const& group, Scene const& scen
     JointState start = make_joint_state(group, scene);
     BodyMotion motion(group, host);
     JointKinematics(group, host, communicator).evaluate(start.view(), true, motion.view());
-    return jointed_tips(group, motion);
+    return jointed_tips(group, scene, motion);
 }
 
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,

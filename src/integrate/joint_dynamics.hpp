@@ -29,6 +29,8 @@ class JointDynamics : public BeadHost {
     virtual void assemble_matrices() = 0;
     /// Accelerations of bodies with the forces of now, at the configuration updated last. Collective.
     virtual void solve() = 0;
+    /// assemble_matrices() and solve() together, where nothing is to be hidden between them. Collective.
+    virtual void solve_once() = 0;
     /// Those of coordinates, after solve(); and as they were set last, on the host.
     virtual void set_rates() = 0;
     /// One step of iterative refinement of what solve() found last: what the equations of bodies and joints lack is solved for with the

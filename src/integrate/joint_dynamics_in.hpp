@@ -12,7 +12,7 @@
 
 namespace catena {
 
-/// The jointed tips of the group where the scene starts. Collective.
+/// The jointed tips of the group on this rank where the scene starts. Collective.
 std::vector<JointedTip> tips_at_start(ChainGroup const&, Scene const&, Communicator const&);
 
 template <class Space>
@@ -61,11 +61,17 @@ class JointDynamicsIn final : public JointDynamics {
           carried_base_acceleration_(pieces()),
           outboard_end_(1),
           zero_(group.has_tips() ? group.size : 0),
+          last_end_(tips()),
+          other_end_(tips()),
           bias_(group.size + 1, group.directions),
           joint_force_(group.size + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         set_state(make_joint_state(group, scene));
+        if (tips() > 0)
+            space_.edit(other_end_, [&](View<13> view) {
+                for (std::int64_t i = 0; i < tips(); ++i) view.store(i, as_numbers(tip_[static_cast<std::size_t>(i)].ground));
+            });
     }
 
     JointState state() const override {
@@ -85,23 +91,30 @@ class JointDynamicsIn final : public JointDynamics {
         relative_ = false;
     }
 
-    void update_configuration() override { needs_positions_ ? update<true>() : update<false>(); }
+    void update_configuration() override {
+        has_matrices_ = false;
+        needs_positions_ ? update<true>() : update<false>();
+    }
     void assemble_matrices() override {
-        MotionView const m = motion_.view();
-        solver_->assemble_matrices({{}, m.joint_turn, {}, m.r2, m.axes2});
+        solver_->assemble_matrices(configuration());
+        has_matrices_ = true;
     }
     void solve() override {
-        if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
-        solver_->solve(
-            {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)},
-            {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)});
+        set_carried_loads();
+        solver_->solve(loads(), found());
+        exchange_ends();
+    }
+    void solve_once() override {
+        set_carried_loads();
+        solver_->solve_once(configuration(), loads(), found());
+        has_matrices_ = false;
         exchange_ends();
     }
     void refine() override {
         if constexpr (std::is_same_v<Space, HostSpace>)
             refine_on_host();
         else
-            throw InputError("solutions that stay on a GPU are not refined", "--refine", "take --backend segments or openmp");
+            throw InputError("solutions that stay on a GPU are not refined", "solver.refine", "take backend segments or openmp");
     }
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
     JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
@@ -173,6 +186,9 @@ class JointDynamicsIn final : public JointDynamics {
     ChainGroup const& group() const override { return group_; }
 
     // Not private: nvcc takes lambdas for kernels from public members alone.
+    void set_carried_loads() {
+        if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
+    }
     template <bool positions>
     void update() {
         JointChains const c = chains();
@@ -182,9 +198,8 @@ class JointDynamicsIn final : public JointDynamics {
         kinematics_.template sweep<positions>(c.scan);
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k); });
         if (!group_.has_tips()) return;
-        space_.for_each(tips(), [t = jointed_tips(), moving = group_.moving_meeting(), gravity = given_.gravity,
-                                 out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
-            if (moving) t.set_meeting(i);
+        set_ends();
+        space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
             t.set_acceleration_bias(i, gravity, out);
         });
     }
@@ -207,8 +222,22 @@ class JointDynamicsIn final : public JointDynamics {
     void move() {
         relative_ = false;
         kinematics_.evaluate(state_.view(), true, motion_.view());
-        if (group_.has_tips() && group_.moving_meeting())
-            space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.set_meeting(i); });
+        if (group_.has_tips()) set_ends();
+    }
+    /// What jointed tips join, and where they meet: after the motion. Rings on two ranks show each other their ends.
+    void set_ends() {
+        space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.take_ends(i); });
+        for (std::int64_t i = 0; i < tips(); ++i) {
+            JointedTip const& t = tip_[static_cast<std::size_t>(i)];
+            if (t.neighbour < 0) continue;
+            bool const has_last = t.body >= 0;
+            Vector<double, 13> const send = space_.get(ConstView<13>((has_last ? last_end_ : other_end_).view()), i);
+            Vector<double, 13> receive = send;
+            communicator_.exchange(std::as_bytes(std::span(send.data)), t.neighbour, std::as_writable_bytes(std::span(receive.data)),
+                                   t.neighbour);
+            space_.put((has_last ? other_end_ : last_end_).view(), i, receive);
+        }
+        space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.set_meeting(i); });
     }
     /// One Newton step: the solver with openings in the place of accelerations.
     void correct(bool velocities) {
@@ -238,7 +267,16 @@ class JointDynamicsIn final : public JointDynamics {
     }
 
   private:
+    ConfigurationView configuration() {
+        MotionView const m = motion_.view();
+        return {{}, m.joint_turn, {}, m.r2, m.axes2};
+    }
+    LoadsView loads() {
+        return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
+    }
+    AccelerationsView found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
     void refine_on_host() {
+        if (!has_matrices_) assemble_matrices();
         auto lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
         std::int64_t const tips = group_.has_tips() ? group_.size : 0;
         Field<3> alpha(group_.size), acceleration(group_.size);
@@ -258,7 +296,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
-    JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view()}; }
+    JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }
     RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
     JointChains chains() {
         JointChains c;
@@ -306,7 +344,8 @@ class JointDynamicsIn final : public JointDynamics {
     std::vector<JointedTip> tip_;
     double reach_;
     bool has_wrenches_, has_forces_, needs_positions_;
-    bool relative_ = false;  // the state's motions joint by joint are known
+    bool has_matrices_ = false;  // of the configuration updated last
+    bool relative_ = false;      // the state's motions joint by joint are known
     double start_time_ = 0;
     JointKinematics<Space> kinematics_;
     BodyLoadsIn<Space> loads_;
@@ -322,6 +361,7 @@ class JointDynamicsIn final : public JointDynamics {
     FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;
+    FieldOf<13> last_end_, other_end_;  // by tip
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "integrate/joint_solution.hpp"
+#include "integrate/ring_ends.hpp"
 
 namespace catena {
 
@@ -85,11 +86,16 @@ Vec3 JointSolution::inertial_moment(std::int64_t k) const {
 
 Vector<double, 8> JointSolution::handle_before_first(Communicator const& communicator) const {
     Vector<double, 8> before = Vector<double, 8>::zero();
+    if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return before;
     Vector<double, 8> const last =
         group.neighbour_outboard >= 0 ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1)) : before;
     communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(before.data)),
                           group.neighbour_inboard);
     return before;
+}
+
+std::vector<Vector<double, 8>> JointSolution::handles_at_tips(Communicator const& communicator) const {
+    return beyond_tips_of<8>(group, communicator, [&](std::int64_t k) { return handle(k, group.r1[k], axes1(k)); });
 }
 
 /// D^T (outboard - inboard) + bias; 0 along what is not restricted.
@@ -117,6 +123,7 @@ double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> co
 double JointSolution::residual(Communicator const& communicator) const {
     auto const outboard_handle = [&](std::int64_t k) { return handle(k, r2(k), axes2(k)); };
     Vector<double, 8> before = handle_before_first(communicator);  // handle 2 of body k - 1
+    auto const at_tips = handles_at_tips(communicator);
     double worst = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
         Terms const t = terms_solved_for(k);
@@ -129,7 +136,7 @@ double JointSolution::residual(Communicator const& communicator) const {
         worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size));
         before = outboard_handle(k);
         if (!group.has_jointed_tip(k)) continue;
-        worst = larger(worst, closing(Vector<double, 8>::zero(), before, tip_bias, k, outboard_screw(k), group.tip_of(k).restricted,
+        worst = larger(worst, closing(at_tips[group.tip_index(k)], before, tip_bias, k, outboard_screw(k), group.tip_of(k).restricted,
                                       norm(r2(k)) + radius_of(group, k)));
     }
     return communicator.max(worst);
@@ -140,6 +147,7 @@ JointSolution::Defect JointSolution::defect(Communicator const& communicator) co
     Defect d{Field<3>(group.size), Field<3>(group.size), DirectionsField(group.size + 1, group.directions),
              DirectionsField(tips, group.directions)};
     Vector<double, 8> before = handle_before_first(communicator);
+    auto const at_tips = handles_at_tips(communicator);
     for (std::int64_t k = 0; k < group.size; ++k) {
         Terms const t = terms_solved_for(k);
         d.torque.set(k, sum_of(t.moments) - inertial_moment(k));
@@ -151,7 +159,7 @@ JointSolution::Defect JointSolution::defect(Communicator const& communicator) co
         before = handle(k, r2(k), axes2(k));
         if (group.has_jointed_tip(k))
             store_first(d.tip_bias.view(), k, group.directions,
-                        opening(Vector<double, 8>::zero(), before, load_first(tip_bias, k, group.directions), outboard_screw(k),
+                        opening(at_tips[group.tip_index(k)], before, load_first(tip_bias, k, group.directions), outboard_screw(k),
                                 group.tip_of(k).restricted));
     }
     return d;

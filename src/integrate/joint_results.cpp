@@ -70,7 +70,7 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
     }
     auto const sums = sums_from_tip(group, communicator, needed);
     for (dca::Piece const& piece : group.pieces) {
-        if (group.partition.jointed_tip[piece.chain]) continue;
+        if (group.partition.has_jointed_tip(piece.chain)) continue;
         for (std::int64_t k = piece.local; k < piece.local + piece.count; ++k) {
             Vec3 const axis = orientation(k) * as_matrix(group.axes1[k]).column(2);
             auto const& [needed_force, needed_torque] = sums[k];

@@ -54,6 +54,8 @@ struct JointSolution {
     Vector<double, 8> handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const;
     /// Handle 2 of the last body on the rank before.
     Vector<double, 8> handle_before_first(Communicator const&) const;
+    /// What each of the group's tips is joined to: the ground's handle, or handle 1 of a ring's first body. Collective.
+    std::vector<Vector<double, 8>> handles_at_tips(Communicator const&) const;
     static Vector<double, 6> opening(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, Vector<double, 6> const& bias,
                                      Screw<double> const&, int restricted);
     double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, ConstDirectionsView biases, std::int64_t at,

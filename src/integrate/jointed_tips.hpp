@@ -1,5 +1,5 @@
-// The joints between last bodies and the ground, for chains in joint coordinates: where they are, what their velocities add, and
-// how far they have come open. Host and device.
+// The joints between last bodies and the ground, or in rings the first bodies, for chains in joint coordinates: where they are, what their
+// velocities add, and how far they have come open. Host and device.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,10 @@
 namespace catena {
 
 struct JointedTip {
-    std::int64_t body = 0;
+    std::int64_t body = -1;  // the last body, local; -1: on another rank
+    bool ring = false;
+    std::int64_t first = -1;  // of a ring: its first body, as `body`
+    int neighbour = -1;       // of a ring: the rank that has its other end
     JointType type = JointType::spherical;
     Vec3 axis, first_axis;
     Mat3 rotation;     // of J in the last body
@@ -19,14 +22,14 @@ struct JointedTip {
     Mat3 axes;         // the joint's in the meeting frame, as ChainGroup::axes1
     Screw<double> screw;
     int restricted = 0;
-    bool pitched = false;  // it slides as it turns
-    Quat ground_rotation;  // of G in W
-    Vec3 ground_origin;    // W
-    Vec3 com;              // of the last body from its origin, B
-    double cosine = 0;     // universal: of the angle between its axes
+    bool pitched = false;            // it slides as it turns
+    Motion ground = Motion::none();  // of G, at rest
+    Vec3 com;                        // of the last body from its origin, B
+    double cosine = 0;               // universal: of the angle between its axes
 };
-/// `start`: motion at the scene's start, positions included, which decides where the ground's frames are.
-std::vector<JointedTip> jointed_tips(ChainGroup const&, BodyMotion& start);
+/// Those that join a body of this rank: behind the last bodies' own (ChainGroup::tips) those of rings that only begin here. `start`: motion
+/// at the scene's start, positions included, which decides where the ground's frames are.
+std::vector<JointedTip> jointed_tips(ChainGroup const&, Scene const&, BodyMotion& start);
 /// A length that openings are measured by: the longest chain's from joint to joint and a body's size. The same on every rank.
 double reach_of(ChainGroup const&, Scene const&);
 
@@ -73,6 +76,7 @@ struct JointedTips {
     double reach = 1;
     int directions = 6;
     MotionView motion;
+    View<13> last, other;  // by tip: how the last body moves, and what it is joined to
 
     /// Where the joint meets the last body.
     struct Place {
@@ -84,14 +88,29 @@ struct JointedTips {
         Vec3 angular, linear;
     };
 
-    CATENA_HD Quat orientation(JointedTip const& t) const { return as_quaternion(motion.orientation.load(t.body)); }
-    CATENA_HD Place place(JointedTip const& t) const {
-        Mat3 const to_ground = to_matrix(orientation(t));
+    /// Of the bodies that are here.
+    CATENA_HD void take_ends(std::int64_t i) const {
+        JointedTip const& t = tip[i];
+        if (t.body >= 0) last.store(i, as_numbers(motion_of(t.body)));
+        if (t.first >= 0) other.store(i, as_numbers(motion_of(t.first)));
+    }
+    CATENA_HD Motion motion_of(std::int64_t k) const {
+        return {as_quaternion(motion.orientation.load(k)), motion.omega.load(k), motion.origin.load(k), motion.velocity.load(k)};
+    }
+    struct Ends {
+        Motion last, other;
+        /// Components in the last body's axes of a vector in the other's.
+        CATENA_HD Vec3 to_last(Vec3 const& v) const { return to_matrix(conjugate(last.rotation) * other.rotation) * v; }
+        /// Of G's origin from the last body's.
+        CATENA_HD Vec3 apart() const { return transposed_times(to_matrix(last.rotation), other.translation - last.translation); }
+    };
+    CATENA_HD Ends ends(std::int64_t i) const { return {as_motion(last.load(i)), as_motion(other.load(i))}; }
+
+    CATENA_HD Place place(JointedTip const& t, Ends const& e) const {
         Place m{t.translation - t.com, t.rotation * t.axes};
-        if (slides(t.type)) m.point = transposed_times(to_ground, t.ground_origin - motion.origin.load(t.body)) - t.com;
+        if (slides(t.type)) m.point = e.apart() - t.com;
         if (t.type == JointType::universal) {
-            Vec3 const first = t.rotation * t.first_axis;
-            Vec3 const second = transposed_times(to_ground, to_matrix(t.ground_rotation) * t.axis);
+            Vec3 const first = t.rotation * t.first_axis, second = e.to_last(t.axis);
             Vec3 const normal = cross(first, second), p = (1 / norm(normal)) * normal;
             m.axes.set_column(0, p);
             m.axes.set_column(1, cross(second, p));
@@ -99,42 +118,48 @@ struct JointedTips {
         }
         return m;
     }
-    /// Handle 2 of the last body, where meetings move (MotionView::r2, axes2).
+    /// Handle 2 of the last body, where meetings move (MotionView::r2, axes2), and how a ring's first body stands in the meeting frame,
+    /// which are the joint's axes.
     CATENA_HD void set_meeting(std::int64_t i) const {
-        Place const m = place(tip[i]);
+        JointedTip const& t = tip[i];
+        Ends const e = ends(i);
+        Place const m = place(t, e);
+        if (t.first >= 0)
+            motion.joint_turn.store(t.first, as_vector(conjugate(e.last.rotation * to_quaternion(m.axes)) * e.other.rotation));
+        if (t.body < 0 || !motion.axes2.origin) return;
         Vector<double, 9> axes;
         CATENA_UNROLL
         for (int j = 0; j < 9; ++j) axes[j] = m.axes.data[j];
-        motion.r2.store(tip[i].body, m.point);
-        motion.axes2.store(tip[i].body, axes);
+        motion.r2.store(t.body, m.point);
+        motion.axes2.store(t.body, axes);
     }
 
     /// Of G against the last body's point that it meets, on their way apart, along the place's axes.
-    CATENA_HD Pair opening_rate(JointedTip const& t, Place const& m) const {
-        Vec3 const w = motion.omega.load(t.body), v = motion.velocity.load(t.body) + cross(w, t.com + m.point);
-        return {transposed_times(m.axes, -w), transposed_times(m.axes, -v)};
+    CATENA_HD Pair opening_rate(JointedTip const& t, Ends const& e, Place const& m) const {
+        Vec3 const w = e.last.omega, v = e.last.velocity + cross(w, t.com + m.point);
+        return {transposed_times(m.axes, e.to_last(e.other.omega) - w), transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
     CATENA_HD static bool turns_about_axis(JointType type) { return type == JointType::revolute || slides(type); }
-    /// c of the joint (formulas, "Joint bias") with the rates that the last body's motion gives it.
-    CATENA_HD Pair velocity_terms(JointedTip const& t, Place const& m) const {
-        Vec3 const w = transposed_times(m.axes, motion.omega.load(t.body));
+    /// c of the joint (formulas, "Joint bias") with the rates that the bodies' motion gives it.
+    CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
+        Vec3 const w = transposed_times(m.axes, e.last.omega);
+        if (t.type != JointType::universal && !turns_about_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
+        Pair const rate = opening_rate(t, e, m);
         if (t.type == JointType::universal) {
             Vec3 const first = transposed_times(m.axes, t.rotation * t.first_axis);  // (0, y, z)
-            Vec3 const u{{0, -w[1], -w[2]}};
+            Vec3 const u{{0, rate.angular[1], rate.angular[2]}};
             double const u1 = u[1] / first[1], u2 = u[2] - first[2] * u1;
             return {cross(w, u) + (u1 * u2) * cross(first, Vec3{{0, 0, 1}}), Vec3::zero()};
         }
-        if (!turns_about_axis(t.type)) return {Vec3::zero(), Vec3::zero()};
         double const c = t.screw.c, s = t.screw.s;
-        double const along = c * -w[2] + (s == 0 ? 0.0 : s * opening_rate(t, m).linear[2]);
+        double const along = c * rate.angular[2] + (s == 0 ? 0.0 : s * rate.linear[2]);
         return {cross(w, Vec3{{0, 0, c * along}}), 2.0 * cross(w, Vec3{{0, 0, s * along}})};
     }
     /// Of G against J.
-    CATENA_HD Pair opening(JointedTip const& t, Place const& m) const {
+    CATENA_HD Pair opening(JointedTip const& t, Ends const& e, Place const& m) const {
         double constexpr turn = 6.283185307179586476925;
-        Vec3 const apart = transposed_times(to_matrix(orientation(t)), t.ground_origin - motion.origin.load(t.body)) - t.translation;
-        Pair open{Vec3::zero(), transposed_times(m.axes, apart)};
-        Quat const relative = conjugate(orientation(t) * to_quaternion(t.rotation)) * t.ground_rotation;  // G in J
+        Pair open{Vec3::zero(), transposed_times(m.axes, e.apart() - t.translation)};
+        Quat const relative = conjugate(e.last.rotation * to_quaternion(t.rotation)) * e.other.rotation;  // G in J
         if (t.type == JointType::weld) open.angular = rotation_vector(relative);
         if (t.type == JointType::universal) {
             Vec3 const second = to_matrix(relative) * t.axis;
@@ -160,26 +185,31 @@ struct JointedTips {
     /// LoadsView::tip_bias for the accelerations: velocity terms, and gravity as the ground's acceleration.
     CATENA_HD void set_acceleration_bias(std::int64_t i, Vec3 const& gravity, DirectionsView out) const {
         JointedTip const& t = tip[i];
-        Place const m = place(t);
-        Pair terms = velocity_terms(t, m);
-        terms.linear = -(terms.linear + transposed_times(m.axes, transposed_times(to_matrix(orientation(t)), gravity)));
-        terms.angular = -terms.angular;
-        store_first(out, t.body, directions, along_directions(t, terms));
+        if (t.body < 0) return;
+        Ends const e = ends(i);
+        Place const m = place(t, e);
+        Pair terms = velocity_terms(t, e, m);
+        if (!t.ring) terms.linear = terms.linear + transposed_times(m.axes, transposed_times(to_matrix(e.last.rotation), gravity));
+        store_first(out, t.body, directions, along_directions(t, {-terms.angular, -terms.linear}));
     }
     /// The same for corrections: how far the joint is open, or how fast it comes open, along its directions.
     CATENA_HD void set_opening(std::int64_t i, bool velocities, DirectionsView out) const {
         JointedTip const& t = tip[i];
-        Place const m = place(t);
-        store_first(out, t.body, directions, along_directions(t, velocities ? opening_rate(t, m) : opening(t, m)));
+        if (t.body < 0) return;
+        Ends const e = ends(i);
+        Place const m = place(t, e);
+        store_first(out, t.body, directions, along_directions(t, velocities ? opening_rate(t, e, m) : opening(t, e, m)));
     }
     /// Largest opening over the reach (angles count by it already).
     CATENA_HD double error(std::int64_t i) const {
         JointedTip const& t = tip[i];
-        Vector<double, 6> const open = along_directions(t, opening(t, place(t)));
+        if (t.body < 0) return 0;
+        Ends const e = ends(i);
+        Vector<double, 6> const open = along_directions(t, opening(t, e, place(t, e)));
         double worst = 0;
         for (int j = 0; j < t.restricted; ++j) {
-            double const e = std::fabs(open[j]) / (j < 3 ? reach : 1.0);
-            worst = e > worst || e != e ? e : worst;
+            double const along = std::fabs(open[j]) / (j < 3 ? reach : 1.0);
+            worst = along > worst || along != along ? along : worst;
         }
         return worst;
     }

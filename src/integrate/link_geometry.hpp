@@ -8,11 +8,13 @@
 
 namespace catena {
 
-/// Where a chain's last bead or body is held: by a link to the ground or a joint there.
+/// Where a chain's last bead or body is held: by a link or a joint to the ground or, in a ring, to its first one.
 struct HeldTip {
-    std::int64_t body = 0;  // local
-    Vec3 anchor;            // W
-    double length = 0;      // of the link
+    std::int64_t body = -1;   // the last one, local; -1: of a ring that only begins on this rank
+    Vec3 anchor;              // in the ground, W
+    double length = 0;        // of the link
+    std::int64_t ring = -1;   // index in ChainGroup::rings; -1: held by the ground
+    std::int64_t first = -1;  // of a ring: its first body, local; -1: on another rank
 };
 
 /// How much too long a link d is, to first order: each sweep of a drift takes what the one before it has left, and what all of them close

@@ -10,6 +10,7 @@
 #include "integrate/carried_beads.hpp"
 #include "integrate/constrained_step.hpp"
 #include "integrate/link_geometry.hpp"
+#include "integrate/ring_ends.hpp"
 #include "integrate/rotor.hpp"
 
 namespace catena {
@@ -41,6 +42,7 @@ struct RigidChains {
     JointType const* joint = nullptr;
     std::int32_t const* jointed_tip = nullptr;  // of its last body: index in `tip`, else -1; absent where there is none
     HeldTip const* tip = nullptr;
+    RingEndsView ring_ends;
     LocalPiece const* piece = nullptr;
     std::int64_t pieces = 0;
     ConstView<1> mass, inverse_mass, length;
@@ -79,7 +81,11 @@ struct RigidChains {
     CATENA_HD Vec3 apart(std::int64_t k) const {
         return inboard_end.load(k) - (is_first[k] ? piece_of(k).anchor : outboard_end.load(k - 1));
     }
-    CATENA_HD Vec3 apart(HeldTip const& t) const { return t.anchor - outboard_end.load(t.body); }
+    /// What a tip is joined to from where it ends; `at_ground`: of the ground.
+    CATENA_HD Vec3 apart(HeldTip const& t, Vec3 const& at_ground) const {
+        return (t.ring < 0 ? at_ground : ring_ends.first.load(t.ring)) - outboard_end.load(t.body);
+    }
+    CATENA_HD Vec3 apart(HeldTip const& t) const { return apart(t, t.anchor); }
     /// Along what it acts and how long it is; a joint: zero.
     struct Link {
         Vec3 direction;
@@ -95,6 +101,12 @@ struct RigidChains {
         if (!t) return;
         Vec3 const at_tip = apart(*t);
         tip_direction.store(k, (1.0 / norm(at_tip)) * at_tip);
+    }
+    /// Of the link that closes a ring, as that of its first body.
+    CATENA_HD void set_first_direction(LocalRing const& ring, std::int64_t i) const {
+        if (ring.first < 0) return;
+        Vec3 const d = ring_ends.first.load(i) - ring_ends.last.load(i);
+        direction.store(ring.first, (1.0 / norm(d)) * d);
     }
     CATENA_HD double error_of(Vec3 const& d, double l) const { return linked ? std::fabs(norm(d) - l) / l : norm(d) / reach; }
     /// Of the inboard joint of body k and of its tip's.
@@ -124,7 +136,7 @@ struct RigidChains {
     CATENA_HD void set_turnings(std::int64_t k) const {
         Vec3 const before = is_first[k] || !linked ? Vec3::zero() : outboard_end.load(k - 1);
         set_bias(bias, k, is_joined(k) ? turning(inboard_end.load(k) - before, link(k)) : Vec3::zero());
-        if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, turning(-outboard_end.load(k), link(*t)));
+        if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, turning(apart(*t, Vec3::zero()), link(*t)));
     }
 
     // Forces.

@@ -86,13 +86,17 @@ class RigidDynamics final : public AbsoluteDynamics {
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions),
           tip_(start(scene)),
-          tips_(tip_) {}
+          tips_(tip_),
+          rings_(group.rings),
+          ring_ends_(group, space, communicator) {}
 
     void update_configuration() override {
         if (given_.springs) exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
         if (!group_.linked) return;
         set_ends();
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_directions(k); });
+        space_.for_each(std::ssize(group_.rings),
+                        [c = chains(), ring = rings_.data()] CATENA_LAMBDA(std::int64_t i) { c.set_first_direction(ring[i], i); });
         exchange_from_outboard(communicator_, group_, direction_.view(), space_);
     }
     void assemble_matrices() override { solver_->assemble_matrices(configuration()); }
@@ -124,7 +128,7 @@ class RigidDynamics final : public AbsoluteDynamics {
             DriftSweep const s{h, sweep == 0, sweep == sweeps};
             space_.for_each(group_.size, [c, s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
             if (s.last) return;
-            exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+            show_ends();
             space_.for_each(group_.size, [c, scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.set_openings(k, scale); });
             solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
         }
@@ -199,12 +203,17 @@ class RigidDynamics final : public AbsoluteDynamics {
     }
     void set_ends() {
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_ends(k); });
+        show_ends();
+    }
+    /// To neighbours, on whatever rank.
+    void show_ends() {
         exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+        ring_ends_.take(inboard_end_.view(), outboard_end_.view());
     }
     void set_loads() {
         RigidChains const c = chains();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_moment(k); });
-        if (group_.linked) exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+        if (group_.linked) show_ends();
         space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.set_turnings(k); });
     }
 
@@ -243,6 +252,7 @@ class RigidDynamics final : public AbsoluteDynamics {
         c.joint = joint_.data();
         c.jointed_tip = tip_.empty() ? nullptr : jointed_tip_.data();
         c.tip = tips_.data();
+        c.ring_ends = ring_ends_.view();
         c.piece = pieces_.data();
         c.pieces = std::ssize(piece_);
         c.mass = mass_.view();
@@ -316,6 +326,8 @@ class RigidDynamics final : public AbsoluteDynamics {
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     std::vector<HeldTip> tip_;
     List<HeldTip> tips_;
+    List<LocalRing> rings_;
+    RingEnds<Space> ring_ends_;
 };
 
 }  // namespace catena

@@ -30,6 +30,13 @@ BodyResults RigidSolution::results() const {
     return r;
 }
 
+std::vector<Vector<double, 4>> RigidSolution::beyond_tips(Communicator const& communicator) const {
+    return beyond_tips_of<4>(group, communicator, [&](std::int64_t k) {
+        HandleAcceleration const a = handle_acceleration(k, group.r1[k]);
+        return Vector<double, 4>{{a.value[0], a.value[1], a.value[2], a.terms}};
+    });
+}
+
 double RigidSolution::residual(Communicator const& communicator) const {
     // How far a joint is from closing, given the accelerations of its handles, over the size of its own terms.
     auto const closing = [&](Vec3 const& difference, double terms, ConstView<3> along, ConstDirectionsView turning, std::int64_t k) {
@@ -43,11 +50,15 @@ double RigidSolution::residual(Communicator const& communicator) const {
         point.set(k, {{a.value[0], a.value[1], a.value[2], a.terms}});
     }
     exchange_from_inboard(communicator, group, point.view());
+    auto const beyond = beyond_tips(communicator);
     double worst = 0;
     for (std::int64_t k = 0; k < group.size; ++k) {
         worst = larger(worst, newton_euler_residual(k));
         Vector<double, 4> const own = point[k];
-        if (group.has_jointed_tip(k)) worst = larger(worst, closing(Vec3{{-own[0], -own[1], -own[2]}}, own[3], tip_direction, tip_bias, k));
+        if (group.has_jointed_tip(k)) {
+            Vector<double, 4> const there = beyond[group.tip_index(k)], apart = there - own;
+            worst = larger(worst, closing(Vec3{{apart[0], apart[1], apart[2]}}, own[3] + there[3], tip_direction, tip_bias, k));
+        }
         if (group.joint[static_cast<std::size_t>(k)] == JointType::free) continue;
         HandleAcceleration const mine = handle_acceleration(k, group.r1[k]);
         Vector<double, 4> const before = group.is_first[k] ? Vector<double, 4>::zero() : point.view().load(k - 1);

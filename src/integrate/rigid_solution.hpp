@@ -30,6 +30,8 @@ struct RigidSolution {
     Vec3 force_of_tip(std::int64_t k) const;
     Vec3 outboard_force(std::int64_t k) const;
     HandleAcceleration handle_acceleration(std::int64_t k, Vec3 const& r) const;
+    /// Of what each of the group's tips is joined to, and the size of its terms: the ground, or a ring's first body. Collective.
+    std::vector<Vector<double, 4>> beyond_tips(Communicator const&) const;
     double newton_euler_residual(std::int64_t k) const;
 };
 

@@ -45,6 +45,9 @@ class Run {
           last_(options.steps.value_or(scene_.dynamics.steps)),
           sites_(scene_),
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator) {
+        if (scene_.solver.refine > 0 && system_.joint().empty())
+            throw InputError("solutions in absolute coordinates are not refined", "solver.refine",
+                             "leave it out, or take rk4 or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
@@ -184,10 +187,17 @@ class Run {
         c.scene_hash = scene_.hash;
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
+        if (system_.openmm()) c.notes[note_of_platform] = platform();
         c.arrays = system_.state();
         stepper_->save(c);
         c.arrays["largest_constraint_error"] = {worst_error_};
         folder_->write_checkpoint(c);
+    }
+
+    static constexpr char const* note_of_platform = "openmm_platform";
+    std::string platform() const {
+        std::string const& precision = scene_.forces.openmm->precision;
+        return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
     }
 
     std::int64_t restore() {
@@ -201,6 +211,10 @@ class Run {
                 throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " +
                                      std::to_string(dca::tree_table_version),
                                  options_.restart, "go on with the version that made it");
+            auto const made_on = c.notes.find(note_of_platform);
+            if (system_.openmm() && made_on != c.notes.end() && made_on->second != platform())
+                notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second + ", this run goes on on " + platform() +
+                                 ", whose forces round otherwise (forces.openmm.platform chooses)");
         });
         share(communicator_, c);
         system_.set_state(c.arrays);

@@ -13,7 +13,7 @@ Sites::Sites(Scene const& scene) {
         bool const all_beads =
             chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == sites_.size() - static_cast<std::size_t>(first));
         if (chain.tip == Tip::jointed) topology_.tips.push_back(std::ssize(topology_.chains));
-        topology_.chains.push_back({chain.name, first, static_cast<std::int64_t>(sites_.size()) - first, all_beads, false});
+        topology_.chains.push_back({chain.name, first, static_cast<std::int64_t>(sites_.size()) - first, all_beads, chain.is_ring()});
         body += chain.size();
     }
 }

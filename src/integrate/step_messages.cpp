@@ -1,5 +1,7 @@
 #include "integrate/step_messages.hpp"
 
+#include <algorithm>
+
 #include "integrate/body_loads.hpp"
 
 namespace catena {
@@ -17,6 +19,11 @@ class Sum {
     /// As exchange_from_inboard: the last body goes to the rank after.
     void from_inboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.outboard); }
     void from_outboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.inboard); }
+    /// As RingEnds::take.
+    void from_ring_ends(std::int64_t times, std::int64_t numbers) {
+        traffic_.exchanges += times * cut_.ring_ends;
+        traffic_.sent_bytes += times * bytes(cut_.ring_ends * numbers);
+    }
     /// Sweeps of the tree with K directions a handle (see segment.hpp).
     void matrix_sweeps(std::int64_t times, std::int64_t k) { gathers(times, 2 * k * k + k); }
     void bias_sweeps(std::int64_t times, std::int64_t k) { gathers(times, 2 * k); }
@@ -36,7 +43,8 @@ class Sum {
 }  // namespace
 
 Cut cut_of(ChainGroup const& group) {
-    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0, group.neighbour_outboard >= 0};
+    auto const shown = std::count_if(group.rings.begin(), group.rings.end(), [](LocalRing const& ring) { return !ring.is_whole(); });
+    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0, group.neighbour_outboard >= 0, shown};
 }
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
@@ -47,7 +55,8 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
       linked_(group.linked),
       moving_meeting_(group.moving_meeting()),
       tips_(group.has_tips()),
-      fixman_(scene.dynamics.fixman) {
+      fixman_(scene.dynamics.fixman),
+      refinements_(scene.solver.refine) {
     BodyLoads const loads = group.beads ? BodyLoads() : make_body_loads(group, scene);
     joint_loads_ = loads.joint_loads;
     springs_ = loads.springs;
@@ -62,7 +71,9 @@ Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
     sum.matrix_sweeps(drifts, directions_);
     sum.bias_sweeps(drifts + closings, directions_);
     sum.from_inboard(closings, 3);
+    sum.from_ring_ends(closings, 3);
     if (beads_ || linked_) {
+        sum.from_ring_ends(drifts, 3);
         std::int64_t const forces = fixman_ ? 1 : 0;
         sum.from_inboard(drifts + forces, 3);
         sum.from_outboard(drifts + forces, 3);
@@ -76,13 +87,17 @@ Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
 /// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without loads.
 Traffic StepMessages::joint(int corrections, Cut const& cut) const {
     std::int64_t const evaluations = integrator_ == Integrator::rk4 ? 4 : 1, motions = evaluations + (tips_ ? corrections + 1 : 0);
+    std::int64_t const refinements = evaluations * refinements_;
     Sum sum(cut);
     sum.gathers(motions, 13);
+    sum.from_ring_ends(motions, 13);
     if (moving_meeting_) sum.from_outboard(motions, 12);
     if (joint_loads_) sum.from_outboard(evaluations, 4);
     sum.matrix_sweeps(motions, directions_);
-    sum.bias_sweeps(motions, directions_);
-    sum.from_inboard(motions, 4);
+    sum.bias_sweeps(motions + refinements, directions_);
+    sum.from_inboard(motions + refinements, 4);
+    sum.from_inboard(refinements, 8);
+    sum.from_ring_ends(refinements, 8);
     return sum.traffic();
 }
 

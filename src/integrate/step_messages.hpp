@@ -10,6 +10,7 @@ namespace catena {
 struct Cut {
     std::int64_t shared_units = 0;           // of chains that several ranks share
     bool inboard = false, outboard = false;  // a chain goes on there on another rank
+    std::int64_t ring_ends = 0;              // rings that have their other end on another rank
 };
 Cut cut_of(ChainGroup const&);
 
@@ -26,6 +27,7 @@ class StepMessages {
     Integrator integrator_;
     std::int64_t directions_;
     bool absolute_, beads_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
+    std::int64_t refinements_;
 };
 
 }  // namespace catena

@@ -22,7 +22,9 @@ class JointStepper final : public Stepper {
     void prepare(StepTimeline*) override { integrator_->prepare(); }
     /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at the step's end.
     void observe(bool joint_forces) override {
-        if (joint_forces || system_.openmm()) system_.evaluate();
+        if (!joint_forces && !system_.openmm()) return;
+        system_.evaluate();
+        for (int i = 0; i < system_.scene().solver.refine; ++i) system_.refine();
     }
     void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();

@@ -86,7 +86,8 @@ Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
 Choice choose(Scene const& scene, Axes axes, Communicator const& communicator, std::string const& no_gpu) {
     Choice choice{{scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
     if (!leaves_open(scene)) return choice;
-    with_planner(communicator, scene.solver.threads, largest_at_start, no_gpu,
+    bool const refined = no_gpu.empty() && scene.solver.refine > 0;
+    with_planner(communicator, scene.solver.threads, largest_at_start, refined ? "solutions on a GPU are not refined" : no_gpu,
                  [&](Planner& planner) { choice = choose(scene, axes, planner, communicator.size()); });
     share(communicator, choice);
     return choice;

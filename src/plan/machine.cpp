@@ -51,7 +51,8 @@ Machine this_machine(Communicator const& communicator, int threads) {
     m.others.push_back({Backend::serial, 1});
     m.identity = processor_name() + ", " + std::to_string(cores) + " of " + std::to_string(processor_threads()) + " threads, " +
                  std::to_string(communicator.ranks_on_host()) + " ranks; " + (m.no_gpu.empty() ? cuda::device_name() : "no GPU") +
-                 "; catena " + CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", " + build();
+                 "; catena " + CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", simd " + name_of(best_simd_level()) +
+                 ", " + build();
     m.measure = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
         Scene const scene = arranged(sample(family, bodies), arrangement);
         auto const alone = serial_communicator();

@@ -36,6 +36,11 @@ Spread seconds_of_forces(ChainSystem& system, int repeat) {
 
 }  // namespace
 
+double force_error_bound(std::string const& platform, std::string const& precision, double rms_force) {
+    bool const adds_in_steps = platform != "Reference" && platform != "CPU";
+    return 0x1p12 * (precision == "double" ? 0x1p-53 : 0x1p-24) + (adds_in_steps ? 64 * 0x1p-32 / rms_force : 0);
+}
+
 ForceStudy study_force_errors(Scene const& given, Communicator const& communicator, int repeat) {
     ForceStudy study{given.title, 0, {}};
     std::vector<Vec3> exact;
@@ -46,7 +51,7 @@ ForceStudy study_force_errors(Scene const& given, Communicator const& communicat
         scene.forces.openmm->path = "inline";
         ChainSystem system(scene, Axes::world, communicator);
         system.evaluate();
-        ForcePoint point{kind.platform, kind.precision, 0, 0, seconds_of_forces(system, repeat)};
+        ForcePoint point{kind.platform, kind.precision, 0, 0, 0, seconds_of_forces(system, repeat)};
         std::vector<Vec3> const found = system.bead_forces();
         if (exact.empty()) exact = found;
         study.beads = static_cast<std::int64_t>(found.size());
@@ -60,6 +65,7 @@ ForceStudy study_force_errors(Scene const& given, Communicator const& communicat
         }
         point.error = std::sqrt(difference / squares);
         point.largest_error /= largest;
+        point.bound = force_error_bound(kind.platform, kind.precision, std::sqrt(squares / static_cast<double>(exact.size())));
         study.points.push_back(point);
     }
     return study;

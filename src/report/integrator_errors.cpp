@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <tuple>
 
+#include "error.hpp"
 #include "integrate/observables.hpp"
 #include "integrate/stepper.hpp"
 #include "scene/freedom.hpp"
@@ -12,6 +15,7 @@ namespace {
 
 constexpr int samples_of_energy = 32, coarsest = 3;
 constexpr double constraint_tolerance = 1e-13;
+constexpr double rounding = 1e-11;  // of positions after thousands of steps, relative
 
 /// A scene's integrator, without files.
 class Trajectory {
@@ -110,20 +114,60 @@ std::optional<double> finest_slope(std::vector<IntegratorPoint> const& points, d
     return std::nullopt;
 }
 
+/// Joint torques and wrenches: what they do to the bodies is work, and the energy's change no error.
+bool works_on_bodies(ChainSpec const& chain) {
+    auto const is_zero = [](Vec3 const& v) { return norm(v) == 0; };
+    auto const& [torque, wrench] = std::tie(chain.bodies.torque, chain.bodies.wrench);
+    return !std::all_of(torque.begin(), torque.end(), is_zero) ||
+           !std::all_of(wrench.begin(), wrench.end(), [&](auto const& w) { return is_zero(w.first) && is_zero(w.second); });
+}
+
+struct Course {
+    double time;
+    std::int64_t steps;
+    int repeat;
+    bool keeps_energy;
+};
+IntegratorPoint point_of(Scene const& scene, Communicator const& communicator, Integrator integrator, Course const& course,
+                         std::vector<Vec3> const& exact) {
+    IntegratorPoint point{course.time / static_cast<double>(course.steps), NAN, {}, {}};
+    try {
+        std::vector<double> seconds;
+        for (int i = 0; i < course.repeat; ++i) {
+            Trajectory trajectory(scene, communicator, integrator, point.step);
+            double const start = seconds_now();
+            trajectory.run(course.steps);
+            seconds.push_back(seconds_now() - start);
+            if (i == 0) point.error = distance(trajectory.snapshot().position, exact);
+        }
+        point.seconds = spread_of(seconds);
+        if (course.keeps_energy) point.energy_error = energy_error(scene, communicator, integrator, course.time, course.steps);
+    } catch (ComputationError const&) {
+        return {point.step, NAN, {}, {}, false};
+    }
+    return point;
+}
+
 }  // namespace
 
 bool IntegratorStudy::valid() const {
-    auto const finite = [](IntegratorPoint const& p) { return std::isfinite(p.error) && std::isfinite(p.energy_error); };
+    auto const finite = [](IntegratorPoint const& p) {
+        return !p.finished || (std::isfinite(p.error) && std::isfinite(p.energy_error.value_or(0)));
+    };
     return std::isfinite(reference_error) && std::all_of(curves.begin(), curves.end(), [&](IntegratorCurve const& c) {
                return c.as_promised() && std::all_of(c.points.begin(), c.points.end(), finite);
            });
 }
 
-bool integrators_can_be_compared(Scene const& scene) {
-    bool const quiet = std::all_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) {
-        return c.velocities != StartVelocities::thermal && c.bodies.driven.empty() && c.bodies.drag.empty() && c.bodies.damping.empty();
-    });
-    return quiet && !scene.forces.openmm && scene.forces.linear_drag == 0 && scene.forces.angular_drag == 0;
+std::string why_integrators_cannot_be_compared(Scene const& scene) {
+    if (scene.forces.openmm) return "OpenMM's forces have steps at their cutoffs, and lists of their own";
+    if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0) return "its drag changes with velocities";
+    for (ChainSpec const& c : scene.chains) {
+        if (c.velocities == StartVelocities::thermal) return "its start is thermal, another one for every integrator";
+        if (!c.bodies.drag.empty() || !c.bodies.damping.empty()) return "its drag or dampers change with velocities";
+        if (!c.bodies.driven.empty()) return "its joints are driven";
+    }
+    return integrators_of(scene).empty() ? "no integrator has all its chains" : "";
 }
 
 IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& communicator, double time, int finest, int repeat) {
@@ -131,34 +175,32 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     study.title = scene.title;
     study.bodies = scene.bodies();
     study.time = time;
+    bool const works = std::any_of(scene.chains.begin(), scene.chains.end(), works_on_bodies);
+    if (works) study.no_energy_error = "torques or wrenches work on the bodies";
     std::vector<Integrator> const integrators = integrators_of(scene);
-    if (integrators.empty()) return study;
     // Sixteen times finer than the finest of its own order: 1/256 of that one's error, or rounding.
     Integrator const judge = integrators.front();
     std::int64_t const most = std::int64_t{1} << (judge == Integrator::rk4 ? finest : finest + 4);
-    auto const exact = end_of(scene, communicator, judge, time, most);
     study.reference = std::string(name_of(judge)) + ", " + std::to_string(most) + " steps";
-    study.reference_error = distance(end_of(scene, communicator, judge, time, most / 2), exact);
-    double const floor = std::max(20 * study.reference_error, 1e-11);
+    std::vector<Vec3> exact;
+    try {
+        exact = end_of(scene, communicator, judge, time, most);
+        study.reference_error = distance(end_of(scene, communicator, judge, time, most / 2), exact);
+    } catch (ComputationError const&) {
+        study.reference_error = std::numeric_limits<double>::infinity();
+        return study;
+    }
+    double const floor = std::max(20 * study.reference_error, rounding);
     for (Integrator const integrator : integrators) {
-        IntegratorCurve curve{name_of(integrator), order_of(integrator), {}, {}};
+        IntegratorCurve curve{name_of(integrator), order_of(integrator), {}, {}, false};
         int const last = integrator == Integrator::rk4 ? finest - 3 : finest;
         for (int k = coarsest; k <= last; ++k) {
             std::int64_t const steps = std::int64_t{1} << k;
-            IntegratorPoint point{time / static_cast<double>(steps), 0, 0, {}};
-            std::vector<double> seconds;
-            for (int i = 0; i < repeat; ++i) {
-                Trajectory trajectory(scene, communicator, integrator, point.step);
-                double const start = seconds_now();
-                trajectory.run(steps);
-                seconds.push_back(seconds_now() - start);
-                if (i == 0) point.error = distance(trajectory.snapshot().position, exact);
-            }
-            point.seconds = spread_of(seconds);
-            point.energy_error = energy_error(scene, communicator, integrator, time, steps);
-            curve.points.push_back(point);
+            curve.points.push_back(point_of(scene, communicator, integrator, {time, steps, repeat, !works}, exact));
         }
         curve.slope = finest_slope(curve.points, floor);
+        curve.exact =
+            floor == rounding && std::all_of(curve.points.begin(), curve.points.end(), [](auto const& p) { return p.error <= rounding; });
         study.curves.push_back(curve);
     }
     return study;

@@ -56,7 +56,9 @@ bool is_planar(ChainSpec const& chain) {
 std::int64_t restricted_by_tip(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return 0;
     int const in_plane = chain.tip_joint.type == JointType::weld ? 3 : 2;
-    return is_planar(chain) ? in_plane : 6 - coordinates_of(chain.tip_joint.type);
+    std::size_t odd = 0;
+    bool const flat_ring = chain.is_ring() && parallel_within(rounding, chain, odd);  // across its plane the joints hold it anyway
+    return flat_ring || is_planar(chain) ? in_plane : 6 - coordinates_of(chain.tip_joint.type);
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {

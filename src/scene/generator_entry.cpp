@@ -9,10 +9,10 @@ namespace catena::scene {
 namespace {
 
 Node const& single_entry(Node const& node) {
-    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "freely_jointed", "worm_like"});
+    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "polygon", "freely_jointed", "worm_like"});
     if (node.items.size() != 1)
         fail(node, fmt::format("the chain has {} generators", node.items.size()),
-             "give one of `random`, `pendulum`, `coil`, `dill`, `freely_jointed`, `worm_like`");
+             "give one of `random`, `pendulum`, `coil`, `dill`, `polygon`, `freely_jointed`, `worm_like`");
     return *kinds.find(node.items[0].key);
 }
 
@@ -45,6 +45,8 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node) : 
         read_random();
     else if (entry_.key == "freely_jointed" || entry_.key == "worm_like")
         read_walk();
+    else if (entry_.key == "polygon")
+        read_polygon();
     else
         read_rods();
 }
@@ -112,6 +114,26 @@ void GeneratorEntry::read_walk() {
     walk.anchor = request_.anchor();
 }
 
+void GeneratorEntry::read_polygon() {
+    Fields const fields(entry_, {"bodies", "joint", "mass", "length", "radius", "spin"});
+    Polygon& shape = polygon_.emplace();
+    size_ = shape.sides = whole(fields.need("bodies", "bodies: 12"), 3);
+    shape.joint = choice<JointType>(fields.need("joint", "joint: spherical"),
+                                    {{"spherical", JointType::spherical}, {"revolute", JointType::revolute}, {"link", JointType::link}});
+    shape.base = request_.base;
+    if (Node const* const mass = fields.find("mass")) shape.mass = positive(*mass);
+    if (Node const* const length = fields.find("length")) shape.length = positive(*length);
+    Node const *const radius = fields.find("radius"), *const spin = fields.find("spin");
+    shape.radius = radius ? positive(*radius) : 0.05 * shape.length;
+    if (spin) shape.spin = vector3(*spin);
+    beads_ = shape.joint == JointType::link;
+    velocities_ = !beads_;
+    for (Node const* const given : {radius, spin})
+        if (given && beads_) fail(*given, fmt::format("key `{}` means nothing for a polygon of beads", given->key), "leave it out");
+    if (beads_ && shape.base == Base::fixed) fail(entry_, "a polygon of beads on a fixed base", "write `base: free`");
+    request_.allow("generator `polygon`", {});
+}
+
 std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
     // A seed of its own makes the same chain wherever the entry stands in the scene.
     Node const* const own = entry_.find("seed");
@@ -123,6 +145,11 @@ void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
         Rods rods = *rods_;
         rods.seed = seed(copy);
         chain.bodies = entry_.key == "pendulum" ? pendulum(rods) : entry_.key == "coil" ? coil(rods, winding_) : dill(rods, winding_);
+    } else if (polygon_) {
+        if (beads_)
+            chain.beads = polygon_of_beads(*polygon_);
+        else
+            chain.bodies = polygon(*polygon_);
     } else if (walk_) {
         Walk walk = *walk_;
         walk.seed = seed(copy);

@@ -17,7 +17,7 @@ class GeneratorEntry {
     /// Whether the chains it makes have velocities of their own.
     bool gives_velocities() const { return velocities_; }
     /// Whether copies differ from each other.
-    bool is_random() const { return !rods_ || rods_->is_random(); }
+    bool is_random() const { return !polygon_ && (!rods_ || rods_->is_random()); }
     /// Fills the chain.
     void make(ChainSpec& chain, std::int64_t copy) const;
 
@@ -25,14 +25,16 @@ class GeneratorEntry {
     void read_random();
     void read_rods();
     void read_walk();
+    void read_polygon();
     std::uint64_t seed(std::int64_t copy) const;
 
     ChainRequest const& request_;
     Node const& entry_;
     std::int64_t size_ = 0;
-    std::optional<RandomChain> random_;  // one of three
+    std::optional<RandomChain> random_;  // one of four
     std::optional<Rods> rods_;
     std::optional<Walk> walk_;
+    std::optional<Polygon> polygon_;
     Winding winding_;
     double persistence_ = 0;  // of a worm-like walk
     bool beads_ = false, velocities_ = false, loads_ = true;

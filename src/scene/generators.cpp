@@ -85,6 +85,39 @@ BodyArrays dill(Rods const& rods, Winding const& winding) {
     return bodies;
 }
 
+BodyArrays polygon(Polygon const& shape) {
+    BodyArrays bodies = revolute_chain(static_cast<std::size_t>(shape.sides));
+    double const turn = 2 * Draws::pi / static_cast<double>(shape.sides), half = turn / 2;
+    bool const balls = shape.joint == JointType::spherical;
+    std::array<double, 4> const at_rest = balls ? std::array<double, 4>{1, 0, 0, 0} : std::array<double, 4>{0, 0, 0, 0};
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        set_rod(bodies, k, shape.mass, shape.length, shape.radius);
+        bodies.joint[k] = shape.joint;
+        if (balls) bodies.axis[k] = Vec3::zero();
+        bodies.q[k] = k == 0  ? at_rest
+                      : balls ? std::array<double, 4>{std::cos(half), 0, 0, std::sin(half)}
+                              : std::array<double, 4>{turn, 0, 0, 0};
+    }
+    bodies.qd[0] = balls || shape.base == Base::free ? shape.spin : Vec3{{shape.spin[2], 0, 0}};
+    if (shape.base == Base::fixed) return bodies;
+    Vec3 const to_centre{{shape.length / 2, shape.length / (2 * std::tan(half)), 0}};
+    bodies.joint[0] = JointType::free;
+    bodies.axis[0] = Vec3::zero();
+    bodies.q[0] = {1, 0, 0, 0};
+    bodies.free_velocity = cross(to_centre, shape.spin);
+    return bodies;
+}
+
+BeadArrays polygon_of_beads(Polygon const& shape) {
+    double const turn = 2 * Draws::pi / static_cast<double>(shape.sides), radius = shape.length / (2 * std::sin(turn / 2));
+    std::vector<Vec3> corners;
+    for (std::int64_t k = 0; k < shape.sides; ++k) {
+        double const angle = turn * static_cast<double>(k);
+        corners.push_back({{radius * std::cos(angle), radius * std::sin(angle), 0}});
+    }
+    return beads_at(corners, shape.length, shape.mass, Base::free, Vec3::zero());
+}
+
 BeadArrays beads_at(std::vector<Vec3> const& points, double length, double mass, Base base, Vec3 const& anchor) {
     std::size_t const skipped = base == Base::fixed ? 1 : 0, n = points.size() - skipped;
     BeadArrays beads;

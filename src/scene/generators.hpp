@@ -67,6 +67,20 @@ struct Winding {
 BodyArrays coil(Rods const& rods, Winding const& winding);
 BodyArrays dill(Rods const& rods, Winding const& winding);
 
+/// A regular polygon of equal rods as pendulum's, in the plane of x and y with its first side along +x from the origin (a fixed base: on a
+/// joint there), left open for a tip to close. It turns with angular velocity `spin`, W, as if it were rigid: about its centre, or with a
+/// fixed base about the first corner.
+struct Polygon {
+    std::int64_t sides = 0;
+    JointType joint = JointType::spherical;  // or revolute, about z
+    double mass = 1, length = 1, radius = 0.05;
+    Vec3 spin = Vec3::zero();
+    Base base = Base::free;
+};
+BodyArrays polygon(Polygon const& shape);
+/// The same of beads on links, at rest, the first at the origin; free base.
+BeadArrays polygon_of_beads(Polygon const& shape);
+
 /// Beads on links, at rest.
 struct Walk {
     std::int64_t beads = 0;

@@ -117,6 +117,7 @@ void add_carried(Fingerprint& print, CarriedBeads const& c) {
 void add_tip(Fingerprint& print, TipJoint const& t) {
     print.add_each(t.type, t.axis, t.first_axis, t.pitch, t.rotation, t.translation, t.q);
     print.add_each(t.anchor.has_value(), t.anchor.value_or(Vec3::zero()), t.length);
+    add_named(print, "ring", t.ring);
 }
 
 void add_driven(Fingerprint& print, std::vector<DrivenJoint> const& driven) {

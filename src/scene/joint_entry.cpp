@@ -192,12 +192,16 @@ JointEntry read_joint(Node const& node) {
     return entry;
 }
 
-TipEntry read_tip_joint(Node const& node) {
+TipEntry read_tip_joint(Node const& node, bool ring) {
     Fields const joint(node, {"type", "axis", "axes", "pitch", "rotation", "translation", "q", "anchor", "length"});
     TipEntry entry;
     auto const [type, planar] = type_of(node);
+    entry.joint.ring = ring;
     entry.joint.type = type;
     entry.planar = planar;
+    for (char const* const key : {"anchor", "q"})
+        if (Node const* const given = ring ? joint.find(key) : nullptr)
+            fail(*given, fmt::format("key `{}` means nothing for the joint that closes a ring", key), "leave it out: the bodies say it");
     if (type == JointType::free) fail(*node.find("type"), "a free joint at the tip restricts nothing", "write `tip: free`");
     std::vector<std::string_view> keys =
         type == JointType::link ? std::vector<std::string_view>{"type", "length", "translation"} : geometry_keys(type);
@@ -205,11 +209,12 @@ TipEntry read_tip_joint(Node const& node) {
     if (type != JointType::link && type != JointType::weld) keys.emplace_back("q");
     check_keys(node, type, keys);
     if (type == JointType::link) {
-        entry.joint.anchor = vector3(joint.need("anchor", "anchor: [0, 0, 1]"));
+        if (!ring) entry.joint.anchor = vector3(joint.need("anchor", "anchor: [0, 0, 1]"));
         if (Node const* const length = joint.find("length")) entry.joint.length = positive(*length);
         if (Node const* const translation = joint.find("translation")) entry.joint.translation = vector3(*translation);
         return entry;
     }
+    if (ring) joint.need("translation", "translation: [1, 0, 0], where the first body's origin is in the last body");
     read_geometry(joint, entry.joint);
     if (type == JointType::spherical) entry.joint.q = {1, 0, 0, 0};
     if (Node const* const q = joint.find("q")) entry.joint.q = position(*q, type, false);

@@ -27,12 +27,13 @@ struct JointEntry {
 /// Any joint but a link. InputError for keys that mean nothing for the joint's type and for values that are wrong in themselves.
 JointEntry read_joint(Node const& joint);
 
-/// The joint of `tip: {joint: ...}`: any type but free; a link needs its anchor.
+/// The joint of `tip: {joint: ...}`: any type but free; a link needs its anchor. `ring`: that of `tip: {ring: ...}`, which has neither
+/// anchor nor q; joints but links need their translation.
 struct TipEntry {
     TipJoint joint;
     bool planar = false;
 };
-TipEntry read_tip_joint(Node const& joint);
+TipEntry read_tip_joint(Node const& joint, bool ring);
 
 /// How many numbers a torque, stiffness or damping of the joint has: 1, 2 or 3; 0 for links, welds and free joints.
 int numbers_of(JointType type);

@@ -11,6 +11,7 @@
 
 #include "dca/linear.hpp"
 #include "dca/rotation.hpp"
+#include "dca/simd/level.hpp"
 
 namespace catena {
 
@@ -91,10 +92,12 @@ struct LinkedArrays {
     std::size_t size() const { return mass.size(); }
 };
 
-/// A joint from the last body to the ground. Its joint frame J is fixed in the last body as every joint's in its inboard body;
-/// on the other side stands a frame G at rest in the ground, in the place of an outboard body's. Where G is follows from the
-/// start: G = J X(q). A link instead runs from the last bead to the ground point `anchor`.
+/// A joint from the last body to the ground, or to the first body, which makes the chain a ring. Its joint frame J is fixed in the last
+/// body as every joint's in its inboard body; on the other side stands a frame G in the place of an outboard body's. At rest in the
+/// ground it is where the start puts it: G = J X(q). In a ring it is the first body's B, and q means nothing. A link instead runs from
+/// the last bead to the ground point `anchor`, in a ring to the first bead.
 struct TipJoint {
+    bool ring = false;
     JointType type = JointType::spherical;
     Vec3 axis = Vec3::zero(), first_axis = Vec3::zero();
     double pitch = 0;
@@ -130,6 +133,7 @@ struct ChainSpec {
 
     bool is_beads() const { return beads.size() > 0; }
     bool is_linked() const { return linked.size() > 0; }
+    bool is_ring() const { return tip == Tip::jointed && tip_joint.ring; }
     std::size_t size() const { return beads.size() + bodies.size() + linked.size(); }
     CarriedBeads const& carried() const { return is_linked() ? linked.carried : bodies.carried; }
     /// Points that OpenMM knows: beads, and those that bodies carry.
@@ -195,6 +199,8 @@ struct SolverSpec {
     Handles handles = Handles::projected;
     int threads = 0;                  // 0: cores / ranks on this host
     std::string gpu_levels = "auto";  // as GpuLevels: auto, all, "K", "UP,DOWN"
+    int refine = 0;                   // steps of refinement of every solution in joint coordinates
+    std::optional<SimdLevel> simd;    // none: the best that all ranks can run
 
     /// `auto`, where no planner has chosen: all.
     GpuLevels levels_on_gpu() const;

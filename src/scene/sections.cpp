@@ -149,7 +149,7 @@ ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::stri
 }
 
 SolverSpec read_solver(Node const& node) {
-    Fields const fields(node, {"backend", "handles", "threads", "gpu_levels"}, {"precision", "refine", "balance"});
+    Fields const fields(node, {"backend", "handles", "threads", "gpu_levels", "simd", "refine"}, {"precision", "balance"});
     SolverSpec solver;
     take(fields, "backend", solver.backend, [](Node const& n) {
         return choice<Backend>(n, {{"auto", Backend::automatic},
@@ -162,6 +162,11 @@ SolverSpec read_solver(Node const& node) {
     take(fields, "handles", solver.handles,
          [](Node const& n) { return choice<Handles>(n, {{"projected", Handles::projected}, {"full", Handles::full}}); });
     take(fields, "threads", solver.threads, [](Node const& n) { return whole(n, 0, 4096); });
+    take(fields, "refine", solver.refine, [](Node const& n) { return static_cast<int>(whole(n, 0, 10)); });
+    take(fields, "simd", solver.simd, [](Node const& n) {
+        return choice<std::optional<SimdLevel>>(
+            n, {{"auto", std::nullopt}, {"off", SimdLevel::off}, {"avx2", SimdLevel::avx2}, {"avx512", SimdLevel::avx512}});
+    });
     take(fields, "gpu_levels", solver.gpu_levels, [](Node const& n) {
         if (!is_level_count(text(n))) fail(n, describe(n) + " is no number of levels", "give `auto`, `all`, a number, or two as `UP,DOWN`");
         return n.text;

@@ -9,28 +9,11 @@
 #include "scene/freedom.hpp"
 #include "scene/joint_entry.hpp"
 #include "scene/pose.hpp"
+#include "scene/ring.hpp"
 
 namespace catena::scene {
 
 namespace {
-
-/// Largest error of a joint that is to be closed at the start, relative to the length it is measured by.
-double constexpr closure_tolerance = 1e-9;
-
-struct Reach {
-    Pose end;           // of the last body
-    double length = 0;  // of the joints' distances along the chain
-};
-
-Reach reach_of(BodyArrays const& bodies) {
-    Reach reach;
-    for (std::size_t k = 0; k < bodies.size(); ++k) {
-        Pose const next = next_pose(bodies, k, reach.end);
-        if (k > 0) reach.length += norm(next.origin - reach.end.origin);
-        reach.end = next;
-    }
-    return reach;
-}
 
 void close_joint(ChainSpec const& chain, Node const& node) {
     TipJoint const& tip = chain.tip_joint;
@@ -46,30 +29,40 @@ void close_joint(ChainSpec const& chain, Node const& node) {
          fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out", closure_tolerance * length));
 }
 
+/// Of point `r` from the centre of body k; W.
+Vec3 point_of(LinkedArrays const& linked, std::size_t k, Vec3 const& r) {
+    auto const& q = linked.orientation[k];
+    return linked.position[k] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * r;
+}
+
 /// Where the tip's link starts. `given`: the user says where in the last body.
 Vec3 start_of_link(ChainSpec& chain, bool given) {
     if (chain.is_beads()) return chain.beads.position.back();
     LinkedArrays& linked = chain.linked;
     std::size_t const last = linked.size() - 1;
     if (given) linked.outboard[last] = chain.tip_joint.translation + linked.inboard[last];
-    auto const& q = linked.orientation[last];
-    return linked.position[last] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * linked.outboard[last];
+    return point_of(linked, last, linked.outboard[last]);
+}
+Vec3 end_of_link(ChainSpec const& chain) {
+    if (!chain.tip_joint.ring) return *chain.tip_joint.anchor;
+    return chain.is_beads() ? chain.beads.position.front() : point_of(chain.linked, 0, chain.linked.inboard.front());
 }
 
 void close_link(ChainSpec& chain, Node const& node) {
     TipJoint& tip = chain.tip_joint;
-    Vec3 const start = start_of_link(chain, node.find("translation"));
-    double const distance = norm(*tip.anchor - start);
+    Vec3 const start = start_of_link(chain, node.find("translation")), end = end_of_link(chain);
+    double const distance = norm(end - start);
+    char const* const target = tip.ring ? "first body" : "anchor";
     // Positions carry half a unit in their last place.
-    if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(start) + norm(*tip.anchor))))
-        fail(node, "the tip's anchor stands on the last body: their link has no direction", "move one of them");
+    if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(start) + norm(end))))
+        fail(node, fmt::format("the tip's {} stands on the last body: their link has no direction", target), "move one of them");
     if (tip.length == 0) tip.length = distance;
     if (std::abs(tip.length - distance) <= closure_tolerance * tip.length) return;
     bool const far = distance > tip.length;
     fail(node,
-         fmt::format("the tip's link of length {:.12g} {}: they are {:.12g} apart at the start", tip.length,
-                     far ? "cannot reach its anchor" : "is longer than from the last body to its anchor", distance),
-         "leave `length` out, or move the anchor or the chain");
+         fmt::format("the tip's link of length {:.12g} {} its {}: they are {:.12g} apart at the start", tip.length,
+                     far ? "cannot reach" : "is longer than from the last body to", target, distance),
+         fmt::format("leave `length` out, or move {}the chain", tip.ring ? "" : "the anchor or "));
 }
 
 /// Ends of the links, or origins of the joints, from ground to ground.
@@ -97,24 +90,13 @@ void refuse_straight_bridge(ChainSpec const& chain, Node const& node) {
                            std::all_of(joints.begin(), joints.end(), [](JointType t) { return t == JointType::spherical; });
     if (chain.base != Base::fixed || !(chain.is_beads() || spherical)) return;
     std::vector<Vec3> const points = points_of_bridge(chain);
+    if (points.size() < 3) return;  // one rod between two balls still turns
     Vec3 const first = points[1] - points[0];
     for (std::size_t k = 1; k + 1 < points.size(); ++k) {
         Vec3 const next = points[k + 1] - points[k];
         if (norm(cross(first, next)) > 1e-7 * norm(first) * norm(next)) return;
     }
-    fail(node, "the bridge from ground to ground is straight: nothing tells the forces in its joints apart",
-         "start from a bent chain of at least two bodies");
-}
-
-/// Ground at both ends holds a planar chain across its plane twice. Planar handles leave those directions out; what needs full handles does
-/// not (formulas, singular closures).
-void refuse_flat_loop(ChainSpec const& chain, Node const& node) {
-    std::size_t odd = 0;
-    if (chain.base != Base::fixed || !axes_are_parallel(chain, odd) || handle_kind(chain) == HandleKind::planar) return;
-    fail(node,
-         "the chain turns in one plane and is held at both ends, with a weld, a driven joint or a fixed tip in it: its forces across the "
-         "plane are not determined",
-         "use revolute joints alone and a revolute or spherical joint at the tip, all axes parallel, or turn an axis out of the plane");
+    fail(node, "the bridge from ground to ground is straight: nothing tells the forces in its joints apart", "start from a bent chain");
 }
 
 char const* kind_of(ChainSpec const& chain) { return chain.is_beads() ? "a chain of beads" : "a chain of links"; }
@@ -137,18 +119,23 @@ ReadTip read_tip(Fields const& chain) {
     Node const* const tip = chain.find("tip");
     if (!tip) return read;
     if (tip->kind == Node::Kind::map) {
-        Node const& joint = Fields(*tip, {"joint"}).need("joint", "joint: {type: spherical}");
-        TipEntry const entry = read_tip_joint(joint);
+        Fields const fields(*tip, {"joint", "ring"});
+        Node const* const ring = fields.find("ring");
+        if (ring && fields.find("joint")) fail(*ring, "key `ring` beside `joint`", "keep one of them");
+        Node const& joint = ring ? *ring : fields.need("joint", "joint: {type: spherical}");
+        TipEntry const entry = read_tip_joint(joint, ring);
         read.kind = Tip::jointed;
         read.joint = entry.joint;
         if (entry.planar) read.planar = &joint;
         return read;
     }
-    enum class Word { free, fixed };
-    if (choice<Word>(*tip, {{"free", Word::free}, {"fixed", Word::fixed}}, {"ring"}) == Word::free) return read;
+    enum class Word { free, fixed, ring };
+    auto const word = choice<Word>(*tip, {{"free", Word::free}, {"fixed", Word::fixed}, {"ring", Word::ring}});
+    if (word == Word::free) return read;
     read.kind = Tip::jointed;
-    read.fixed = true;
-    read.joint.type = JointType::weld;
+    read.bare = true;
+    read.joint.ring = word == Word::ring;
+    read.joint.type = read.joint.ring ? JointType::link : JointType::weld;
     return read;
 }
 
@@ -157,25 +144,31 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, Node const& chain_node) {
     chain.tip_joint = tip.joint;
     if (tip.kind == Tip::free) return;
     Node const& written = *chain_node.find("tip");
-    Node const& node = tip.fixed ? written : *written.find("joint");
+    bool const ring = tip.joint.ring;
+    Node const& node = tip.bare ? written : *written.find(ring ? "ring" : "joint");
     bool const links = chain.is_beads() || chain.is_linked(), link = tip.joint.type == JointType::link;
-    if (links && tip.fixed)
+    if (links && tip.bare && !ring)
         fail(node, fmt::format("a fixed tip of {}", kind_of(chain)), "write `tip: {joint: {type: link, anchor: [x, y, z]}}`");
     if (links && !link)
         fail(node, fmt::format("a {} joint at the tip of {}", name_of(tip.joint.type), kind_of(chain)),
-             "write `joint: {type: link, anchor: [x, y, z]}`");
+             ring ? "write `tip: ring`" : "write `joint: {type: link, anchor: [x, y, z]}`");
+    if (!links && link && ring && tip.bare)
+        fail(node, "`tip: ring` says nothing of the joint between the last body and the first",
+             "write `tip: {ring: {type: spherical, translation: [x, y, z]}}`");
     if (!links && link) fail(node, "a link at the tip of a chain of other joints", "use another type, such as spherical");
     if (chain.is_beads())
         if (Node const* const translation = node.find("translation"))
             fail(*translation, "key `translation` means nothing for a point bead", "leave it out");
+    if (ring) check_ring(chain, node);
     if (link) {
         close_link(chain, node);
+    } else if (ring) {
+        close_ring(chain, node);
     } else {
         refuse_too_many(chain, node);
-        refuse_flat_loop(chain, node);
         close_joint(chain, node);
     }
-    refuse_straight_bridge(chain, node);
+    if (!ring) refuse_straight_bridge(chain, node);
 }
 
 }  // namespace catena::scene

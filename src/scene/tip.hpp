@@ -1,4 +1,4 @@
-// The outboard end of a chain: `tip: free | fixed | {joint: {...}}`.
+// The outboard end of a chain: `tip: free | fixed | ring | {joint: {...}} | {ring: {...}}`.
 #pragma once
 
 #include "scene/chain_request.hpp"
@@ -8,10 +8,10 @@ namespace catena::scene {
 struct ReadTip {
     Tip kind = Tip::free;
     TipJoint joint;
-    bool fixed = false;            // `tip: fixed`
+    bool bare = false;             // `tip: fixed`, `tip: ring`
     Node const* planar = nullptr;  // a joint that is written `planar`
 };
-/// What the key says. InputError for rings ("not in this version") and for joints that are wrong in themselves.
+/// What the key says. InputError for joints that are wrong in themselves.
 ReadTip read_tip(Fields const& chain);
 
 /// Gives the finished chain its tip: checks that joint and chain go together and that the joint is closed at the start (1e-9 of the chain's

@@ -71,6 +71,8 @@ void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& d
     if (!draft.chain.is_beads())
         fail(at, fmt::format("the Fixman correction of chain `{}`, which is not of point beads alone", shown(draft.chain.name)),
              "leave it out: links between point beads alone have it");
+    if (draft.chain.is_ring())
+        fail(at, fmt::format("not in this version: the Fixman correction of the ring `{}`", shown(draft.chain.name)), "leave it out");
     if (!(dynamics.temperature > 0)) fail(at, "the Fixman correction without a temperature above 0", "add `temperature: 300`");
 }
 
@@ -80,15 +82,6 @@ void check_drag(Node const& root, Scene const& scene, Draft const& draft) {
     if (!draft.chain.is_beads() && !draft.chain.is_linked()) return;
     fail(*root.find("forces")->find("drag"), fmt::format("drag on chain `{}`, which has links", shown(draft.chain.name)),
          "leave it out: g-baoab has `friction`");
-}
-
-/// As scene/tip.cpp's refuse_flat_loop: full handles carry what a planar loop does not determine.
-void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
-    if (scene.solver.handles != Handles::full || draft.chain.tip != Tip::jointed) return;
-    if (draft.chain.is_beads() || draft.chain.is_linked() || handle_kind(draft.chain) != HandleKind::planar) return;
-    fail(*root.find("solver")->find("handles"),
-         fmt::format("full handles for chain `{}`, which turns in one plane and is held at both ends", shown(draft.chain.name)),
-         "use `handles: projected`");
 }
 
 void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
@@ -161,7 +154,6 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         check_drag(root, scene, draft);
         if (scene.dynamics.given) check_integrator(root, scene, draft);
         check_fixman(root, scene.dynamics, draft);
-        check_handles(root, scene, draft);
         check_thermal(root, scene.dynamics, draft);
     }
     check_temperature(root, scene.output, drafts);

@@ -113,8 +113,10 @@ TEST(Report, ErrorsAndTimesOfEveryBackendAndHandleKind) {
             EXPECT_GT(point.at("seconds").at("median").get<double>(), 0);
         }
     }
-    EXPECT_GT(json["studies"][0]["condition"].get<double>(), 1);  // 4 bodies
-    EXPECT_TRUE(json["studies"][1]["condition"].is_null());       // 1,000
+    EXPECT_GT(json["studies"][0]["condition"].get<double>(), 1);                               // 4 bodies
+    EXPECT_TRUE(json["studies"][1]["condition"].is_null());                                    // 1,000
+    EXPECT_EQ(json.at("left_out").size(), json.at("build").at("openmm") == "none" ? 3U : 2U);  // integrators of both scenes, by name
+    EXPECT_NE(json["left_out"][0].get<std::string>().find("arm.yaml: its drag or dampers"), std::string::npos) << json["left_out"][0];
     EXPECT_TRUE(std::filesystem::exists(folder / "report/report.html"));
     bool const drawn = e.out.find("drew ") != std::string::npos;  // a Python with matplotlib may be absent; then a line says what to do
     EXPECT_EQ(std::filesystem::exists(folder / "report/solver.png"), drawn);
@@ -133,6 +135,11 @@ TEST(Report, QuickComparesSolversIntegratorsAndForces) {
         for (Json const& curve : scene.at("curves")) EXPECT_NEAR(curve.at("slope").get<double>(), curve.at("order").get<double>(), 0.1);
     bool const openmm = json.at("build").at("openmm") != "none";
     EXPECT_EQ(json.contains("forces"), openmm);
+    for (Json const& study : json.value("forces", Json::array()))
+        for (Json const& point : study.at("points")) {
+            EXPECT_EQ(point.at("valid"), true) << point.dump();
+            EXPECT_LT(point.at("error_bound").get<double>(), 1e-3);
+        }
     EXPECT_EQ(json.at("left_out").empty(), openmm);
     std::ifstream file(folder / "r/report.html");
     std::string const page{std::istreambuf_iterator<char>(file), {}};

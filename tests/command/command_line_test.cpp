@@ -65,6 +65,12 @@ TEST(CommandLine, ReportTakesSeveralScenesOrNone) {
     auto const suite = std::get<ReportRequest>(parsed({"report", "--suite", "stability", "--quick"}));
     EXPECT_EQ(suite.suite, "stability");
     EXPECT_TRUE(suite.quick);
+    for (std::vector<char const*> const& option : std::vector<std::vector<char const*>>{
+             {"--set", "solver.threads=2"}, {"--repeat", "5"}, {"--threads", "2"}, {"--gpu-levels", "3"}}) {
+        std::vector<char const*> words{"report", "--suite", "stability"};
+        words.insert(words.end(), option.begin(), option.end());
+        EXPECT_TRUE(refusal(words).starts_with("both --suite and " + std::string(option.front()))) << refusal(words);
+    }
     EXPECT_EQ(refusal({"report", "--suite", "stabilty"}), "`stabilty` is not a value of --suite (command line): did you mean `stability`?");
 }
 
@@ -78,7 +84,7 @@ TEST(CommandLine, ACommandsNameIsNoSecondCommand) { EXPECT_EQ(std::get<CheckRequ
 
 TEST(CommandLine, LaterCommandsAndOptionsSaySo) {
     for (std::vector<char const*> const& words :
-         std::vector<std::vector<char const*>>{{"report", "--precision", "mixed"}, {"bench", "peers"}})
+         std::vector<std::vector<char const*>>{{"report", "--precision", "mixed"}, {"bench", "sweeps"}})
         EXPECT_TRUE(refusal(words).starts_with("not in this version: ")) << refusal(words);
 }
 

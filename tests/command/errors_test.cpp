@@ -13,7 +13,9 @@ TEST(Errors, TheCommandLine) {
     expect_refused(catena({"slove", "x.yaml"}), 2, "did you mean `solve`?");
     expect_refused(catena({"solve", input("arm.yaml"), "--bakend", "serial"}), 2, "did you mean `--backend`?");
     expect_refused(catena({"plan", input("arm.yaml"), "--ranks", "4"}), 2, "--ranks without --network");
-    expect_refused(catena({"bench", "peers"}), 2, "not in this version: catena bench peers");
+    expect_refused(catena({"bench", "sweeps"}), 2, "not in this version: catena bench sweeps");
+    expect_refused(catena({"bench", "peers", "--joints", "helical"}), 2, "use link, spherical, revolute or planar");
+    expect_refused(catena({"bench", "peers", "--sizes", "2e6"}), 2, "take 1e6 at most");
 }
 
 TEST(Errors, AGpuThatIsNotThere) {

@@ -14,7 +14,7 @@ TEST(Help, EveryCommandExplainsItselfWithExamples) {
         EXPECT_NE(one.out.find("Usage: catena " + command), std::string::npos) << one.out;
         EXPECT_NE(one.out.find("Examples:\n  "), std::string::npos) << one.out;
         for (std::string const option :
-             {"--backend", "--handles", "--threads", "--gpu-levels", "--set", "--json", "--quiet", "--log-level"})
+             {"--backend", "--handles", "--threads", "--simd", "--gpu-levels", "--set", "--json", "--quiet", "--log-level"})
             EXPECT_NE(one.out.find(option), std::string::npos) << command << " " << option;
     }
 }

@@ -29,6 +29,7 @@ TEST(Solve, JsonHoldsWhatTheContractNames) {
                                   "backend",
                                   "ranks",
                                   "threads",
+                                  "simd",
                                   "gpu_levels",
                                   "handles",
                                   "seconds",
@@ -83,7 +84,12 @@ TEST(Solve, RefinementKeepsTheAnswerAndSaysWhatItTook) {
     EXPECT_GT(refined["refinement"]["seconds_of_each"][0].get<double>(), 0);
     EXPECT_LE(refined["residual"].get<double>(), refined["residual_bound"].get<double>());
     EXPECT_NEAR(refined["joint_accelerations"][0].get<double>(), plain["joint_accelerations"][0].get<double>(), 1e-10);
+    Json const by_scene = solved({input("arm.yaml"), "--set", "solver.refine=2"});
+    EXPECT_EQ(by_scene["joint_accelerations"], refined["joint_accelerations"]);
+    Json const overridden = solved({input("arm.yaml"), "--set", "solver.refine=2", "--refine", "0"});
+    EXPECT_EQ(overridden["joint_accelerations"], plain["joint_accelerations"]);
     expect_refused(catena({"solve", input("arm.yaml"), "--refine", "11"}), 2, "--refine");
+    expect_refused(catena({"solve", input("random-link.yaml"), "--refine", "1"}), 2, "are not refined (solver.refine): leave it out");
 }
 
 TEST(Solve, AFreeBaseHasTwoAccelerations) {

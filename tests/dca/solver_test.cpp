@@ -134,13 +134,9 @@ TEST_P(Solver, RandomChainsAgreeWithTheArticulatedBodyAlgorithm) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         // The plane holds both ends of a planar chain too; a chain that cannot turn is held twice by a tip that keeps it from turning.
         bool const planar = options.joints == RandomJoints::planar && options.base == Base::fixed;
-        bool const held_twice = options.tip && planar;
         bool const stiff =
             options.tip && options.joints == RandomJoints::prismatic && options.base == Base::fixed && *options.tip != JointType::spherical;
-        if (stiff || (held_twice && (GetParam().handles == Handles::full || !chain.bodies.driven.empty()))) {
-            EXPECT_THROW(compare(scene_of(chain, loads.gravity), chain, loads, *communicator_), ComputationError);
-            continue;
-        }
+        bool const held_twice = stiff || (options.tip && planar);
         Compared c;
         ASSERT_NO_THROW(c = compare(scene_of(chain, loads.gravity), chain, loads, *communicator_));
         if (held_twice) {  // moving it out of its plane locks it: no growth to measure; and joint forces are not unique
@@ -185,7 +181,9 @@ TEST_P(Solver, ChainsOnLinksAgreeWithTheOracle) {
         std::size_t const n = 1 + seed * 7 % (bodies ? 64 : 300);
         Base const base = seed % 2 ? Base::free : Base::fixed;
         Tip const tip = seed % 3 == 0 && n > 2 ? Tip::jointed : Tip::free;
-        ChainSpec const chain = bodies ? random_linked_chain(seed, n, base, tip) : random_bead_chain(seed, n, base, tip);
+        ChainSpec chain = bodies ? random_linked_chain(seed, n, base, tip) : random_bead_chain(seed, n, base, tip);
+        bool const ring = base == Base::free && tip == Tip::free && n >= 3 && n <= (bodies ? 24 : 300);  // of bodies: by a dense solver
+        if (ring && seed % 5 == 0) chain = closed(chain);
         SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(n) + (bodies ? " bodies" : " beads"));
         compare_on_links(chain, scene_of(chain, {{1.0, 2.0, -3.0}}), *communicator_);
         if (HasFailure()) break;

@@ -2,102 +2,188 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace catena::dca {
 namespace {
 
 class Stages : public ::testing::TestWithParam<std::vector<std::int64_t>> {};
 
-/// Walks the stages as a device does and notes who made each slot when.
+/// Climbs and descends the stages as a device does. A segment is the joints at its ends, a force the joint that it belongs to.
 class Walk {
   public:
-    Walk(Schedule const& s, StagePlan plan) : runs_(s.runs), plan_(std::move(plan)), made_(static_cast<std::size_t>(s.slots)) {
-        for (auto const& level : s.levels) merges_.insert(merges_.end(), level.begin(), level.end());
+    Walk(Schedule const& s, std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
+         StageSizes const& sizes)
+        : runs_(runs),
+          sizes_(sizes),
+          plan_(plan_stages(runs, levels, roots, s.slots, sizes)),
+          segment_(index(s.slots)),
+          around_(index(s.joints)),
+          inner_(index(s.joints), 0),
+          known_(index(s.joints), 0) {
+        std::size_t merges = 0;
+        for (auto const& level : levels)
+            for (Merge const& m : level) {
+                inner_[index(m.joint)] = 1;
+                around_[index(m.joint)] = {m.first, m.next};
+                ++merges;
+                if (runs.empty()) {  // what other ranks or trees made
+                    if (segment_[index(m.inboard)].first < 0) segment_[index(m.inboard)] = {m.first, m.joint};
+                    if (segment_[index(m.outboard)].first < 0) segment_[index(m.outboard)] = {m.joint, m.next};
+                    segment_[index(m.slot)] = {};
+                }
+            }
         if (plan_.runs_apart)
-            for (Run const& run : runs_) make(run.slot, {-1, 0, 0});
-        for (int i = 0; i < static_cast<int>(plan_.stages.size()); ++i)
-            for (int b = 0; b < plan_.stages[static_cast<std::size_t>(i)].blocks(); ++b) do_block(i, b);
-        EXPECT_EQ(done_, runs_.size() + merges_.size());
-        EXPECT_EQ(closed_, s.roots.size());
-        EXPECT_LE(plan_.stages.size(), 2U);
+            for (Run const& run : runs) segment_[index(run.slot)] = {run.body, run.next};
+        for (Stage const& stage : plan_.stages)
+            for (std::int64_t b = 0; b < stage.blocks(); ++b) climb(stage, index(b));
+        EXPECT_EQ(merged_, merges);
+        EXPECT_EQ(closed_, roots.size());
+        for (std::size_t i = plan_.stages.size(); i-- > 0;)
+            for (std::int64_t b = 0; b < plan_.stages[i].blocks(); ++b) descend(plan_.stages[i], index(b));
+        EXPECT_EQ(parted_, merges);
+        std::int64_t made = 0;
+        for (std::size_t j = 0; j < inner_.size(); ++j) made += inner_[j] && known_[j];
+        EXPECT_EQ(made, static_cast<std::int64_t>(merges));
+        for (SharedUnit const& unit : s.shared)
+            EXPECT_TRUE(runs.empty() || unit.source < 0 || segment_[index(unit.source)].first >= 0) << "not there for other ranks";
+        for (Stage const& stage : plan_.stages) {
+            EXPECT_LE(stage.width, sizes.most);
+            EXPECT_LE(stage.forces, 2 * stage.width);
+        }
     }
 
   private:
-    struct Made {
-        int stage = -2, block = -1, level = -1;
+    struct Ends {
+        std::int64_t first = -1, next = -1;
     };
-    void do_block(int i, int b) {
-        Stage const& stage = plan_.stages[static_cast<std::size_t>(i)];
-        auto const block = static_cast<std::size_t>(b);
-        if (!stage.run.empty())
-            for (std::int64_t r = stage.run[block].begin; r < stage.run[block].end; ++r) make(runs_[r].slot, {i, b, -1});
-        for (int l = 0; l < stage.levels; ++l) {
-            Range const range = stage.merge[block * static_cast<std::size_t>(stage.levels) + static_cast<std::size_t>(l)];
-            for (std::int64_t m = range.begin; m < range.end; ++m) {
-                Made const now{i, b, l};
-                EXPECT_TRUE(ready(merges_[m].inboard, now) && ready(merges_[m].outboard, now)) << "stage " << i << ", level " << l;
-                make(merges_[m].slot, now);
-            }
-        }
-        for (std::int64_t r = stage.root[block].begin; r < stage.root[block].end; ++r) {
-            EXPECT_TRUE(ready(plan_.roots[static_cast<std::size_t>(r)].slot, {i, b, stage.levels}));
+    static std::size_t index(std::int64_t i) { return static_cast<std::size_t>(i); }
+    template <class Action>
+    static void each(Range const& range, Action const& action) {
+        for (std::int64_t i = range.begin; i < range.end; ++i) action(index(i));
+    }
+    Ends item(Stage const& stage, std::size_t i) const {
+        if (!stage.of_runs) return segment_[index(stage.items[i].slot)];
+        EXPECT_EQ(runs_[i].slot, stage.items[i].slot);
+        return {runs_[i].body, runs_[i].next};
+    }
+
+    void climb(Stage const& stage, std::size_t b) {
+        std::size_t const begin = index(stage.item[b].begin);
+        std::vector<Ends> own(index(stage.width));
+        each(stage.item[b], [&](std::size_t i) {
+            own.at(i - begin) = item(stage, i);
+            EXPECT_EQ(own.at(i - begin).first, stage.items[i].joint);
+        });
+        for (int l = 0; l < stage.levels; ++l)
+            each(stage.merge[b * index(stage.levels) + index(l)], [&](std::size_t i) {
+                StageMerge const& m = stage.merges[i];
+                Ends &inboard = own.at(index(m.inboard)), &outboard = own.at(index(m.outboard));
+                EXPECT_GE(inboard.first, 0);
+                EXPECT_EQ(inboard.next, m.joint);
+                EXPECT_EQ(outboard.first, m.joint);
+                inboard.next = outboard.next;
+                outboard = {};
+                ++merged_;
+            });
+        each(stage.up[b], [&](std::size_t i) {
+            Handed const& up = stage.segments_up[i];
+            EXPECT_TRUE(plan_.runs_apart || runs_.empty() || segment_[index(up.at)].first == -1) << "made twice";
+            segment_[index(up.at)] = own.at(index(up.place));
+            EXPECT_GE(segment_[index(up.at)].first, 0);
+        });
+        each(stage.root[b], [&](std::size_t i) {
+            StageRoot const& closed = stage.roots[i];
+            EXPECT_EQ(own.at(index(closed.place)).first, closed.root.first);
+            EXPECT_EQ(own.at(index(closed.place)).next, closed.root.next);
             ++closed_;
-        }
+        });
     }
-    void make(std::int64_t slot, Made const& by) {
-        EXPECT_EQ(made_[static_cast<std::size_t>(slot)].stage, -2) << "made twice";
-        made_[static_cast<std::size_t>(slot)] = by;
-        ++done_;
-    }
-    bool ready(std::int64_t slot, Made const& now) const {
-        Made const& m = made_[static_cast<std::size_t>(slot)];
-        return m.stage >= -1 && (m.stage < now.stage || (m.block == now.block && m.level < now.level));
+    void descend(Stage const& stage, std::size_t b) {
+        std::size_t const begin = index(stage.item[b].begin);
+        std::vector<std::int64_t> own(index(stage.forces), -1);
+        each(stage.down[b], [&](std::size_t i) {
+            Handed const& down = stage.forces_down[i];
+            EXPECT_TRUE(!inner_[index(down.at)] || known_[index(down.at)]) << "nobody has found the force at " << down.at;
+            own.at(index(down.place)) = down.at;
+        });
+        for (int l = stage.levels; l-- > 0;)
+            each(stage.merge[b * index(stage.levels) + index(l)], [&](std::size_t i) {
+                StageMerge const& m = stage.merges[i];
+                Ends const around = around_[index(m.joint)];
+                EXPECT_EQ(own.at(index(m.inboard)), around.first) << "joint " << m.joint;
+                EXPECT_EQ(own.at(index(m.next)), around.next) << "joint " << m.joint;
+                EXPECT_EQ(own.at(index(m.outboard)), -1) << "at joint " << m.joint;
+                own.at(index(m.outboard)) = m.joint;
+                ++parted_;
+            });
+        each(stage.item[b], [&](std::size_t i) {
+            EXPECT_EQ(own.at(i - begin), stage.items[i].joint);
+            EXPECT_TRUE(!stage.of_runs || own.at(index(stage.items[i].next)) == runs_[i].next);
+            if (stage.items[i].given) return;  // others may read it meanwhile
+            EXPECT_TRUE(stage.of_runs || !known_[index(stage.items[i].joint)]) << "written twice";
+            known_[index(stage.items[i].joint)] = 1;
+        });
     }
 
     std::vector<Run> const& runs_;
+    StageSizes sizes_;
     StagePlan plan_;
-    std::vector<Merge> merges_;
-    std::vector<Made> made_;
-    std::size_t done_ = 0, closed_ = 0;
+    std::vector<Ends> segment_, around_;       // by slot; of the segment that is joined at a joint
+    std::vector<std::uint8_t> inner_, known_;  // by joint: whether a merge finds its force; whether it has
+    std::size_t merged_ = 0, parted_ = 0, closed_ = 0;
 };
 
 TEST_P(Stages, EveryItemIsDoneOnceAndAfterWhatItNeeds) {
-    for (int const ranks : {1, 2, 3, 5})
-        for (bool const pairwise : {false, true})
-            for (std::int64_t const threads : {1, 4, 128}) {
+    std::vector<StageSizes> const all_sizes = {
+        {1, 2, 0}, {4, 8, 2}, stage_sizes(1, 232448, 8), stage_sizes(3, 101376, 0), stage_sizes(6, 232448, 8)};
+    bool const large = *std::max_element(GetParam().begin(), GetParam().end()) > 100000;
+    for (int const ranks : large ? std::vector<int>{1, 3} : std::vector<int>{1, 2, 3, 5})
+        for (bool const pairwise : large ? std::vector<bool>{false} : std::vector<bool>{false, true})
+            for (StageSizes const& sizes : all_sizes) {
                 Partition const partition(GetParam(), pairwise, ranks);
                 for (int rank = 0; rank < ranks; ++rank) {
-                    SCOPED_TRACE(testing::Message()
-                                 << "rank " << rank << " of " << ranks << ", threads " << threads << ", pairwise " << pairwise);
+                    SCOPED_TRACE(testing::Message() << "rank " << rank << " of " << ranks << ", threads " << sizes.threads << ", at most "
+                                                    << sizes.most << ", pairwise " << pairwise);
                     Schedule const s = make_schedule(partition, rank);
-                    Walk(s, plan_stages(s.runs, s.levels, s.roots, s.slots, threads));
+                    Walk(s, s.runs, s.levels, s.roots, sizes);
+                    Walk(s, {}, s.top_levels, s.top_roots, sizes);
                     if (HasFailure()) return;
                 }
             }
 }
-TEST_P(Stages, BlocksHoldWholeChains) {
-    for (std::int64_t const width : {1, 40}) {
-        std::vector<std::int64_t> const& lengths = GetParam();
-        Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
-        std::vector<std::int64_t> last;
-        for (std::int64_t const n : lengths) last.push_back((last.empty() ? -1 : last.back()) + n);
-        BlockPlan const plan = plan_blocks(s, last, width);
-        StagePlan walked;
-        walked.stages = {plan.stage};
-        walked.roots = plan.roots;
-        Walk(s, walked);
-        Range before{0, 0}, tips{0, 0};
-        for (std::size_t b = 0; b < plan.body.size(); ++b) {
-            Range const body = plan.body[b], tip = plan.tip[b], run = plan.stage.run[b];
-            EXPECT_EQ(body.begin, before.end);
-            EXPECT_EQ(tip.begin, tips.end);
-            EXPECT_GT(tip.end, tip.begin);
-            EXPECT_EQ(last[static_cast<std::size_t>(tip.end - 1)], body.end - 1) << "a block ends within a chain";
-            EXPECT_TRUE(run.end - run.begin <= width || tip.end - tip.begin == 1) << "too many chains in a block";
-            before = body;
-            tips = tip;
+TEST_P(Stages, BlocksHoldAChainEach) {
+    std::vector<std::int64_t> const& lengths = GetParam();
+    Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
+    std::vector<std::int64_t> last;
+    for (std::int64_t const n : lengths) last.push_back((last.empty() ? -1 : last.back()) + n);
+    BlockPlan const plan = plan_blocks(s, last);
+    ASSERT_EQ(plan.blocks(), std::ssize(lengths));
+    std::int64_t runs = 0, merges = 0;
+    for (std::size_t b = 0; b < plan.body.size(); ++b) {
+        Range const body = plan.body[b], run = plan.run[b];
+        EXPECT_EQ(body.begin, b == 0 ? 0 : plan.body[b - 1].end);
+        EXPECT_EQ(body.end - 1, last[b]);
+        EXPECT_EQ(plan.tip[b].begin, static_cast<std::int64_t>(b));
+        EXPECT_EQ(plan.tip[b].end, static_cast<std::int64_t>(b) + 1);
+        EXPECT_EQ(s.roots[static_cast<std::size_t>(plan.root[b].begin)].first, body.begin);
+        EXPECT_EQ(s.runs[static_cast<std::size_t>(run.begin)].body, body.begin);
+        EXPECT_EQ(s.runs[static_cast<std::size_t>(run.end - 1)].body + s.runs[static_cast<std::size_t>(run.end - 1)].count, body.end);
+        runs += run.end - run.begin;
+        std::int64_t offset = 0;
+        for (int l = 0; l < plan.levels; ++l) {
+            auto const& level = s.levels[static_cast<std::size_t>(l)];
+            Range const range = plan.merge[b * static_cast<std::size_t>(plan.levels) + static_cast<std::size_t>(l)];
+            for (std::int64_t i = range.begin; i < range.end; ++i) {
+                std::int64_t const joint = level.at(static_cast<std::size_t>(i - offset)).joint;
+                EXPECT_TRUE(joint > body.begin && joint < body.end);
+            }
+            merges += range.end - range.begin;
+            offset += std::ssize(level);
         }
-        EXPECT_EQ(before.end, s.bodies);
     }
+    EXPECT_EQ(runs, std::ssize(s.runs));
+    EXPECT_EQ(merges, std::ssize(s.runs) - std::ssize(lengths));
 }
 std::vector<std::int64_t> with_short_ones(std::int64_t bodies, std::int64_t of_short) {
     std::vector<std::int64_t> lengths(501, of_short);
@@ -110,15 +196,23 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Stages,
                                            std::vector<std::int64_t>{7, 300, 2, 1000}, std::vector<std::int64_t>(3000, 140),
                                            with_short_ones(4128, 8), with_short_ones(300000, 16)));
 
-TEST(Stages, SmallChainsNeedOneLaunch) {
-    auto const plan = [](std::vector<std::int64_t> const& lengths) {
+TEST(Stages, OneLaunchForSmallChainsAndFiveForAny) {
+    /// Launches of a sweep up and down, on a GPU with clusters.
+    auto const launches = [](std::vector<std::int64_t> const& lengths, int directions) {
+        StageSizes const sizes = stage_sizes(directions, 232448, 8);
         Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
-        return plan_stages(s.runs, s.levels, s.roots, s.slots, 128);
+        StagePlan const plan = plan_stages(s.runs, s.levels, s.roots, s.slots, sizes);
+        bool const together = plan.stages.size() > 1 && plan.stages[plan.stages.size() - 2].blocks() <= sizes.together;
+        return 2 * (std::ssize(plan.stages) - (together ? 2 : 1) + (plan.runs_apart ? 1 : 0)) + 1;
     };
-    EXPECT_EQ(plan({2048}).stages.size(), 1U);
-    EXPECT_FALSE(plan({2048}).runs_apart);
-    EXPECT_EQ(plan(std::vector<std::int64_t>(100, 140)).stages.size(), 1U);
-    EXPECT_TRUE(plan({1 << 20}).runs_apart);
+    for (int const directions : {1, 3}) {
+        EXPECT_EQ(launches({1}, directions), 1);
+        EXPECT_EQ(launches({8192}, directions), 1);
+        EXPECT_EQ(launches(std::vector<std::int64_t>(100, 140), directions), 1);
+        EXPECT_LE(launches({1 << 20}, directions), 5);
+        EXPECT_LE(launches({1 << 24}, directions), 5);
+    }
+    EXPECT_EQ(launches({4096}, 6), 1);
 }
 
 }  // namespace

@@ -56,6 +56,12 @@ Scene free_beads() {
         "chains: [{name: a, count: 3, base: free, velocities: thermal, generator: {freely_jointed: {beads: 100, length: 0.38}}}]\n"
         "dynamics: {integrator: rattle, step: 0.001, temperature: 300}");
 }
+Scene ring_of_beads() { return scene_of({closed(random_bead_chain(3, 150, Base::free))}); }
+Scene ring_of_domains() { return scene_of({closed(random_linked_chain(4, 60, Base::free))}); }
+Scene ring_of_bodies() {
+    return scene_of({random_chain(
+        5, {.bodies = 50, .joints = RandomJoints::spherical, .base = Base::free, .tip = JointType::spherical, .ring = true})});
+}
 /// More chains than a GPU has multiprocessors, several in a block of threads, with parts of every length.
 Scene many_beads() {
     std::string chains;
@@ -175,7 +181,9 @@ INSTANTIATE_TEST_SUITE_P(
                       AbsoluteScene{"longer_beads", longer_beads}, AbsoluteScene{"free_bodies", free_bodies},
                       AbsoluteScene{"hanging_bodies_full", hanging_bodies, Handles::full}, AbsoluteScene{"held_bodies", held_bodies},
                       AbsoluteScene{"carrying_bodies", carrying_bodies}, AbsoluteScene{"free_domains", free_domains},
-                      AbsoluteScene{"hanging_domains_full", hanging_domains, Handles::full}, AbsoluteScene{"held_domains", held_domains}),
+                      AbsoluteScene{"hanging_domains_full", hanging_domains, Handles::full}, AbsoluteScene{"held_domains", held_domains},
+                      AbsoluteScene{"ring_of_beads", ring_of_beads}, AbsoluteScene{"ring_of_domains", ring_of_domains},
+                      AbsoluteScene{"ring_of_bodies_full", ring_of_bodies, Handles::full}),
     name_of_scene);
 
 class GpuConstrained : public ::testing::TestWithParam<AbsoluteScene> {
@@ -242,7 +250,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GpuConstrained,
                                            AbsoluteScene{"held_bodies", held_bodies}, AbsoluteScene{"carrying_bodies", carrying_bodies},
                                            AbsoluteScene{"free_domains", free_domains}, AbsoluteScene{"hanging_domains", hanging_domains},
                                            AbsoluteScene{"held_domains", held_domains},
-                                           AbsoluteScene{"held_domains_full", held_domains, Handles::full}),
+                                           AbsoluteScene{"held_domains_full", held_domains, Handles::full},
+                                           AbsoluteScene{"ring_of_beads", ring_of_beads}, AbsoluteScene{"ring_of_domains", ring_of_domains},
+                                           AbsoluteScene{"ring_of_bodies", ring_of_bodies}),
                          name_of_scene);
 
 }  // namespace

@@ -93,6 +93,39 @@ TEST_F(GpuJoints, LoadsDrivesAndTips) {
         }
 }
 
+/// Closed on themselves by every joint; planar ones are held more than once.
+TEST_F(GpuJoints, Rings) {
+    using enum JointType;
+    std::uint64_t seed = 200;
+    for (RandomJoints const joints : {RandomJoints::spherical, RandomJoints::universal, RandomJoints::planar, RandomJoints::any})
+        for (JointType const closing : {spherical, revolute, universal, weld, prismatic, helical}) {
+            SCOPED_TRACE("seed " + std::to_string(++seed));
+            expect_same(scene_of(
+                {random_chain(seed, {.bodies = 40, .joints = joints, .base = Base::free, .springs = true, .tip = closing, .ring = true})}));
+            if (HasFailure()) return;
+        }
+}
+
+/// A plasmid's worth of rods, solved once.
+TEST_F(GpuJoints, ALongRing) {
+    Scene scene = parse_scene(
+        "units: si\nchains: [{base: free, generator: {polygon: {bodies: 1e5, joint: spherical, spin: [1e-6, 2e-6, 1e-6]}}, tip: {ring: "
+        "{type: "
+        "spherical, translation: [1, 0, 0]}}}]\nforces: {gravity: [0, 0, -9.81]}",
+        "scene.yaml");
+    std::vector<Vec3> found[2];
+    for (Backend const backend : {Backend::cuda, Backend::segments}) {
+        scene.solver.backend = backend;
+        ChainSystem system(scene, Axes::joint, *communicator_);
+        system.close_tips();
+        system.evaluate();
+        EXPECT_LE(system.residual(), system.residual_bound());
+        found[backend == Backend::cuda] = system.accelerations().acceleration;
+    }
+    for (std::size_t k = 0; k < found[0].size(); ++k)
+        for (int i = 0; i < 3; ++i) ASSERT_EQ(found[0][k][i], found[1][k][i]) << k;
+}
+
 /// Forces on carried beads, as OpenMM's come, one evaluation after the other.
 TEST_F(GpuJoints, CarriedBeads) {
     ASSERT_EQ(cuda::choose_device(*communicator_), "");

@@ -26,13 +26,13 @@ std::string const boxes[] = {"{periodic: [40, 14, 14]}", "none"};
 class OpenMmRuns : public WholeRun {
   protected:
     nlohmann::json run_with(Communicator const& communicator, std::string const& name, std::string const& openmm, std::int64_t steps,
-                            std::string const& restart = "") {
+                            std::string const& restart = "", std::vector<std::string> const& overrides = {}) {
         RunOptions options;
         options.output = folder_ + "/" + name;
         options.steps = steps;
         options.restart = restart.empty() ? "" : folder_ + "/" + restart;
         options.quiet = true;
-        return run_simulation(parse_scene(scene_with(GetParam().text, openmm), "scene.yaml"), communicator, options);
+        return run_simulation(parse_scene(scene_with(GetParam().text, openmm), "scene.yaml", overrides), communicator, options);
     }
     Communicator const& world_ = catena::testing::world();
 };
@@ -62,6 +62,16 @@ TEST_P(OpenMmRuns, WithGhostsARestartIsTheUndisturbedRun) {
     std::int64_t own = 0;
     for (auto const& beads : ghosts.at("own_beads")) own += beads.get<std::int64_t>();
     EXPECT_EQ(own, 9 * 12 + 51);
+}
+
+TEST_P(OpenMmRuns, ARestartOnAnotherPlatformSaysSo) {
+    run_with(world_, "parts", "threads: 1", 10);
+    auto const same = run_with(world_, "parts", "threads: 1", 20, "parts/checkpoint.h5");
+    auto const other = run_with(world_, "parts", "threads: 1", 30, "parts/checkpoint.h5", {"forces.openmm.platform=CPU"});
+    if (world_.rank() != 0) return;
+    EXPECT_TRUE(same.at("notes").empty()) << same.at("notes");
+    ASSERT_EQ(other.at("notes").size(), 1U);
+    EXPECT_NE(other["notes"][0].get<std::string>().find("made on OpenMM's platform Reference, this run goes on on CPU"), std::string::npos);
 }
 
 /// Forces differ by rounding, which 20 steps leave small.

@@ -57,6 +57,21 @@ inline RunScene const run_scenes[] = {
      "{bodies: 40, joint: spherical, seed: 3}}}]\n"
      "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10, "
      "joint_forces: true}\n"},
+    {"rattle_rings",
+     "chains: [{name: a, base: free, velocities: thermal, generator: {polygon: {bodies: 60, joint: spherical, mass: 10}}, tip: {ring: "
+     "{type: "
+     "spherical, translation: [1, 0, 0]}}}, {name: b, velocities: thermal, generator: {polygon: {bodies: 150, joint: link, mass: 10}}, "
+     "tip: ring}]\n"
+     "dynamics: {integrator: rattle, step: 0.002, steps: 20, temperature: 300, seed: 5}\noutput: {every: 5, checkpoint_every: 10, "
+     "joint_forces: true}\n"},
+    {"langevin_ring",
+     "chains: [{name: a, velocities: thermal, generator: {polygon: {bodies: 90, joint: link, length: 0.38, mass: 50}}, tip: ring}]\n"
+     "dynamics: {integrator: g-baoab, step: 0.002, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"rk4_rings",
+     "chains: [{name: a, base: free, generator: {polygon: {bodies: 60, joint: spherical, spin: [1, 2, 3]}}, tip: {ring: {type: spherical, "
+     "translation: [1, 0, 0]}}}, {name: b, base: free, generator: {polygon: {bodies: 7, joint: revolute, spin: [1, 2, 3]}}, tip: {ring: "
+     "{type: revolute, axis: [0, 0, 1], translation: [1, 0, 0]}}}]\n"
+     "dynamics: {integrator: rk4, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10, joint_forces: true}\n"},
     {"langevin_linked",
      "chains: [{name: a, velocities: thermal, generator: {random: {bodies: 60, joint: link, rigid: 0.5, seed: 8}}}, {name: b, base: fixed, "
      "velocities: "

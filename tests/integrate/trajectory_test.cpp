@@ -1,4 +1,6 @@
 // The same run on all ranks together and on rank 0 alone ends in the same bits, and can be restarted on either.
+#include <cmath>
+
 #include "tests/integrate/whole_run.hpp"
 
 namespace catena::test {
@@ -26,6 +28,31 @@ TEST_P(Trajectory, IsTheSameOnOneRankAndOnAll) {
     for (char const* const name : {"one-then-all", "half"}) EXPECT_EQ(arrays(name), arrays("one")) << name;
 }
 
+/// Thin, tilted bodies between thick ones, whose solutions lose digits: refined or not, bits differ, and positions only by those digits.
+RunScene const refined{
+    "refined",
+    "units: si\nforces: {gravity: [0, -3, -5]}\n"
+    "chains: [{base: fixed, generator: {random: {bodies: 70, joint: revolute, seed: 3, inertia: {log_uniform: [1e-6, 1e-1]}}}}]\n"
+    "dynamics: {integrator: velocity-verlet, step: 0.0001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"
+    "solver: {refine: 2}\n"};
+
+using Refined = WholeRun;
+
+TEST_P(Refined, HasAnEffectOnARun) {
+    Communicator const& world = catena::testing::world();
+    run(world, "refined", 20);
+    RunOptions options;
+    options.output = folder_ + "/plain";
+    options.quiet = true;
+    run_simulation(parse_scene(GetParam().text, "scene.yaml", {"solver.refine=0"}), world, options);
+    if (world.rank() != 0) return;
+    auto const with = arrays("refined").at("qd"), without = arrays("plain").at("qd");
+    EXPECT_NE(with, without);
+    for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(with[i], without[i], 1e-6 * (1 + std::abs(without[i])));
+}
+
+INSTANTIATE_TEST_SUITE_P(Solver, Refined, ::testing::Values(refined), [](auto const& scene) { return scene.param.name; });
+INSTANTIATE_TEST_SUITE_P(Solver, Trajectory, ::testing::Values(refined), [](auto const& scene) { return scene.param.name; });
 INSTANTIATE_TEST_SUITE_P(Integrators, Trajectory, ::testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
 
 }  // namespace

@@ -36,6 +36,18 @@ TEST(Linked, SolversAgreeIn113Bits) { compare<Quad>(24, 6, true); }
 TEST(Linked, BeadsWithTipsAgree) { compare<double>(400, 20, false); }
 TEST(Linked, BeadsWithTipsAgreeIn113Bits) { compare<Quad>(24, 8, false); }
 
+std::optional<Case> ring_of_beads(std::uint64_t seed) {
+    std::size_t const n = 3 + seed % 18;
+    return Case{closed(random_bead_chain(seed, n, Base::free)), {Random(seed).vector(10), random_forces(seed, n)}};
+}
+TEST(Linked, RingsOfBeadsAgree) {
+    solvers_agree<double>(100, 16, ring_of_beads, [](Case const& c) {
+        auto const a = oracle::aba<double>(c.chain, c.loads).com_acceleration;
+        double const bound = 16 * static_cast<double>(c.chain.size()) * 0x1p-52 * growth(c.chain, c.loads);
+        ASSERT_LE(oracle::rnea_residual(c.chain, c.loads, a), bound);
+    });
+}
+
 /// Inverse dynamics accept the beads' accelerations, whatever holds their ends.
 TEST(Linked, BeadResidualWithTip) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -199,6 +199,58 @@ TEST_P(Tips, StayClosed) {
     EXPECT_GT(moving, 12);
 }
 
+/// A ring of ten joints of a kind or more, closed by the tested one; none where they move too little to be held once.
+std::optional<Case> random_ring(std::uint64_t seed, JointType closing) {
+    Random random(4'000'000 + seed);
+    RandomChainOptions options;
+    options.base = Base::free;
+    options.joints = kinds[seed % std::size(kinds)];
+    options.bodies = 10 + seed % 4;
+    options.springs = random.chance(0.5);
+    options.drag = random.chance(0.5);
+    options.driven = random.chance(0.3) ? 0.1 : 0;
+    options.tip = closing;
+    options.ring = true;
+    options.time = random.uniform(0, 3);
+    Case c{random_chain(seed, options), {random.vector(10), {}}};
+    c.loads.time = options.time;
+    bool const turns = options.joints != RandomJoints::prismatic && options.joints != RandomJoints::weld;
+    return turns && freedoms(c.chain) >= 12 ? std::optional<Case>(c) : std::nullopt;
+}
+
+TEST_P(Tips, RingsAgree) {
+    solvers_agree<double>(
+        80, 64, [](std::uint64_t seed) { return random_ring(seed, GetParam()); },
+        [](Case const& c) {
+            inverse_dynamics_agree(c, 64, std::max(growth(c.chain, c.loads), oracle::condition_estimate(c.chain, c.loads)));
+        });
+}
+
+/// What a ring's joint keeps: the first body, seen from the last.
+std::vector<double> kept_in_ring(ChainSpec const& chain, oracle::Loads const& loads) {
+    auto const k = oracle::kinematics<double>(chain, loads);
+    return kept(chain, loads, k.orientation.front(), k.origin.front());
+}
+
+TEST_P(Tips, RingsStayClosed) {
+    for (std::uint64_t seed = 0; seed < 24; ++seed) {
+        std::optional<Case> const made = random_ring(seed, GetParam());
+        if (!made) continue;
+        Case const& c = *made;
+        auto const a = oracle::aba<double>(c.chain, c.loads);
+        double const size = largest(a.com_acceleration) + largest(a.alpha);
+        auto const opening = [&](double h) {
+            oracle::Loads ahead = c.loads, behind = c.loads;
+            ahead.time += h, behind.time -= h;
+            return second_derivative(kept_in_ring(moved(c.chain, a, -h), behind), kept_in_ring(c.chain, c.loads),
+                                     kept_in_ring(moved(c.chain, a, h), ahead), h);
+        };
+        double const h = 2e-4, coarse = opening(h), fine = opening(h / 2), rounding = 64 * 0x1p-52 / (h * h / 4);
+        EXPECT_LT(coarse, 0.02 * (1 + size)) << seed;
+        EXPECT_LE(fine, coarse / 3 + rounding) << seed << ": " << coarse << ", " << fine << " do not fall like the step's square";
+    }
+}
+
 /// The tip's velocity is what its joint allows.
 TEST_P(Tips, ProjectedVelocitiesFit) {
     for (std::uint64_t seed = 0; seed < 32; ++seed) {

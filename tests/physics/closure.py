@@ -1,5 +1,6 @@
-"""Chains that end on the ground stay closed: the largest constraint error of long runs, joint coordinates (a planar linkage, and a chain
-of every joint kind) and absolute coordinates (a rope). Usage: closure.py [--quick] [--steps N]"""
+"""Chains that end on the ground, and rings, stay closed: the largest constraint error of long runs, joint coordinates (a planar linkage, a
+chain of every joint kind, a ring of rods) and absolute coordinates (a rope, rings of rods and of beads). Usage: closure.py [--quick]
+[--steps N]"""
 import sys
 
 from catena import ROOT, Runs, arguments, columns, verdict
@@ -8,11 +9,16 @@ MIXED = {"units": "si", "forces": {"gravity": [0, 0, -9.81]},
          "chains": [{"name": "chain", "base": "fixed", "generator": {"random": {"bodies": 12, "joint": "mixed", "seed": 2, "loads": False}},
                      "tip": {"joint": {"type": "spherical"}}}],
          "dynamics": {"integrator": "rk4", "step": 1e-4}}
+BEADS = {"units": "si", "chains": [{"name": "ring", "velocities": "thermal", "generator": {"polygon": {"bodies": 20, "joint": "link"}}, "tip": "ring"}],
+         "dynamics": {"integrator": "rattle", "step": 1e-3, "temperature": 1e22}}
 EPS = 2.0**-53
 # Scene, settings beside its own, bound. Joints are closed to rounding after every step: some ten bodies, each a few roundings of the chain's
 # length. RATTLE's sweeps stop at the scene's tolerance. The linkage stands still under its own gravity.
 CHAINS = {"four-bar": (ROOT + "/inputs/four-bar.yaml", {"forces.gravity": "[5, -9.81, 0]"}, 64 * EPS),
           "mixed": (MIXED, {}, 12 * 64 * EPS),
+          "ring": (ROOT + "/inputs/ring.yaml", {}, 12 * 64 * EPS),
+          "ring under RATTLE": (ROOT + "/inputs/ring.yaml", {"dynamics.integrator": "rattle", "dynamics.constraint_tolerance": 1e-14}, 1e-14),
+          "ring of beads": (BEADS, {"dynamics.constraint_tolerance": 1e-14}, 1e-14),
           "rope": (ROOT + "/inputs/rope.yaml", {"dynamics.constraint_tolerance": 1e-14}, 1e-14)}
 
 

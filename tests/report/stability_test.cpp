@@ -18,16 +18,18 @@ Solution layout_of(Scene const& scene) {
     return solution_of(system);
 }
 
-/// Beads on an arc between two fixed points give way by its square: halving the angle four times loses 2^8.
+/// Beads on an arc between two fixed points give way by its square: a thousandth of the angle loses a million times as much.
 TEST(Growth, OfABridgeGoesWithTheInverseSquareOfItsAngle) {
-    auto const growth = [](std::string const& name) {
+    Solution of_beads;  // without a solution: there is none where the arc is flat
+    for (std::int64_t i = 0; i <= 1000; ++i) of_beads.acceleration_offset.push_back(3 * i);
+    auto const growth = [&](std::string const& name) {
         for (StabilityCase const& each : stability_cases(16, false))
-            if (each.family == "bridge of beads" && each.name == name)
-                return exact_solution(each.scene(1), layout_of(each.scene(1)), 100, 3).growth;
+            if (each.family == "bridge of beads" && each.name == name) return exact_solution(each.scene(1), of_beads, 100, 3).growth;
         return 0.0;
     };
-    EXPECT_GT(growth("1e-2"), 1e6);
-    EXPECT_LT(growth("1e-2"), 1e9);
+    double const wide = growth("1e-2"), narrow = growth("1e-5");
+    EXPECT_GT(wide, 1);
+    EXPECT_NEAR(std::log10(narrow / wide), 6, 1);
 }
 
 /// One body on a hinge, no gravity: q'' = torque / inertia, in which a relative change of either is that of q''.
@@ -71,19 +73,19 @@ TEST(Stability, WhatHoldsAfterRefinementAloneIsSaidSo) {
     EXPECT_EQ(study.verdict(), Verdict::invalid);
 }
 
-/// The same case, its answers spoilt by more than its bound, must not pass.
-TEST(Stability, AnErrorAboveTheBoundIsInvalid) {
-    StabilityCase const good = stability_cases(16, true).front();
-    StabilityStudy const study = study_stability(good, {Backend::segments}, {Handles::projected}, 1);
-    EXPECT_EQ(study.verdict(), Verdict::valid);
-    double const spoilt = study.points[0].error + study.points[0].residual_bound * study.growth;
-    EXPECT_EQ(study_of(study.growth, 0.5, spoilt / (study.points[0].residual_bound * study.growth)).verdict(), Verdict::invalid);
-}
-
 StabilityCase case_of(std::string const& family, std::string const& name) {
     for (StabilityCase const& each : stability_cases(256, false))
         if (each.family == family && each.name == name) return each;
     throw std::runtime_error("no such case: " + family + ", " + name);
+}
+
+/// Thin, tilted bodies lose more digits than the bounds allow; what holds them VALID is refinement alone.
+TEST(Stability, MeasuredErrorsAboveTheirBoundAreInvalid) {
+    StabilityStudy study = study_stability(case_of("thin bodies, hinges", "1e8"), {Backend::segments}, {Handles::projected}, 1);
+    ASSERT_GT(std::max(study.points.at(0).of_residual_bound, study.points[0].of_bound), 1);
+    EXPECT_EQ(study.verdict(), Verdict::refined);
+    study.points[0].refined.clear();
+    EXPECT_EQ(study.verdict(), Verdict::invalid);
 }
 
 /// Nearly parallel hinges, light bodies between heavy ones, thin bodies: the equations of joint forces lose digits there that

@@ -112,7 +112,44 @@ TEST(BadTips, of_bodies) {
         refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: [1, 1, "
                    "1], joint: {type: spherical, translation: [1, 0, 0]}}], tip: {joint: {type: spherical, translation: [1, 0, 0]}}}]"),
         "the bridge from ground to ground is straight: nothing tells the forces in its joints apart" + at +
-            ", line 1): start from a bent chain of at least two bodies");
+            ", line 1): start from a bent chain");
+}
+
+TEST(BadTips, of_rings) {
+    auto const triangle = [](std::string const& chain, std::string const& last) {
+        std::string const body = "{mass: 1, com: [0.5, 0, 0], inertia: [1, 1, 1], joint: ",
+                          ball = "type: spherical, translation: [1, 0, 0]";
+        return "chains: [{" + chain + ", bodies: [" + body + "{type: free}}, " + body + "{" + ball +
+               ", q: [0.5, 0, 0, 0.8660254037844386]}}, " + body + "{" + ball + ", q: [0.5, 0, 0, 0.8660254037844386]}}], tip: " + last +
+               "}]";
+    };
+    std::string const at = " (s.yaml: chains[0].tip", free = "base: free";
+    EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: spherical, translation: [1, 0, 0]}}")), "accepted");
+    EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: revolute, axis: [0, 0, 1], translation: [1, 0, 0]}}")), "accepted");
+    EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: spherical, translation: [1, 0, 0.01]}}")),
+              "the ring is open at the start: the first body is 0.01 and 0 rad from where the last body's joint holds it" + at +
+                  ".ring, line 1): bring the bodies within 3e-09 and 1e-09 rad of it, or correct `translation` and `rotation`");
+    std::string const turned =
+        refusal_of(triangle(free, "{ring: {type: weld, translation: [1, 0, 0], rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}"));
+    EXPECT_NE(turned.find(" and 2.09 rad from where the last body's joint holds it"), std::string::npos) << turned;
+    EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: spherical}}")),
+              "key `translation` is missing" + at +
+                  ".ring, line 1): add `translation: [1, 0, 0], where the first body's origin is in the last body`");
+    EXPECT_EQ(
+        refusal_of(triangle(free, "{ring: {type: spherical, translation: [1, 0, 0], anchor: [0, 0, 0]}}")),
+        "key `anchor` means nothing for the joint that closes a ring" + at + ".ring.anchor, line 1): leave it out: the bodies say it");
+    EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: spherical, translation: [1, 0, 0]}, joint: {type: weld}}")),
+              "key `ring` beside `joint`" + at + ".ring, line 1): keep one of them");
+    EXPECT_EQ(refusal_of(triangle(free, "ring")), "`tip: ring` says nothing of the joint between the last body and the first" + at +
+                                                      ", line 1): write `tip: {ring: {type: spherical, translation: [x, y, z]}}`");
+    EXPECT_EQ(
+        refusal_of("chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}, {mass: 1, inertia: [1, 1, 1], "
+                   "joint: {type: spherical, translation: [1, 0, 0]}}], tip: {ring: {type: spherical, translation: [1, 0, 0]}}}]"),
+        "a ring on a fixed base" + at + ".ring, line 1): write `base: free`, or join the tip to the ground");
+    EXPECT_EQ(
+        refusal_of("chains: [{base: free, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: free}}], tip: {ring: {type: spherical, "
+                   "translation: [1, 0, 0]}}}]"),
+        "1 bodies do not make a ring" + at + ".ring, line 1): give it 2 or more");
 }
 
 TEST(BadTips, of_links) {
@@ -138,7 +175,7 @@ TEST(BadTips, of_links) {
     std::string const fixed = std::regex_replace(chain, std::regex("BASE"), "base: fixed, ");
     EXPECT_EQ(refusal_of(fixed + "{joint: {type: link, anchor: [4, 0, 0]}}}]"),
               "the bridge from ground to ground is straight: nothing tells the forces in its joints apart" + at +
-                  ", line 1): start from a bent chain of at least two bodies");
+                  ", line 1): start from a bent chain");
     EXPECT_EQ(refusal_of(fixed + "{joint: {type: link, anchor: [2, 1, 0]}}}]"), "accepted");
 }
 

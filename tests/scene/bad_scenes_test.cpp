@@ -54,10 +54,10 @@ chains: [{sequence: GGG, model: calvados2}])y",
     {"walk_of_negative_length", "chains: [{generator: {freely_jointed: {beads: 3, length: -1}}}]",
      "length -1 is not positive (s.yaml: chains[0].generator.freely_jointed.length, line 1): give a number above 0"},
     {"two_generators", "chains: [{generator: {freely_jointed: {beads: 3, length: 1}, pendulum: {links: 2}}}]",
-     "the chain has 2 generators (s.yaml: chains[0].generator, line 1): give one of `random`, `pendulum`, `coil`, `dill`, "
+     "the chain has 2 generators (s.yaml: chains[0].generator, line 1): give one of `random`, `pendulum`, `coil`, `dill`, `polygon`, "
      "`freely_jointed`, `worm_like`"},
     {"no_generator", "chains: [{generator: {}}]",
-     "the chain has 0 generators (s.yaml: chains[0].generator, line 1): give one of `random`, `pendulum`, `coil`, `dill`, "
+     "the chain has 0 generators (s.yaml: chains[0].generator, line 1): give one of `random`, `pendulum`, `coil`, `dill`, `polygon`, "
      "`freely_jointed`, `worm_like`"},
     {"unknown_generator", "chains: [{generator: {pendulm: {links: 3}}}]",
      "unknown key `pendulm` (s.yaml: chains[0].generator.pendulm, line 1): did you mean `pendulum`?"},
@@ -145,6 +145,9 @@ solver: {handles: 6x6})y",
     {"threads", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {threads: -1})y",
      "threads -1 is below 0 (s.yaml: solver.threads, line 2): give 0 or more"},
+    {"refine", R"y(chains: [{sequence: GGG, model: calvados2}]
+solver: {refine: -1})y",
+     "refine -1 is below 0 (s.yaml: solver.refine, line 2): give 0 or more"},
     {"gpu_levels", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {gpu_levels: most})y",
      "`most` is no number of levels (s.yaml: solver.gpu_levels, line 2): give `auto`, `all`, a number, or two as `UP,DOWN`"},
@@ -259,7 +262,6 @@ forces: {openmm: {builder: calvados2}})y",
 INSTANTIATE_TEST_SUITE_P(Together, Refused, testing::ValuesIn(together_cases), name_of_case);
 
 Refusal const later_cases[] = {
-    {"ring", "chains: [{sequence: GGG, model: calvados2, tip: ring}]", "not in this version: `tip: ring` (s.yaml: chains[0].tip, line 1)"},
     {"springs", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {springs: []})y",
      "not in this version: key `springs` (s.yaml: forces.springs, line 2)"},
@@ -269,9 +271,6 @@ forces: {torques: []})y",
     {"precision", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {precision: mixed})y",
      "not in this version: key `precision` (s.yaml: solver.precision, line 2)"},
-    {"refine", R"y(chains: [{sequence: GGG, model: calvados2}]
-solver: {refine: 1})y",
-     "not in this version: key `refine` (s.yaml: solver.refine, line 2)"},
     {"balance", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {balance: true})y",
      "not in this version: key `balance` (s.yaml: solver.balance, line 2)"},

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "dca/oracle/oracle.hpp"
+#include "scene/pose.hpp"
 
 namespace catena::test {
 namespace {
@@ -159,6 +160,18 @@ void join_to_ground(ChainSpec& chain, TipJoint const& tip, double time = 0) {
     chain.tip_joint = tip;
     oracle::project_velocities(chain, time);
 }
+/// The last body's joint frame stands where the first body is, but for the tip's coordinates.
+void join_to_first(ChainSpec& chain, TipJoint tip, double time) {
+    oracle::Loads loads;
+    loads.time = time;
+    auto const at = oracle::kinematics<double>(chain, loads);
+    scene::Pose const moved = scene::joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
+    Mat3 const to_last = transpose(at.orientation.back());
+    tip.ring = true;
+    tip.rotation = to_last * (at.orientation.front() * transpose(to_matrix(moved.orientation)));
+    tip.translation = to_last * (at.origin.front() - at.origin.back()) - tip.rotation * moved.origin;
+    join_to_ground(chain, tip, time);
+}
 /// Where a chain on links starts: at its random anchor if the base is fixed.
 Vec3 random_start(Random& random, Base base, Vec3& anchor) {
     anchor = random.vector(1);
@@ -212,7 +225,9 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
         b.free_velocity = options.moving ? random.vector(1) : Vec3::zero();
     }
     for (std::size_t k = 0; k < options.bodies && options.drag; ++k) b.drag.push_back({random.uniform(0, 1), random.uniform(0, 0.1)});
-    if (options.tip && options.bodies > 0) join_to_ground(chain, random_tip(random, options), options.time);
+    if (!options.tip || options.bodies == 0) return chain;
+    TipJoint const tip = random_tip(random, options);
+    options.ring ? join_to_first(chain, tip, options.time) : join_to_ground(chain, tip, options.time);
     return chain;
 }
 
@@ -264,6 +279,21 @@ ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base,
         join_to_ground(chain, random_tip_link(random, end));
     else
         oracle::project_velocities(chain);
+    return chain;
+}
+
+ChainSpec closed(ChainSpec chain) {
+    auto const end = [&](std::size_t k, Vec3 const& r) {
+        auto const& q = chain.linked.orientation[k];
+        return chain.linked.position[k] + to_matrix(Quat{q[0], q[1], q[2], q[3]}) * r;
+    };
+    std::size_t const last = chain.size() - 1;
+    TipJoint tip;
+    tip.ring = true;
+    tip.type = JointType::link;
+    tip.length = chain.is_beads() ? norm(chain.beads.position[0] - chain.beads.position[last])
+                                  : norm(end(0, chain.linked.inboard[0]) - end(last, chain.linked.outboard[last]));
+    join_to_ground(chain, tip);
     return chain;
 }
 

@@ -38,6 +38,7 @@ struct RandomChainOptions {
     bool drag = false;                            // of every body
     double driven = 0;                            // probability that a joint that can be driven is
     std::optional<JointType> tip = std::nullopt;  // type of the joint of the last body to ground; velocities are made to fit
+    bool ring = false;                            // that joint is to the first body instead; base: free
     double time = 0;                              // at which they are made to fit: decides the rates of driven joints
 };
 
@@ -49,6 +50,8 @@ ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options);
 ChainSpec random_bead_chain(std::uint64_t seed, std::size_t beads, Base base, Tip tip = Tip::free);
 /// Rigid bodies and beads mixed, on links of 0.2 .. 0.6; velocities keep the lengths to rounding. Ends as random_bead_chain's.
 ChainSpec random_linked_chain(std::uint64_t seed, std::size_t bodies, Base base, Tip tip = Tip::free);
+/// A free chain of links with its last body joined to its first by one more, as long as they are apart; velocities are made to fit.
+ChainSpec closed(ChainSpec chain);
 /// A torque and a force on each body.
 std::vector<std::pair<Vec3, Vec3>> random_wrenches(std::uint64_t seed, std::size_t bodies);
 /// A force on each bead.

@@ -26,7 +26,11 @@ std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
     auto const v = [&](std::size_t k) { return lift<S>(b.velocity[k]); };
     if (chain.base == Base::fixed) links[0] = bead_link(x(0) - lift<S>(b.anchor), v(0));
     for (std::size_t k = 1; k < b.size(); ++k) links[k] = bead_link(x(k) - x(k - 1), v(k) - v(k - 1));
-    if (chain.tip == Tip::jointed) links.push_back(bead_link(lift<S>(tip_anchor(chain)) - x(b.size() - 1), -v(b.size() - 1)));
+    std::size_t const last = b.size() - 1;
+    if (chain.is_ring())
+        links.push_back(bead_link(x(0) - x(last), v(0) - v(last)));
+    else if (chain.tip == Tip::jointed)
+        links.push_back(bead_link(lift<S>(tip_anchor(chain)) - x(last), -v(last)));
     return links;
 }
 

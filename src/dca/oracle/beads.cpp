@@ -50,14 +50,21 @@ OracleResult<S> open_chain(ChainSpec const& chain, std::vector<BeadLink<S>> cons
     return result;
 }
 
-/// How the last bead yields along u to a unit force along u.
+/// Acceleration of the last bead against what its tip's link joins it to.
+template <class S>
+V3<S> apart_at_tip(ChainSpec const& chain, OracleResult<S> const& r) {
+    return chain.is_ring() ? r.com_acceleration.back() - r.com_acceleration.front() : r.com_acceleration.back();
+}
+
+/// How the last bead yields along u to a unit force along u, in a ring with the opposite force on the first.
 template <class S>
 S tip_compliance(ChainSpec const& chain, std::vector<BeadLink<S>> links) {
     V3<S> const u = links.back().direction;
     for (BeadLink<S>& link : links) link.closure = S(0);
     std::vector<V3<S>> push(chain.size(), V3<S>::zero());
     push.back() = u;
-    S const yields = dot(u, open_chain(chain, links, push).com_acceleration.back());
+    if (chain.is_ring()) push.front() = -u;
+    S const yields = dot(u, apart_at_tip(chain, open_chain(chain, links, push)));
     if (!(yields > S(0)))
         throw ComputationError("the tip link has nothing to give (bead " + std::to_string(chain.size()) +
                                "): a chain stretched straight between its ends has no answer");
@@ -74,14 +81,16 @@ OracleResult<S> aba_beads(ChainSpec const& chain, Loads const& loads) {
     for (std::size_t k = 0; k < chain.size(); ++k) forces.push_back(bead_force<S>(chain, loads, k));
     OracleResult<S> result = open_chain(chain, links, forces);
     if (chain.tip != Tip::jointed) return result;
-    V3<S> const u = links.back().direction, applied = forces.back();
+    V3<S> const u = links.back().direction, applied = forces.back(), on_first = forces.front();
     S const yields = tip_compliance(chain, links);
     S lambda(0);
     for (int pass = 0; pass < 2; ++pass) {  // the second takes back the rounding of the first
-        lambda += (links.back().closure + dot(u, result.com_acceleration.back())) / yields;
+        lambda += (links.back().closure + dot(u, apart_at_tip(chain, result))) / yields;
         forces.back() = applied - lambda * u;
+        if (chain.is_ring()) forces.front() = on_first + lambda * u;
         result = open_chain(chain, links, forces);
     }
+    if (chain.is_ring()) result.tension.front() = -lambda;
     result.tip_force.force = -lambda * u;
     return result;
 }

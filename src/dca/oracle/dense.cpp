@@ -56,6 +56,7 @@ class Assembly {
         }
         if (tip_) {
             add_joint_end(bodies_.back(), tip_->arm, tip_joint_, S(-1), s);
+            if (tip_->ring) add_joint_end(bodies_.front(), tip_->first_arm, tip_joint_, S(1), s);
             add_closure(tip_joint_, s);
         }
         return s;
@@ -81,6 +82,7 @@ class Assembly {
             std::vector<S> components;
             for (std::size_t i = 0; i < tip_->locked.size(); ++i) components.push_back(x[tip_joint_.joint + static_cast<Index>(i)]);
             result.tip_force = tip_wrench(*tip_, components, tip_->frame);
+            if (tip_->ring) result.joint_force[0] = result.constraint_force[0] = wrench_on_first(*tip_, components, V3<S>::zero());
         }
         return result;
     }

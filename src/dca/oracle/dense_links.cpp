@@ -21,6 +21,7 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
         s.right[row] = link.closure;
         if (k < n) s.add_constraint(3 * k, row, S(1), link.direction);
         if (k > 0) s.add_constraint(3 * k - 3, row, S(-1), link.direction);
+        if (k == n && chain.is_ring()) s.add_constraint(0, row, S(1), link.direction);
     }
     Column<S> const x = solve(s);
     OracleResult<S> result;
@@ -29,6 +30,7 @@ OracleResult<S> dense_beads(ChainSpec const& chain, Loads const& loads) {
         result.tension.push_back(k < first ? S(0) : S(-x[3 * n + k - first]));
     }
     if (count > n) result.tip_force.force = -x[3 * n + n - first] * links.back().direction;
+    if (chain.is_ring()) result.tension.front() = -x[3 * n + n - first];
     return result;
 }
 
@@ -57,6 +59,7 @@ OracleResult<S> dense_linked(ChainSpec const& chain, Loads const& loads) {
         };
         if (k < n) add_end(k, 0, S(1));
         if (k > 0) add_end(k - 1, 1, S(-1));
+        if (k == n && chain.is_ring()) add_end(0, 0, S(1));
     }
     Column<S> const x = solve(s);
     OracleResult<S> result;
@@ -66,6 +69,7 @@ OracleResult<S> dense_linked(ChainSpec const& chain, Loads const& loads) {
         result.tension.push_back(k < first ? S(0) : S(-x[6 * n + k - first]));
     }
     if (count > n) result.tip_force.force = -x[6 * n + n - first] * model.links.back().direction;
+    if (chain.is_ring()) result.tension.front() = -x[6 * n + n - first];
     return result;
 }
 

@@ -38,8 +38,11 @@ class Inverse {
         return bodies;
     }
 
-    /// A wrench at the last body's centre of mass beside its own loads, W: a jointed tip's.
-    void push_last(SpatialForce<S> const& wrench) { pushed_ = wrench; }
+    /// Wrenches at the last and first bodies' centres of mass beside their own loads, W: a jointed tip's.
+    void push_ends(SpatialForce<S> const& last, SpatialForce<S> const& first) {
+        pushed_ = last;
+        pushed_first_ = first;
+    }
 
     /// Components in body k's axes of a vector given in W.
     V3<S> in_body(std::size_t k, V3<S> const& v) const { return transposed_times(attitude_[k].orientation, v); }
@@ -84,9 +87,9 @@ class Inverse {
         b.torque.add(cross(b.to_com, inertial));
         b.torque.add(-cross(b.to_com, weight + link.applied_force));
         b.torque.add(-link.applied_torque);
+        if (k == 0) add_push(b, pushed_first_);
         if (k + 1 == bodies.size()) {
-            b.force.add(-pushed_.force);
-            b.torque.add(-pushed_.torque - cross(b.to_com, pushed_.force));
+            add_push(b, pushed_);
             return;
         }
         InverseBody<S> const& next = bodies[k + 1];
@@ -95,10 +98,15 @@ class Inverse {
         b.torque.add(cross(next.from_inboard, next.force.sum));
     }
 
+    static void add_push(InverseBody<S>& b, SpatialForce<S> const& wrench) {
+        b.force.add(-wrench.force);
+        b.torque.add(-wrench.torque - cross(b.to_com, wrench.force));
+    }
+
     std::vector<Link<S>> const& links_;
     std::vector<Attitude<S>> attitude_;
     V3<S> gravity_;
-    SpatialForce<S> pushed_;
+    SpatialForce<S> pushed_, pushed_first_;
 };
 
 }  // namespace catena::oracle

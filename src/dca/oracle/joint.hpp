@@ -95,22 +95,33 @@ struct Attitude {
 template <class S>
 std::vector<Attitude<S>> attitudes(std::vector<Link<S>> const& links);
 
-/// The joint from the last body to ground; on it acts the frame G at rest, in the place of an outboard body.
+/// The joint from the last body to ground, or to a ring's first body; on it acts the frame G in the place of an outboard body, at rest or
+/// that first body's B.
 template <class S>
 struct TipClosure {
-    V3<S> arm, frame;               // from the last body's centre of mass to the origins of G and of the joint frame, W
-    std::vector<Motion<S>> locked;  // directions in which G may not move against the last body, W
-    Motion<S> closure;              // acceleration of G against the last body's point there less that along the coordinates, W
+    bool ring = false;
+    V3<S> first_arm = V3<S>::zero();  // ring: from the first body's centre of mass to G's origin, W
+    V3<S> arm, frame;                 // from the last body's centre of mass to the origins of G and of the joint frame, W
+    std::vector<Motion<S>> locked;    // directions in which G may not move against the last body, W
+    Motion<S> closure;                // acceleration of G against the last body's point there less that along the coordinates, W
 };
-/// Rates of the joint: what the last body's velocity leaves along the joint's directions (least squares).
+/// Rates of the joint: what the bodies' velocities leave along the joint's directions (least squares).
 template <class S>
 TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links, std::vector<Attitude<S>> const& attitude);
-/// How far the last body's acceleration is from a closed tip, one entry a locked direction: zero when it is.
+/// How a body at one end of the tip's joint moves, W.
 template <class S>
-std::vector<S> tip_defect(TipClosure<S> const& tip, V3<S> const& com_acceleration, V3<S> const& alpha, V3<S> const& omega);
+struct TipEnd {
+    V3<S> com_acceleration, alpha, omega;
+};
+/// How far the bodies' accelerations are from a closed tip, one entry a locked direction: zero when it is. `first` counts in a ring.
+template <class S>
+std::vector<S> tip_defect(TipClosure<S> const& tip, TipEnd<S> const& last, TipEnd<S> const& first);
 /// Of a wrench along the locked directions on G: what the last body feels about its centre of mass, and about the joint frame.
 template <class S>
 SpatialForce<S> tip_wrench(TipClosure<S> const& tip, std::vector<S> const& along_locked, V3<S> const& about);
+/// What a ring's first body feels about G's origin (`arm` zero), or about its centre of mass (`arm` its first_arm). Else zero.
+template <class S>
+SpatialForce<S> wrench_on_first(TipClosure<S> const& tip, std::vector<S> const& along_locked, V3<S> const& arm);
 
 /// Articulated bodies of an open chain.
 template <class S>
@@ -124,8 +135,8 @@ struct BeadLink {
     V3<S> direction = V3<S>::zero();  // unit, towards the outboard bead, W
     S closure = S(0);                 // u . (a_outboard - a_inboard) that keeps the length: - |v_rel across u|^2 / l
 };
-/// Entry k is the inboard link of bead k + 1; behind the last stands that of a jointed tip, from the last bead to the ground.
-/// Entry 0 of a free base is zero.
+/// Entry k is the inboard link of bead k + 1; behind the last stands that of a jointed tip, from the last bead to the ground or a ring's
+/// first. Entry 0 of a free base is zero.
 template <class S>
 std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain);
 /// Ground point of a tip link. Throws ComputationError when the tip is another joint.

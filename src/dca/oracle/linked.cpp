@@ -78,7 +78,10 @@ LinkedModel<S> read_linked(ChainSpec const& chain, Loads const& loads) {
     if (model.first == 0) model.links[0] = bead_link(position(0, 0) - lift<S>(b.anchor), velocity(0, 0));
     for (std::size_t k = 1; k < n; ++k)
         model.links[k] = bead_link(position(k, 0) - position(k - 1, 1), velocity(k, 0) - velocity(k - 1, 1));
-    if (chain.tip == Tip::jointed) model.links.push_back(bead_link(lift<S>(tip_anchor(chain)) - position(n - 1, 1), -velocity(n - 1, 1)));
+    if (chain.is_ring())
+        model.links.push_back(bead_link(position(0, 0) - position(n - 1, 1), velocity(0, 0) - velocity(n - 1, 1)));
+    else if (chain.tip == Tip::jointed)
+        model.links.push_back(bead_link(lift<S>(tip_anchor(chain)) - position(n - 1, 1), -velocity(n - 1, 1)));
     for (std::size_t k = 0; k < loads.link_gaps.size(); ++k) model.links[k].closure += S(loads.link_gaps[k]);
     return model;
 }

@@ -59,7 +59,7 @@ struct OracleResult {
 /// joints, O(n). Accelerations are those of points (not Featherstone's spatial ones): linear velocities then do not enter,
 /// and nothing large has to cancel far from the base. Beads: articulated 3 x 3 masses.
 /// Jointed tips: the open chain's answer and its answers to unit wrenches at the tip, then the small system of the tip joint.
-/// Linked bodies: the scalar tridiagonal system of the link forces by elimination.
+/// Linked bodies: the scalar tridiagonal system of the link forces by elimination; their rings: dense().
 /// Where a tip holds a chain more than once (a planar chain on joints that hold it in its plane anyway), accelerations are
 /// unique and joint forces are one choice of many. Preconditions: validated chain, velocities that fit the tip.
 /// Throws ComputationError (body index) when an articulated inertia is not positive definite.

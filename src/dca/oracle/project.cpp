@@ -11,9 +11,14 @@ Column<double> least_change(Dense<double> const& jacobian, Column<double> const&
 }
 
 Column<double> tip_velocity(TipClosure<double> const& tip, std::vector<Link<double>> const& links) {
-    Attitude<double> const last = attitudes(links).back();
-    Vec3 const omega = last.orientation * last.omega, to_g = tip.arm + last.orientation * links.back().com;
-    Vec3 const velocity = last.velocity + cross(omega, to_g);
+    std::vector<Attitude<double>> const all = attitudes(links);
+    Attitude<double> const &last = all.back(), &first = all.front();
+    Vec3 const to_g = tip.arm + last.orientation * links.back().com;
+    Vec3 omega = last.orientation * last.omega, velocity = last.velocity + cross(omega, to_g);
+    if (tip.ring) {
+        omega = omega - first.orientation * first.omega;
+        velocity = velocity - first.velocity;
+    }
     Column<double> v(static_cast<Index>(tip.locked.size()));
     for (Index i = 0; i < v.size(); ++i) {
         Motion<double> const& d = tip.locked[static_cast<std::size_t>(i)];
@@ -55,9 +60,10 @@ void project_bodies(ChainSpec& chain, double time) {
 
 /// Rates at which the links lengthen, by every component of every velocity.
 template <class Directions, class AddEnd>
-void add_link_rows(Directions const& links, std::size_t first, std::size_t bodies, AddEnd const& add_end) {
+void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& chain, AddEnd const& add_end) {
     for (std::size_t k = first; k < links.size(); ++k) {
-        if (k < bodies) add_end(k, k, std::size_t{0}, 1.0);
+        if (k < chain.size()) add_end(k, k, std::size_t{0}, 1.0);
+        if (k == chain.size() && chain.is_ring()) add_end(k, std::size_t{0}, std::size_t{0}, 1.0);
         if (k > 0) add_end(k, k - 1, std::size_t{1}, -1.0);
     }
 }
@@ -67,7 +73,7 @@ void project_beads(ChainSpec& chain) {
     std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
     Dense<double> jacobian = Dense<double>::Zero(static_cast<Index>(links.size()), static_cast<Index>(3 * n));
     Column<double> velocity(static_cast<Index>(3 * n));
-    add_link_rows(links, first, n, [&](std::size_t link, std::size_t k, std::size_t, double sign) {
+    add_link_rows(links, first, chain, [&](std::size_t link, std::size_t k, std::size_t, double sign) {
         for (int i = 0; i < 3; ++i) jacobian(static_cast<Index>(link), static_cast<Index>(3 * k) + i) = sign * links[link].direction[i];
     });
     for (Index i = 0; i < velocity.size(); ++i)
@@ -87,7 +93,7 @@ void project_linked(ChainSpec& chain) {
         auto const c = static_cast<int>(i % 6);
         return c < 3 ? chain.linked.velocity[k][c] : chain.linked.omega[k][c - 3];
     };
-    add_link_rows(model.links, model.first, n, [&](std::size_t link, std::size_t k, std::size_t end, double sign) {
+    add_link_rows(model.links, model.first, chain, [&](std::size_t link, std::size_t k, std::size_t end, double sign) {
         LinkedBody<double> const& body = model.bodies[k];
         Vec3 const &u = model.links[link].direction, lever = transposed_times(body.orientation, cross(body.end[end], u));
         for (int i = 0; i < 3; ++i) {

@@ -37,12 +37,17 @@ Column<S> as_column(std::vector<S> const& values) {
     return Eigen::Map<Column<S> const>(values.data(), static_cast<Index>(values.size()));
 }
 
-/// The wrench of the tip joint that fits the accelerations best, about the last body's centre of mass.
 template <class S>
-SpatialForce<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& links, Inverse<S> inverse, std::vector<V3<S>> const& qdd,
-                         V3<S> const& base_acceleration) {
+void push(Inverse<S>& inverse, TipClosure<S> const& tip, std::vector<S> const& components) {
+    inverse.push_ends(tip_wrench(tip, components, V3<S>::zero()), wrench_on_first(tip, components, tip.first_arm));
+}
+
+/// Components of the tip joint's wrench that fit the accelerations best.
+template <class S>
+std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& links, Inverse<S> inverse, std::vector<V3<S>> const& qdd,
+                        V3<S> const& base_acceleration) {
     auto const error = [&](std::vector<S> const& components) {
-        inverse.push_last(tip_wrench(tip, components, V3<S>::zero()));
+        push(inverse, tip, components);
         return as_column(errors(links, inverse, inverse(qdd, base_acceleration)));
     };
     std::vector<S> const none(tip.locked.size(), S(0));
@@ -53,17 +58,19 @@ SpatialForce<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& l
         one[j] = S(1);
         response.col(static_cast<Index>(j)) = error(one) - open;
     }
-    if (open.size() == 0 || none.empty()) return {};
+    if (open.size() == 0 || none.empty()) return none;
     Column<S> const found = response.colPivHouseholderQr().solve(-open);
-    return tip_wrench(tip, std::vector<S>(found.data(), found.data() + found.size()), V3<S>::zero());
+    return {found.data(), found.data() + found.size()};
 }
 
 template <class S>
 S residual_of_bodies(ChainSpec const& chain, Loads const& loads, std::vector<V3<S>> const& qdd, V3<S> const& base_acceleration) {
     std::vector<Link<S>> const links = read_links<S>(chain, loads);
     Inverse<S> inverse(links, lift<S>(loads.gravity));
-    if (chain.tip == Tip::jointed)
-        inverse.push_last(best_tip(read_tip(chain, links, attitudes(links)), links, inverse, qdd, base_acceleration));
+    if (chain.tip == Tip::jointed) {
+        TipClosure<S> const tip = read_tip(chain, links, attitudes(links));
+        push(inverse, tip, best_tip(tip, links, inverse, qdd, base_acceleration));
+    }
     std::vector<InverseBody<S>> const bodies = inverse(qdd, base_acceleration);
     S worst(0);
     for (std::size_t k = 0; k < links.size(); ++k) {
@@ -86,6 +93,7 @@ std::vector<Balance<S>> bead_balances(ChainSpec const& chain, Loads const& loads
         force.add(S(chain.beads.mass[k]) * acceleration[k]);
         force.add(-bead_force<S>(chain, loads, k));
         force.add(outboard);
+        if (k == 0 && chain.is_ring()) force.add(pushed);
         V3<S> const& u = links[k].direction;
         outboard = dot(u, force.sum) * u;
         left.push_back(force.sum - outboard);

@@ -23,18 +23,19 @@ class OpenChain {
         std::vector<Attitude<S>> const attitude = attitudes(links_);
         tip_ = read_tip(chain, links_, attitude);
         omega_ = attitude.back().orientation * attitude.back().omega;
+        first_omega_ = attitude.front().orientation * attitude.front().omega;
         for (Link<S> const& link : links_) silent_.push_back(silent(link));
     }
     TipClosure<S> const& tip() const { return tip_; }
     OracleResult<S> solve(std::vector<S> const& components) const { return aba_links(pushed(links_, components), gravity_); }
-    Column<S> defect(OracleResult<S> const& r) const { return as_column(tip_, omega_, r); }
+    Column<S> defect(OracleResult<S> const& r) const { return as_column(tip_, omega_, first_omega_, r); }
     /// Minus the change of `defect` for a unit of component j: symmetric, positive (semi)definite.
     Column<S> response(std::size_t j) const {
         std::vector<S> components(tip_.locked.size(), S(0));
         components[j] = S(1);
         TipClosure<S> still = tip_;
         still.closure = {};
-        return -as_column(still, V3<S>::zero(), aba_links(pushed(silent_, components), V3<S>::zero()));
+        return -as_column(still, V3<S>::zero(), V3<S>::zero(), aba_links(pushed(silent_, components), V3<S>::zero()));
     }
 
   private:
@@ -42,15 +43,19 @@ class OpenChain {
         SpatialForce<S> const f = tip_wrench(tip_, components, V3<S>::zero());
         links.back().applied_torque = links.back().applied_torque + f.torque;
         links.back().applied_force = links.back().applied_force + f.force;
+        SpatialForce<S> const on_first = wrench_on_first(tip_, components, tip_.first_arm);
+        links.front().applied_torque = links.front().applied_torque + on_first.torque;
+        links.front().applied_force = links.front().applied_force + on_first.force;
         return links;
     }
-    static Column<S> as_column(TipClosure<S> const& tip, V3<S> const& omega, OracleResult<S> const& r) {
-        std::vector<S> const d = tip_defect(tip, r.com_acceleration.back(), r.alpha.back(), omega);
+    static Column<S> as_column(TipClosure<S> const& tip, V3<S> const& omega, V3<S> const& first_omega, OracleResult<S> const& r) {
+        std::vector<S> const d = tip_defect<S>(tip, {r.com_acceleration.back(), r.alpha.back(), omega},
+                                               {r.com_acceleration.front(), r.alpha.front(), first_omega});
         return Eigen::Map<Column<S> const>(d.data(), static_cast<Index>(d.size()));
     }
 
     std::vector<Link<S>> links_, silent_;
-    V3<S> gravity_, omega_;
+    V3<S> gravity_, omega_, first_omega_;
     TipClosure<S> tip_;
 };
 
@@ -96,14 +101,23 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
                               {S(j.q[0]), S(j.q[1])},
                               j.q};
     place(shape, "tip", g);
-    Attitude<S> const& last = attitude.back();
+    Attitude<S> const &last = attitude.back(), &first = attitude.front();
+    if (j.ring) {
+        g.rotation = transposed_times(last.orientation, first.orientation);
+        g.translation = transposed_times(last.orientation, first.origin - last.origin);
+        // The first axis in G, where it is not constant.
+        if (g.type == JointType::universal) g.free[0].angular = transposed_times(g.rotation, shape.rotation * shape.first_axis);
+    }
     M3<S> const axes = last.orientation * g.rotation;  // of G
     V3<S> const omega = last.orientation * last.omega, to_g = last.orientation * g.translation;
     V3<S> const com = last.orientation * links.back().com;
-    Motion<S> const relative{transposed_times(axes, -omega), transposed_times(axes, -(last.velocity + cross(omega, to_g)))};
+    V3<S> const turning = j.ring ? first.orientation * first.omega : V3<S>::zero(), moving_g = j.ring ? first.velocity : V3<S>::zero();
+    Motion<S> const relative{transposed_times(axes, turning - omega),
+                             transposed_times(axes, moving_g - (last.velocity + cross(omega, to_g)))};
     V3<S> const rates = coordinates(g, relative);
     Motion<S> const moving = along(g, rates);
-    TipClosure<S> tip{to_g - com, last.orientation * shape.translation - com, {}, {}};
+    TipClosure<S> tip{j.ring, V3<S>::zero(), to_g - com, last.orientation * shape.translation - com, {}, {}};
+    if (j.ring) tip.first_arm = -(first.orientation * links.front().com);
     V3<S> drift = V3<S>::zero();
     if (g.type == JointType::universal) drift = S(rates[0] * rates[1]) * cross(g.free[0].angular, g.free[1].angular);
     tip.closure = {cross(omega, axes * moving.angular) + axes * drift, S(2) * cross(omega, axes * moving.linear)};
@@ -112,9 +126,15 @@ TipClosure<S> read_tip(ChainSpec const& chain, std::vector<Link<S>> const& links
 }
 
 template <class S>
-std::vector<S> tip_defect(TipClosure<S> const& tip, V3<S> const& com_acceleration, V3<S> const& alpha, V3<S> const& omega) {
-    V3<S> const linear = com_acceleration + cross(alpha, tip.arm) + cross(omega, cross(omega, tip.arm)) + tip.closure.linear;
-    V3<S> const angular = alpha + tip.closure.angular;
+std::vector<S> tip_defect(TipClosure<S> const& tip, TipEnd<S> const& last, TipEnd<S> const& first) {
+    auto const at = [](TipEnd<S> const& end, V3<S> const& arm) {
+        return end.com_acceleration + cross(end.alpha, arm) + cross(end.omega, cross(end.omega, arm));
+    };
+    V3<S> linear = at(last, tip.arm) + tip.closure.linear, angular = last.alpha + tip.closure.angular;
+    if (tip.ring) {
+        linear = linear - at(first, tip.first_arm);
+        angular = angular - first.alpha;
+    }
     std::vector<S> defect;
     for (Motion<S> const& d : tip.locked) defect.push_back(dot(d.angular, angular) + dot(d.linear, linear));
     return defect;
@@ -126,6 +146,16 @@ SpatialForce<S> tip_wrench(TipClosure<S> const& tip, std::vector<S> const& along
     for (std::size_t i = 0; i < along_locked.size(); ++i) {
         Motion<S> const& d = tip.locked[i];
         f = f + SpatialForce<S>{-along_locked[i] * (d.angular + cross(tip.arm - about, d.linear)), -along_locked[i] * d.linear};
+    }
+    return f;
+}
+
+template <class S>
+SpatialForce<S> wrench_on_first(TipClosure<S> const& tip, std::vector<S> const& along_locked, V3<S> const& arm) {
+    SpatialForce<S> f;
+    for (std::size_t i = 0; i < along_locked.size() && tip.ring; ++i) {
+        Motion<S> const& d = tip.locked[i];
+        f = f + SpatialForce<S>{along_locked[i] * (d.angular + cross(arm, d.linear)), along_locked[i] * d.linear};
     }
     return f;
 }
@@ -144,14 +174,16 @@ OracleResult<S> aba_with_tip(ChainSpec const& chain, Loads const& loads) {
         result = open.solve(components);
     }
     result.tip_force = tip_wrench(open.tip(), components, open.tip().frame);
+    if (open.tip().ring) result.joint_force[0] = result.constraint_force[0] = wrench_on_first(open.tip(), components, V3<S>::zero());
     return result;
 }
 
 // NOLINTBEGIN(bugprone-macro-parentheses): S is a type
 #define CATENA_ORACLE(S)                                                                                                \
     template TipClosure<S> read_tip<S>(ChainSpec const&, std::vector<Link<S>> const&, std::vector<Attitude<S>> const&); \
-    template std::vector<S> tip_defect<S>(TipClosure<S> const&, V3<S> const&, V3<S> const&, V3<S> const&);              \
+    template std::vector<S> tip_defect<S>(TipClosure<S> const&, TipEnd<S> const&, TipEnd<S> const&);                    \
     template SpatialForce<S> tip_wrench<S>(TipClosure<S> const&, std::vector<S> const&, V3<S> const&);                  \
+    template SpatialForce<S> wrench_on_first<S>(TipClosure<S> const&, std::vector<S> const&, V3<S> const&);             \
     template OracleResult<S> aba_with_tip<S>(ChainSpec const&, Loads const&);
 CATENA_ORACLE(double)
 CATENA_ORACLE(long double)

@@ -1,0 +1,65 @@
+// What can be asked of a group once it is made.
+#include <algorithm>
+
+#include "chain/chain_group.hpp"
+#include "scene/freedom.hpp"
+
+namespace catena {
+namespace {
+
+dca::Piece const& piece_of(std::vector<dca::Piece> const& pieces, std::int64_t k) {
+    return *(std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1);
+}
+
+}  // namespace
+
+char const* ChainGroup::kind() const { return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1)); }
+
+bool ChainGroup::is_driven(std::int64_t k) const {
+    auto const found =
+        std::lower_bound(drives.begin(), drives.end(), k, [](LocalDrive const& d, std::int64_t body) { return d.body < body; });
+    return found != drives.end() && found->body == k;
+}
+
+std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const& tips) {
+    std::vector<std::int64_t> bodies;
+    for (LocalTip const& tip : tips) bodies.push_back(tip.body);
+    return bodies;
+}
+
+std::int64_t ChainGroup::scene_index(std::int64_t k) const {
+    dca::Piece const& piece = piece_of(pieces, k);
+    return first_in_scene[piece.chain] + piece.body + (k - piece.local);
+}
+
+GroupView ChainGroup::view() const {
+    return {size,
+            is_first.data(),
+            is_last.data(),
+            jointed_tip.empty() ? nullptr : jointed_tip.data(),
+            tip_screw.data(),
+            inverse_mass.view(),
+            inverse_inertia.view(),
+            r1.view(),
+            r2.view(),
+            axes1.view(),
+            axes2.view(),
+            screw.view()};
+}
+
+int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }
+
+std::vector<LocalUnit> local_units(ChainGroup const& group) {
+    std::vector<LocalUnit> units;
+    for (std::size_t p = 0; p < group.pieces.size(); ++p) {
+        dca::Piece const& piece = group.pieces[p];
+        dca::ChainTree const& tree = group.partition.trees[piece.chain];
+        for (std::int64_t unit = piece.first_unit; unit < piece.first_unit + piece.units; ++unit) {
+            std::int64_t const begin = tree.first_body_of_unit(unit), end = tree.first_body_of_unit(unit + 1);
+            units.push_back({p, piece.local + begin - piece.body, end - begin, unit});
+        }
+    }
+    return units;
+}
+
+}  // namespace catena

@@ -1,0 +1,153 @@
+// Forward dynamics by other programs beside Catena's: the same chains, in turns.
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "command/generated.hpp"
+#include "command/peer_contest.hpp"
+#include "command/text.hpp"
+#include "command/version.hpp"
+#include "error.hpp"
+#include "report/hardware.hpp"
+#include "report/solver_errors.hpp"
+
+namespace catena::command {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds most_set_up{120};
+constexpr std::chrono::seconds most_evaluation{2};
+constexpr std::int64_t most_bodies = 1000000;
+
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (fs::temp_directory_path() / "catena-peers-XXXXXX").string();
+        if (!::mkdtemp(name.data())) throw ComputationError("no temporary folder for the peers' chains (" + name + ")");
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+    TemporaryFolder(TemporaryFolder const&) = delete;
+    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
+    std::string file(std::string const& name) const { return (path_ / name).string(); }
+
+  private:
+    fs::path path_;
+};
+
+void check(BenchRequest const& request, Communicator const& communicator) {
+    if (communicator.size() > 1) throw InputError("peers run on one rank", "catena bench peers", "run it without mpirun");
+    for (std::string const& joint : request.joints)
+        if (joint != "link" && joint != "spherical" && joint != "revolute" && joint != "planar")
+            throw InputError("`" + joint + "` is not written for the peers", "--joints", "use link, spherical, revolute or planar");
+    for (std::int64_t const bodies : request.sizes)
+        if (bodies > most_bodies)
+            throw InputError(fmt::format("{} bodies", bodies), "--sizes", "take 1e6 at most: what answers are compared with ends there");
+    if (!request.set.empty()) throw InputError("the peers' chains are given", "--set", "choose --sizes and --joints");
+}
+
+Peer::Limits limits() {
+    std::int64_t const memory = std::int64_t{::sysconf(_SC_PHYS_PAGES)} * ::sysconf(_SC_PAGESIZE);
+    return {most_set_up, most_evaluation, memory / 2};
+}
+
+Json json_of(Peer::Limits const& l) {
+    return {{"set_up_seconds", l.set_up.count()}, {"evaluation_seconds", l.evaluation.count()}, {"memory_bytes", l.memory_bytes}};
+}
+
+void write_table(std::string const& file, std::vector<double> const& table) {
+    std::ofstream out(file, std::ios::binary);
+    out.write(reinterpret_cast<char const*>(table.data()), static_cast<std::streamsize>(table.size() * sizeof(double)));
+    if (!out.flush()) throw ComputationError("the chain cannot be written for the peers (" + file + "): is there room?");
+}
+
+/// The peers, those that are missing, and where the others stopped.
+class Peers {
+  public:
+    Peers() : programs_(peer_programs()) {}
+    void add_to(PeerContest& contest, PeerStop const& here) {
+        write_table(folder_.file("chain"), contest.table());
+        for (PeerProgram const& program : programs_) {
+            if (!program.missing.empty() || has_stopped(program.name, here.joint)) continue;
+            auto peer = std::make_unique<Peer>(program, folder_.file("chain"), folder_.file(program.name), limits());
+            if (peer->is_ready()) {
+                described_[program.name] = peer->description();
+                contest.add(program.name, std::move(peer));
+            } else {
+                stops_.push_back({program.name, here.joint, peer->stopped(), here.bodies});
+            }
+        }
+    }
+    void add(std::vector<PeerStop> const& stops) { stops_.insert(stops_.end(), stops.begin(), stops.end()); }
+    void describe(Outcome& outcome) const {
+        for (PeerProgram const& program : programs_) {
+            Json json{{"name", program.name}};
+            if (!program.missing.empty()) {
+                json["not_run"] = program.missing;
+                outcome.text += fmt::format("NOT RUN: {}: {}\n", program.name, program.missing);
+            } else if (auto const found = described_.find(program.name); found != described_.end()) {
+                for (char const* const key : {"version", "method"}) json[key] = found->second.value(key, "");
+            }
+            outcome.json["peers"].push_back(json);
+        }
+        for (PeerStop const& stop : stops_) {
+            outcome.json["stops"].push_back({{"peer", stop.peer}, {"joint", stop.joint}, {"bodies", stop.bodies}, {"why", stop.why}});
+            outcome.text += fmt::format("{} stops at {} bodies, {}: {}\n", stop.peer, stop.bodies, stop.joint, stop.why);
+        }
+    }
+
+  private:
+    bool has_stopped(std::string const& peer, std::string const& joint) const {
+        return std::any_of(stops_.begin(), stops_.end(), [&](PeerStop const& s) { return s.peer == peer && s.joint == joint; });
+    }
+    TemporaryFolder const folder_;
+    std::vector<PeerProgram> const programs_;
+    std::map<std::string, Json> described_;
+    std::vector<PeerStop> stops_;
+};
+
+}  // namespace
+
+Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
+    check(request, communicator);
+    std::sort(request.sizes.begin(), request.sizes.end());
+    Peers peers;
+    Table table({"joint", "bodies", "by", "threads", "ns a body", "of Catena's", "error", "bound", "residual", ""}, {0, 2, 9});
+    Outcome outcome;
+    outcome.json = {
+        {"bench", "peers"},       {"build", version_json()},  {"hardware", hardware_json()}, {"ranks", 1}, {"limits", json_of(limits())},
+        {"peers", Json::array()}, {"results", Json::array()}, {"stops", Json::array()}};
+    for (std::string const& joint : request.joints)
+        for (std::int64_t const bodies : request.sizes) {
+            PeerContest contest(random_scene(joint, bodies, overrides_of(request)), joint);
+            contest.add(request.backends.empty() ? cpu_backends() : request.backends, communicator);
+            peers.add_to(contest, {"", joint, "", bodies});
+            peers.add(contest.take_turns(request.repeat));
+            contest.conclude(outcome, table);
+            spdlog::info("{} bodies on {} joints: measured", bodies, joint);
+        }
+    outcome.text = fmt::format(
+        "ns a body of forward dynamics, positions to accelerations, blocks of {} in turn, medians of {}; of Catena's: over its quickest "
+        "whole evaluation on one core; error: the largest of a joint's acceleration, over the largest acceleration; its bound: 32 depth "
+        "2^-53 times "
+        "the growth of roundings, depth the tree's or, of a peer, the number of bodies. {}; Catena: {}, {}\n",
+        duration_text(block_seconds), request.repeat, hardware_text(), compiler_name(), instruction_set());
+    outcome.text += table.text();
+    peers.describe(outcome);
+    outcome.json["valid"] = outcome.valid;
+    outcome.complaint = "an error or a residual of Catena's above its bound: see the results";
+    return outcome;
+}
+
+}  // namespace catena::command

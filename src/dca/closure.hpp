@@ -1,0 +1,128 @@
+// The joint that closes a chain last, host and device: of the first body to the ground or, in a ring, to the last body.
+//
+// A loop may hold a chain more often than it can move: its closing joint's matrix then is singular. What is determined is solved for, and
+// of the forces that are not the least are taken.
+#pragma once
+
+#include <cmath>
+
+#include "dca/segment.hpp"
+
+namespace catena::dca {
+
+/// Z of the joint between a ring's two handles (formulas, "Ring root").
+template <class Real, int K>
+CATENA_HD Symmetric<Real, K> ring_matrix(SegmentMatrix<Real, K> const& s) {
+    Symmetric<Real, K> z;
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i)
+        CATENA_UNROLL
+        for (int j = 0; j <= i; ++j) z(i, j) = (s.z11(i, j) + s.z22(i, j)) - (s.z12(i, j) + s.z12(j, i));
+    return z;
+}
+
+/// Fractions of the open chain's answer that are taken for nothing: of their digits fewer than six would be left.
+template <class Real>
+inline constexpr Real lost_digits = Real(0x1p-33);
+
+/// What the two sides of a closing joint answer to a unit force along each direction while the loop is open: Z's entries are judged by it.
+template <class Real, int K>
+CATENA_HD Vector<Real, K> open_response(SegmentMatrix<Real, K> const& s, bool ring) {
+    Vector<Real, K> size;
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) size[i] = ring ? s.z11(i, i) + s.z22(i, i) : s.z11(i, i);
+    return size;
+}
+
+/// Whether of a pivot so little is left that the matrix may be singular. `factor`: factorize() of its leading `restricted` rows.
+template <class Real, int K>
+CATENA_HD bool is_nearly_singular(Symmetric<Real, K> const& factor, Vector<Real, K> const& size, int restricted) {
+    bool small = false;
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) small = small || (i < restricted && Real(1) / factor(i, i) < lost_digits<Real> * size[i]);
+    return small;
+}
+
+/// a = V diag(values) V^T by Jacobi's rotations; the columns of `vectors` are V.
+template <class Real, int K>
+struct Spectrum {
+    Vector<Real, K> values;
+    Matrix<Real, K, K> vectors;
+};
+template <class Real, int K>
+CATENA_HD_APART Spectrum<Real, K> spectrum_of(Symmetric<Real, K> a) {
+    using std::sqrt;
+    int constexpr rounds = 10;  // six by six is diagonal to rounding after seven at most
+    Spectrum<Real, K> s;
+    s.vectors = Matrix<Real, K, K>::identity();
+    for (int round = 0; round < rounds; ++round)
+        for (int p = 0; p < K; ++p)
+            for (int q = p + 1; q < K; ++q) {
+                if (a(p, q) == Real(0)) continue;
+                Real const slope = (a(q, q) - a(p, p)) / (Real(2) * a(p, q)), root = sqrt(fused(slope, slope, Real(1)));
+                Real const t = slope < Real(0) ? Real(-1) / (root - slope) : Real(1) / (root + slope);
+                Real const c = Real(1) / sqrt(fused(t, t, Real(1))), sine = t * c, moved = a(p, q);
+                a(p, p) = fused(-t, moved, a(p, p));
+                a(q, q) = fused(t, moved, a(q, q));
+                a(p, q) = Real(0);
+                for (int r = 0; r < K; ++r) {
+                    Real const vp = s.vectors(r, p), vq = s.vectors(r, q);
+                    s.vectors(r, p) = fused(c, vp, -(sine * vq));
+                    s.vectors(r, q) = fused(sine, vp, c * vq);
+                    if (r == p || r == q) continue;
+                    Real const ap = a(r, p), aq = a(r, q);
+                    a(r, p) = fused(c, ap, -(sine * aq));
+                    a(r, q) = fused(sine, ap, c * aq);
+                }
+            }
+    for (int i = 0; i < K; ++i) s.values[i] = a(i, i);
+    return s;
+}
+
+/// The pseudo-inverse of z's leading `restricted` rows in the metric of the open chain: with D = diag(size), D^-1/2 z D^-1/2 has its
+/// eigenvalues below `lost_digits` taken for 0. Forces x = z^+ b then have the least x^T D x. NaN where z is indefinite beyond that.
+template <class Real, int K>
+CATENA_HD_APART Matrix<Real, K, K> least_norm_inverse(Symmetric<Real, K> const& z, Vector<Real, K> const& size, int restricted) {
+    using std::sqrt;
+    Vector<Real, K> scale;
+    for (int i = 0; i < K; ++i) scale[i] = i < restricted ? Real(1) / sqrt(size[i]) : Real(0);
+    Symmetric<Real, K> scaled;
+    for (int i = 0; i < K; ++i)
+        for (int j = 0; j <= i; ++j) scaled(i, j) = i < restricted ? (scale[i] * z(i, j)) * scale[j] : Real(0);
+    Spectrum<Real, K> const s = spectrum_of(scaled);
+    Matrix<Real, K, K> inverse = Matrix<Real, K, K>::zero();
+    for (int e = 0; e < K; ++e) {
+        bool const nothing = s.values[e] < lost_digits<Real> && s.values[e] > -lost_digits<Real>;
+        Real const weight = nothing ? Real(0) : s.values[e] > Real(0) ? Real(1) / s.values[e] : Real(__builtin_nan(""));
+        for (int i = 0; i < K; ++i)
+            for (int j = 0; j < K; ++j)
+                inverse(i, j) = fused((weight * (scale[i] * s.vectors(i, e))) * scale[j], s.vectors(j, e), inverse(i, j));
+    }
+    return inverse;
+}
+
+/// The joint that closes a loop: factors as of any joint, or where it is nearly singular none, and the pseudo-inverse as `inboard`, which
+/// is zero otherwise.
+template <class Real, int K>
+CATENA_HD JointMatrix<Real, K> closing_joint(Symmetric<Real, K> const& z, Vector<Real, K> const& size, int restricted) {
+    JointMatrix<Real, K> joint{factorize(z, restricted), Matrix<Real, K, K>::zero(), Matrix<Real, K, K>::zero()};
+    if (!is_nearly_singular(joint.factor, size, restricted)) return joint;
+    joint.inboard = least_norm_inverse(z, size, restricted);
+    joint.factor = Symmetric<Real, K>::zero();
+    return joint;
+}
+/// Whether the joint was nearly singular, but not indefinite.
+template <class Real, int K>
+CATENA_HD bool has_least_norm(JointMatrix<Real, K> const& joint) {
+    bool any = false;
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) any = any || joint.inboard(i, i) > Real(0);
+    return any;
+}
+/// Its force, which takes away `apart`, the acceleration of its inboard side against its outboard one.
+template <class Real, int K>
+CATENA_HD Vector<Real, K> closing_force(JointMatrix<Real, K> const& joint, Vector<Real, K> const& apart) {
+    return solve_upper(joint.factor, solve_lower(joint.factor, apart)) + joint.inboard * apart;
+}
+
+}  // namespace catena::dca

@@ -1,0 +1,43 @@
+// How leaves read and write arrays of bodies. A place is a body's index, or what stands for several bodies side by side (simd/tile.hpp);
+// its scalar type follows from it, and the same source serves one body and several.
+#pragma once
+
+#include "dca/solver.hpp"
+
+namespace catena::dca {
+
+template <class Place>
+struct RealOf {
+    using type = typename Place::Real;
+};
+template <>
+struct RealOf<std::int64_t> {
+    using type = double;
+};
+template <class Place>
+using RealAt = typename RealOf<Place>::type;
+
+template <class T, int D>
+CATENA_HD Vector<double, D> read(FieldView<T, D> const& view, std::int64_t k) {
+    return view.load(k);
+}
+template <int D>
+CATENA_HD void write(View<D> const& view, std::int64_t k, Vector<double, D> const& value) {
+    view.store(k, value);
+}
+template <int K>
+CATENA_HD Vector<double, K> read_directions(ConstDirectionsView const& view, std::int64_t k) {
+    return view.load<K>(k);
+}
+template <int K>
+CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k, Vector<double, K> const& value) {
+    view.store<K>(k, value);
+}
+
+// Bodies side by side are never at the end of a chain.
+CATENA_HD bool starts_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
+CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
+CATENA_HD bool has_jointed_tip(GroupView const& group, std::int64_t k) { return group.has_jointed_tip(k); }
+CATENA_HD Vec3 outboard_screw(GroupView const& group, std::int64_t k) { return group.outboard_screw(k); }
+
+}  // namespace catena::dca

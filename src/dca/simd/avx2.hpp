@@ -1,0 +1,64 @@
+// Four doubles side by side.
+#pragma once
+
+#include <immintrin.h>
+
+#include <cstdint>
+
+namespace catena::dca::avx2 {
+
+class Real {
+  public:
+    static constexpr int lanes = 4;
+    Real() = default;
+    Real(double x) : v_(_mm256_set1_pd(x)) {}
+    static Real load(double const* place) { return Real(_mm256_load_pd(place)); }
+    void store(double* place) const { _mm256_store_pd(place, v_); }
+    /// Bit j: lane j is not a positive finite number.
+    unsigned not_positive() const {
+        __m256d const zero = _mm256_setzero_pd();
+        __m256d const good = _mm256_and_pd(_mm256_cmp_pd(v_, zero, _CMP_GT_OQ), _mm256_cmp_pd(v_ - v_, zero, _CMP_EQ_OQ));
+        return 0xfU & ~static_cast<unsigned>(_mm256_movemask_pd(good));
+    }
+
+    friend Real operator+(Real a, Real b) { return Real(a.v_ + b.v_); }
+    friend Real operator-(Real a, Real b) { return Real(a.v_ - b.v_); }
+    friend Real operator*(Real a, Real b) { return Real(a.v_ * b.v_); }
+    friend Real operator/(Real a, Real b) { return Real(a.v_ / b.v_); }
+    friend Real operator-(Real a) { return Real(-a.v_); }
+    friend Real fused(Real a, Real b, Real c) { return Real(_mm256_fmadd_pd(a.v_, b.v_, c.v_)); }
+    friend Real sqrt(Real a) { return Real(_mm256_sqrt_pd(a.v_)); }
+
+    /// origin[at[j]] in lane j.
+    static Real pick(double const* origin, std::int64_t const* at) {
+        return Real(_mm256_set_pd(origin[at[3]], origin[at[2]], origin[at[1]], origin[at[0]]));
+    }
+    /// Numbers 0 to 3 from origin + at[j] in lane j: vector i, at `to` + i lanes, gets number i of every lane.
+    static void read_four(double const* origin, std::int64_t const* at, double* to) {
+        __m256d rows[lanes];
+        for (int j = 0; j < lanes; ++j) rows[j] = _mm256_loadu_pd(origin + at[j]);
+        transpose(rows);
+        for (int i = 0; i < lanes; ++i) _mm256_store_pd(to + i * lanes, rows[i]);
+    }
+    /// The other way round.
+    static void write_four(double const* from, double* origin, std::int64_t const* at) {
+        __m256d rows[lanes];
+        for (int i = 0; i < lanes; ++i) rows[i] = _mm256_load_pd(from + i * lanes);
+        transpose(rows);
+        for (int j = 0; j < lanes; ++j) _mm256_storeu_pd(origin + at[j], rows[j]);
+    }
+
+  private:
+    explicit Real(__m256d v) : v_(v) {}
+    static void transpose(__m256d (&m)[lanes]) {
+        __m256d const a = _mm256_unpacklo_pd(m[0], m[1]), b = _mm256_unpackhi_pd(m[0], m[1]);
+        __m256d const c = _mm256_unpacklo_pd(m[2], m[3]), d = _mm256_unpackhi_pd(m[2], m[3]);
+        m[0] = _mm256_permute2f128_pd(a, c, 0x20);
+        m[1] = _mm256_permute2f128_pd(b, d, 0x20);
+        m[2] = _mm256_permute2f128_pd(a, c, 0x31);
+        m[3] = _mm256_permute2f128_pd(b, d, 0x31);
+    }
+    __m256d v_;
+};
+
+}  // namespace catena::dca::avx2

@@ -1,0 +1,15 @@
+#include "dca/simd/avx512.hpp"
+
+#include "dca/simd/kernels.hpp"
+
+namespace catena::dca {
+
+template <class Leaf>
+RunKernels<Leaf> avx512_kernels() {
+    return kernels<avx512::Real, Leaf>();
+}
+
+#define CATENA_INSTANTIATE(...) template RunKernels<__VA_ARGS__> avx512_kernels();
+CATENA_LEAVES_IN_LANES(CATENA_INSTANTIATE)
+
+}  // namespace catena::dca

@@ -1,0 +1,63 @@
+// Runs of bodies side by side, one in each lane of a vector: what the sources of the instruction sets offer. These sources must not share
+// a function with the rest of the program, or the linker may keep the one that not every processor runs: nothing of the standard library
+// passes this door, and all that is behind it is a template over their own vectors.
+#pragma once
+
+#include "dca/simd/level.hpp"
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::dca {
+
+inline constexpr int most_lanes = 8;
+
+/// Runs of `longest_run` bodies within their chains, one a lane; in the lanes that are left over the last one again.
+struct RunsInLanes {
+    std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
+};
+
+template <class Leaf>
+struct RunWork {
+    TreeSweeps<Leaf> sweeps;
+    GroupView group;
+    ConfigurationView configuration;
+    LoadsView loads;
+    AccelerationsView out;
+    RunsInLanes const* runs = nullptr;
+    double* nodes = nullptr;  // node_numbers<K> vectors for every item of `runs`: the joints between parts, from climb to descend
+};
+template <int K>
+inline constexpr int node_numbers =
+    (parts_of_run - 1) * static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
+
+/// For items [begin, end) of RunWork::runs. climb: from the bodies to the runs' slots, matrices and biases at once; descend: from the
+/// forces at the runs' ends to the bodies' accelerations.
+template <class Leaf>
+struct RunKernels {
+    void (*climb)(RunWork<Leaf> const&, std::int64_t begin, std::int64_t end);
+    void (*descend)(RunWork<Leaf> const&, std::int64_t begin, std::int64_t end);
+};
+
+/// Precondition: simd_levels() has them.
+template <class Leaf>
+RunKernels<Leaf> avx2_kernels();
+template <class Leaf>
+RunKernels<Leaf> avx512_kernels();
+
+/// Whether runs of these leaves go side by side: those with handles projected on the joints' directions.
+template <class Leaf>
+inline constexpr bool goes_side_by_side = Leaf::projected;
+
+/// instantiate(Leaf) for each of them.
+// clang-format off
+#define CATENA_LEAVES_IN_LANES(instantiate)           \
+    instantiate(BeadLeaf<1>)                          \
+    instantiate(BodyLeaf<1, LinkFrames<1>>)           \
+    instantiate(BodyLeaf<3, GroundFrames<3>>)         \
+    instantiate(BodyLeaf<2, MeetingFrames<2, false>>) \
+    instantiate(BodyLeaf<3, MeetingFrames<3, false>>) \
+    instantiate(BodyLeaf<4, MeetingFrames<4, false>>) \
+    instantiate(BodyLeaf<5, MeetingFrames<5, false>>) \
+    instantiate(BodyLeaf<5, MeetingFrames<5, true>>)
+// clang-format on
+
+}  // namespace catena::dca

@@ -1,0 +1,117 @@
+// What a part's bodies read and write, turned so that those of several runs lie side by side: one part of as many runs as a vector has
+// lanes. Views of a tile are read at a Column: a place that stands for one body of every run.
+#pragma once
+
+#include "dca/places.hpp"
+#include "dca/tree.hpp"
+
+namespace catena::dca {
+
+/// Body `at` of the part: -1 and part_length are the neighbours.
+template <class Real_>
+struct Column {
+    using Real = Real_;
+    int at = 0;
+    friend CATENA_HD Column operator+(Column c, int by) { return {c.at + by}; }
+    friend CATENA_HD Column operator-(Column c, int by) { return {c.at - by}; }
+};
+
+template <class Real, int D>
+CATENA_HD Vector<Real, D> read(ConstView<D> const& view, Column<Real> const& c) {
+    Vector<Real, D> v;
+    CATENA_UNROLL
+    for (int i = 0; i < D; ++i) v[i] = Real::load(view.origin + i * view.pitch + c.at * Real::lanes);
+    return v;
+}
+template <class Real, int D>
+CATENA_HD void write(View<D> const& view, Column<Real> const& c, Vector<Real, D> const& value) {
+    CATENA_UNROLL
+    for (int i = 0; i < D; ++i) value[i].store(view.origin + i * view.pitch + c.at * Real::lanes);
+}
+template <int K, class Real>
+CATENA_HD Vector<Real, K> read_directions(ConstDirectionsView const& view, Column<Real> const& c) {
+    return read(ConstView<K>{view.origin, view.pitch, 0}, c);
+}
+template <int K, class Real>
+CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& c, Vector<Real, K> const& value) {
+    write(View<K>{view.origin, view.pitch, 0}, c, value);
+}
+template <class Real>
+CATENA_HD bool starts_chain(GroupView const&, Column<Real> const&) {
+    return false;
+}
+template <class Real>
+CATENA_HD bool ends_chain(GroupView const&, Column<Real> const&) {
+    return false;
+}
+template <class Real>
+CATENA_HD bool has_jointed_tip(GroupView const&, Column<Real> const&) {
+    return false;
+}
+template <class Real>
+CATENA_HD Vector<Real, 3> outboard_screw(GroupView const& group, Column<Real> const& c) {
+    return read(group.screw, c + 1);
+}
+
+template <class Real>
+class Tile {
+    static constexpr int lanes = Real::lanes, columns = part_length + 2, most = 64;
+
+  public:
+    /// The same view of the tile; none of none. `neighbours`: columns -1 and part_length too.
+    template <int D>
+    ConstView<D> in(ConstView<D> view, bool neighbours = false) {
+        if (!view.origin) return {};
+        ConstView<D> const here{place(count_), pitch, part_length};
+        if (count_ + D + written_ > most) __builtin_trap();
+        for (int i = 0; i < D; ++i) source_[count_++] = {view.origin + i * view.pitch, neighbours};
+        return here;
+    }
+    template <int D>
+    View<D> out(View<D> view) {
+        if (!view.origin) return {};
+        View<D> const here{place(most - written_ - D), pitch, part_length};
+        if (count_ + written_ + D > most) __builtin_trap();
+        for (int i = 0; i < D; ++i) target_[written_ + D - 1 - i] = view.origin + i * view.pitch;
+        written_ += D;
+        return here;
+    }
+    template <int K>
+    ConstDirectionsView in_directions(ConstDirectionsView view) {
+        ConstView<K> const here = in(ConstView<K>{view.origin, view.pitch, 0});
+        return {here.origin, here.pitch};
+    }
+    template <int K>
+    DirectionsView out_directions(DirectionsView view) {
+        View<K> const here = out(View<K>{view.origin, view.pitch, 0});
+        return {here.origin, here.pitch};
+    }
+    /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time.
+    void fill(std::int64_t const* first, std::int64_t ahead) {
+        for (int n = 0; n < count_; ++n) {
+            double* const to = place(n);
+            Real::read_four(source_[n].origin, first, to);
+            for (int j = 0; j < lanes; ++j) __builtin_prefetch(source_[n].origin + first[j] + ahead);
+            if (!source_[n].neighbours) continue;
+            Real::pick(source_[n].origin - 1, first).store(to - lanes);
+            Real::pick(source_[n].origin + part_length, first).store(to + part_length * lanes);
+        }
+    }
+    void empty(std::int64_t const* first) {
+        for (int n = 0; n < written_; ++n) Real::write_four(place(most - 1 - n), target_[n], first);
+    }
+
+  private:
+    static constexpr std::int64_t pitch = columns * lanes;
+    double* place(int n) { return numbers_ + n * pitch + lanes; }
+    struct Source {
+        double const* origin;
+        bool neighbours;
+    };
+    int count_ = 0, written_ = 0;
+    Source source_[most];
+    double* target_[most];
+    alignas(64) double numbers_[most * pitch];
+};
+
+}  // namespace catena::dca

@@ -1,0 +1,182 @@
+// A scene's beads as OpenMM knows them, and an evaluation of its forces.
+#include <algorithm>
+#include <utility>
+
+#include "cuda/solver.hpp"
+#include "error.hpp"
+#include "integrate/chain_system.hpp"
+
+namespace catena {
+namespace {
+
+/// The carried bead that stands at a point of body k (from its centre of mass, B); -1: none does.
+std::int64_t bead_at(LinkedArrays const& linked, std::size_t k, Vec3 const& point) {
+    double constexpr rounding = 1e-9;  // of positions that a file holds in decimals, turned into the body's axes
+    for (std::int64_t i = linked.carried.offset[k]; i < linked.carried.offset[k + 1]; ++i) {
+        Vec3 const at = linked.carried.position[static_cast<std::size_t>(i)];
+        if (norm(at - point) <= rounding * (norm(at) + norm(point))) return i;
+    }
+    return -1;
+}
+
+}  // namespace
+
+/// Every bead of the scene in the order of its chains.
+void ChainSystem::describe_beads() {
+    BeadSystem& system = bead_system_;
+    system.chain_offset.push_back(0);
+    for (ChainSpec const& chain : scene_.chains) {
+        if (chain.bead_count() == 0) continue;
+        std::int64_t const first = system.size();
+        if (chain.is_beads()) {
+            system.mass.insert(system.mass.end(), chain.beads.mass.begin(), chain.beads.mass.end());
+            system.residue.insert(system.residue.end(), chain.beads.residue.begin(), chain.beads.residue.end());
+            auto const beads = static_cast<std::int64_t>(chain.size());
+            for (std::int64_t k = 1; k < beads; ++k)
+                system.links.push_back({first + k - 1, first + k, chain.beads.length[static_cast<std::size_t>(k)]});
+            if (chain.is_ring()) system.links.push_back({first, first + beads - 1, chain.tip_joint.length});
+        } else {
+            CarriedBeads const& carried = chain.carried();
+            system.mass.insert(system.mass.end(), carried.mass.begin(), carried.mass.end());
+            system.residue.insert(system.residue.end(), carried.residue.begin(), carried.residue.end());
+            for (std::size_t k = 0; k < chain.size(); ++k) {
+                std::int64_t const begin = carried.offset[k], end = carried.offset[k + 1];
+                if (end - begin > 1) system.rigid.emplace_back(first + begin, first + end);
+                if (k == 0 && !(chain.is_linked() && chain.is_ring())) continue;
+                if (chain.is_linked()) {
+                    std::size_t const before = k == 0 ? chain.size() - 1 : k - 1;
+                    std::int64_t const from = bead_at(chain.linked, before, chain.linked.outboard[before]);
+                    std::int64_t const to = bead_at(chain.linked, k, chain.linked.inboard[k]);
+                    double const length = k == 0 ? chain.tip_joint.length : chain.linked.length[k];
+                    if (from >= 0 && to >= 0) system.links.push_back({first + std::min(from, to), first + std::max(from, to), length});
+                } else if (end > begin && begin > carried.offset[k - 1]) {
+                    system.neighbours.emplace_back(first + begin - 1, first + begin);
+                }
+            }
+            bool const both_ends = carried.offset[1] > 0 && carried.offset[chain.size()] > carried.offset[chain.size() - 1];
+            if (chain.is_ring() && !chain.is_linked() && both_ends && chain.size() > 2)  // two are neighbours already
+                system.neighbours.emplace_back(first, first + static_cast<std::int64_t>(carried.size()) - 1);
+        }
+        system.chain_name.push_back(chain.name);
+        system.chain_offset.push_back(system.size());
+    }
+    system.box = scene_.box;
+    system.scene_file = scene_.file;
+}
+
+/// A rank owns the beads of its bodies, group after group.
+void ChainSystem::order_beads_by_rank() {
+    std::vector<std::int64_t> first_of_chain;
+    std::int64_t beads = 0;
+    for (ChainSpec const& chain : scene_.chains) {
+        first_of_chain.push_back(beads);
+        beads += static_cast<std::int64_t>(chain.bead_count());
+    }
+    auto const bead_of = [&](int chain, std::int64_t body) {  // first of a body's; body = size: one past the chain's last
+        ChainSpec const& spec = scene_.chains[chain];
+        if (spec.is_beads()) return first_of_chain[chain] + body;
+        return first_of_chain[chain] + (spec.bead_count() == 0 ? 0 : spec.carried().offset[static_cast<std::size_t>(body)]);
+    };
+    std::vector<std::int64_t> order;
+    bead_system_.first_of_rank = {0};
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+        for (ChainGroup const* group : bead_groups_)
+            for (dca::Piece const& piece : dca::pieces_of(group->partition, rank)) {
+                int const chain = group->chain[piece.chain];
+                for (std::int64_t i = bead_of(chain, piece.body); i < bead_of(chain, piece.body + piece.count); ++i) order.push_back(i);
+            }
+        bead_system_.first_of_rank.push_back(static_cast<std::int64_t>(order.size()));
+    }
+    if (!std::is_sorted(order.begin(), order.end())) bead_system_.by_rank = std::move(order);
+}
+
+/// Groups in absolute coordinates come first.
+void ChainSystem::find_bead_groups() {
+    for (bool const absolute : {true, false})
+        for (auto const& group : groups_)
+            if (is_absolute(*group) == absolute && (group->beads || group->carried_in_scene)) bead_groups_.push_back(group.get());
+}
+
+/// Before anything of the chains is on a GPU: where OpenMM computes there, they live in its context.
+void ChainSystem::make_openmm() {
+    find_bead_groups();
+    if (bead_groups_.empty())
+        throw InputError("OpenMM computes forces on beads and the scene has none", scene_.file + ": forces.openmm",
+                         "add a bead chain, beads on bodies, or remove forces.openmm");
+    describe_beads();
+    order_beads_by_rank();
+    std::int64_t const own = bead_system_.first_of_rank[communicator_.rank() + 1] - bead_system_.first_of_rank[communicator_.rank()];
+    bead_position_ = Field<3>(own);
+    openmm_force_ = Field<3>(own);
+    ChainsOnDevice chains{no_gpu_asked_for, -1};
+    if (backend_ == Backend::cuda) {
+        bool const beads = std::all_of(bead_groups_.begin(), bead_groups_.end(), [](ChainGroup const* group) { return group->beads; });
+        chains = {beads ? "" : "some beads are carried by rigid bodies", cuda::chosen_device()};
+    }
+    openmm_ = make_openmm_force(*scene_.forces.openmm, bead_system_, communicator_, chains);
+    make_current();
+}
+
+void ChainSystem::find_bead_hosts() {
+    std::vector<BeadHost*> hosts;
+    for (auto const& group : absolute_) hosts.push_back(group.get());
+    for (auto const& group : joint_) hosts.push_back(group.get());
+    std::copy_if(hosts.begin(), hosts.end(), std::back_inserter(bead_hosts_), [&](BeadHost const* host) {
+        return std::find(bead_groups_.begin(), bead_groups_.end(), &host->group()) != bead_groups_.end();
+    });
+    if (!openmm_->device_path()) return;
+    for (BeadHost* host : bead_hosts_) device_beads_.push_back(host->on_device());
+}
+
+ConstView<3> ChainSystem::own_bead_positions() {
+    std::int64_t next = 0;
+    for (BeadHost* host : bead_hosts_) {
+        ConstView<3> const positions = host->bead_positions();
+        for (std::int64_t k = 0; k < positions.size; ++k) bead_position_.set(next++, positions.load(k));
+    }
+    return std::as_const(bead_position_).view();
+}
+
+void ChainSystem::begin_openmm(bool timed) {
+    if (!on_device()) {
+        Traffic const before = communicator_.traffic();
+        openmm_->begin(own_bead_positions());
+        openmm_traffic_ += communicator_.traffic() - before;
+        return;
+    }
+    if (clock_is_due_) read_device_clock();
+    ++evaluations_since_clock_;
+    clock_is_due_ = timed || !timed_before_ || evaluations_since_clock_ >= evaluations_a_clock;
+    openmm_->device_path()->begin(device_beads_, clock_is_due_);
+    timed_before_ = true;
+}
+
+DevicePath::Clock ChainSystem::read_device_clock() {
+    clock_is_due_ = false;
+    double const weight = static_cast<double>(std::exchange(evaluations_since_clock_, 0));  // it stands for those before it
+    DevicePath::Clock const clock = openmm_->device_path()->clock();
+    auto const length = [weight](double begin, double end) { return weight * std::max(0.0, end - begin); };
+    double const matrices = length(clock.chains.begin, clock.chains.end);
+    matrix_seconds_ += matrices;
+    hidden_seconds_ += length(std::max(clock.chains.begin, clock.openmm.begin), std::min(clock.chains.end, clock.openmm.end));
+    seconds_["matrix sweep"] += matrices;
+    seconds_["forces"] += length(clock.openmm.begin, clock.openmm.end);
+    seconds_["waiting for forces"] += length(clock.chains.end, clock.openmm.end);
+    return clock;
+}
+
+void ChainSystem::finish_openmm() {
+    if (on_device()) {
+        openmm_->device_path()->finish(device_beads_);
+        return;
+    }
+    for (std::int64_t k = 0; k < openmm_force_.size(); ++k) openmm_force_.set(k, Vec3::zero());
+    openmm_->finish(openmm_force_.view());
+    std::int64_t next = 0;
+    for (BeadHost* host : bead_hosts_) {
+        View<3> const forces = host->bead_forces();
+        for (std::int64_t k = 0; k < forces.size; ++k) forces.store(k, forces.load(k) + openmm_force_[next++]);
+    }
+}
+
+}  // namespace catena

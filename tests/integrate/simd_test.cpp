@@ -1,0 +1,122 @@
+// Runs side by side in a vector's lanes find what they find one after the other, whatever the ranks and threads.
+#include <gtest/gtest.h>
+
+#include "dca/simd/side_by_side.hpp"
+#include "error.hpp"
+#include "integrate/chain_system.hpp"
+#include "tests/mpi/world.hpp"
+#include "tests/support/same_bits.hpp"
+
+namespace catena::test {
+namespace {
+
+using Accelerations = ChainSystem::Accelerations;
+
+Scene scene_of(std::string const& chains) {
+    return parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
+}
+std::string chain(std::string const& joint, int bodies) {
+    return std::string("{base: ") + (bodies % 2 == 1 ? "fixed" : "free") + ", generator: {random: {bodies: " + std::to_string(bodies) +
+           ", joint: " + joint + ", seed: 3}}}";
+}
+
+Accelerations found(Scene scene, Axes axes, SimdLevel level, int threads, Communicator const& communicator) {
+    scene.solver.backend = threads == 1 ? Backend::segments : Backend::openmp;
+    scene.solver.threads = threads;
+    scene.solver.simd = level;
+    ChainSystem system(scene, axes, communicator);
+    system.evaluate(false);
+    EXPECT_LE(system.residual(), system.residual_bound());
+    for (SolverReport const& report : system.solver_reports()) EXPECT_TRUE(report.simd == level || report.simd == SimdLevel::off);
+    return system.accelerations();
+}
+
+bool same(Accelerations const& a, Accelerations const& b) {
+    return same_bits(a.acceleration, b.acceleration) && same_bits(a.alpha, b.alpha) && same_bits(a.joint_force, b.joint_force);
+}
+
+/// Largest difference over the largest value.
+double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
+    double most = 0, worst = 0;
+    for (Vec3 const& v : a) most = std::max(most, norm(v));
+    for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, norm(a[k] - b[k]));
+    return worst == 0 ? 0 : worst / most;
+}
+
+/// As the base's instruction set says, everything else is compiled for.
+bool base_fuses() { return fused(1 + 0x1p-30, 1 + 0x1p-30, -1 - 0x1p-29) != 0; }
+
+/// The same operations in the same order. Where the rest of the program rounds products before it adds, a chain of n bodies lets the last
+/// digits of that grow like n.
+void expect_found(Scene const& scene, Axes axes, std::string const& what) {
+    auto const alone = serial_communicator();
+    Communicator const& world = testing::world();
+    Accelerations const expected = found(scene, axes, SimdLevel::off, 1, *alone);
+    for (SimdLevel const level : simd_levels()) {
+        std::string const name = what + ", " + name_of(level);
+        Accelerations const one = found(scene, axes, level, 1, *alone), shared = found(scene, axes, level, 1, world);
+        double const tolerance = 64 * static_cast<double>(scene.bodies()) * 0x1p-53;
+        EXPECT_LE(difference(expected.acceleration, one.acceleration), tolerance) << name;
+        EXPECT_TRUE(!base_fuses() || same(expected, one)) << name;
+        EXPECT_TRUE(world.rank() > 0 || same(one, shared)) << name << ", " << world.size() << " ranks";
+        if (world.size() > 1 || !openmp_is_built()) continue;
+        for (int const threads : {2, 3}) EXPECT_TRUE(same(one, found(scene, axes, level, threads, *alone))) << name << ", " << threads;
+    }
+}
+
+class Simd : public ::testing::TestWithParam<char const*> {};
+
+TEST_P(Simd, FindsTheSame) {
+    for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 256, 257, 2047, 2048, 2049})
+        expect_found(scene_of(chain(GetParam(), bodies)), Axes::joint, std::string(GetParam()) + " " + std::to_string(bodies));
+}
+TEST_P(Simd, FindsTheSameInSeveralChains) {
+    std::string const joint = GetParam();
+    expect_found(scene_of(chain(joint, 70) + ", " + chain(joint, 333) + ", " + chain(joint, 16) + ", " + chain("mixed", 80) +
+                          ", {count: 9, base: free, generator: {random: {bodies: 49, joint: " + joint + ", seed: 4}}}"),
+                 Axes::joint, "several chains, " + joint);
+}
+INSTANTIATE_TEST_SUITE_P(Joints, Simd,
+                         ::testing::Values("link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "mixed"),
+                         [](auto const& each) { return std::string(each.param); });
+
+TEST(SimdInAbsoluteCoordinates, FindsTheSame) {
+    for (char const* const joint : {"link", "spherical"})
+        for (int const bodies : {1, 31, 257, 2049})
+            expect_found(scene_of(chain(joint, bodies)), Axes::world, std::string(joint) + " " + std::to_string(bodies));
+    expect_found(scene_of("{generator: {random: {bodies: 300, joint: link, rigid: 0.5, seed: 8}}}"), Axes::world, "bodies on links");
+}
+
+/// On one rank: the oracle of all ranks' is the same.
+TEST(SimdOfLongChains, FindsTheSame) {
+    if (testing::world().size() > 1) GTEST_SKIP() << "once is enough";
+    for (char const* const joint : {"link", "spherical", "revolute"}) expect_found(scene_of(chain(joint, 100001)), Axes::joint, joint);
+}
+
+TEST(SimdLevels, AreNamedAndRefusedWhereTheyCannotRun) {
+    EXPECT_EQ(simd_levels().front(), SimdLevel::off);
+    EXPECT_EQ(best_simd_level(), simd_levels().back());
+    Scene scene = scene_of(chain("link", 40));
+    scene.solver.simd = SimdLevel::avx512;
+    bool const here = simd_levels().back() == SimdLevel::avx512;
+    if (here)
+        EXPECT_EQ(choose_simd_level(scene, testing::world()), SimdLevel::avx512);
+    else
+        EXPECT_THROW(choose_simd_level(scene, testing::world()), InputError);
+}
+
+/// Which runs go side by side depends on the chain alone; lanes that are left over repeat one.
+TEST(SimdLevels, DealOutWholeRunsWithinAChain) {
+    auto const alone = serial_communicator();
+    Scene const scene = scene_of(chain("revolute", 16 * 12 + 5));
+    auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
+    dca::RunsDealtOut const dealt = dca::deal_out_runs(*groups.front(), 8);
+    ASSERT_EQ(dealt.items.size(), 2u);
+    EXPECT_EQ(dealt.others.size(), 2u);  // the first and the last
+    EXPECT_EQ(dealt.items[0].body[0], 16);
+    EXPECT_EQ(dealt.items[1].body[2], 16 * 11);
+    EXPECT_EQ(dealt.items[1].body[7], 16 * 11);
+}
+
+}  // namespace
+}  // namespace catena::test

@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""jobs/report_plot.py on a report in which numbers were not finite, which are null in JSON: every picture is drawn.
+
+Exit status 0: all as it should be; 1: not; 77: skipped, a package is missing."""
+import json
+import os
+import subprocess
+import sys
+import tempfile
+
+try:
+    import matplotlib  # noqa: F401
+except ImportError as error:
+    print(f"SKIPPED: the Python package {error.name} is missing (pip install matplotlib)")
+    sys.exit(77)
+
+PLOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "jobs", "report_plot.py")
+SECONDS = {"median": 1e-3}
+
+
+def report(number):
+    point = {"backend": "segments", "handles": "projected", "residual": number, "forward_error": number, "seconds": SECONDS}
+    oracle = {"forward_error": number, "seconds": SECONDS}
+    step = {"error": number, "energy_error": number, "seconds": SECONDS}
+    case = {"backend": "segments", "handles": "projected", "refused": "", "forward_error": number, "refined": [{"forward_error": number}]}
+    return {"hardware": {"processor": "any"}, "ranks": 1,
+            "studies": [{"title": "a", "condition": number, "points": [point], "oracle": oracle}],
+            "integrators": {"scenes": [{"title": "a", "curves": [{"integrator": "rk4", "points": [step]}]}, {"title": "b", "curves": []}]},
+            "forces": [{"title": "a", "beads": 1, "points": [{"platform": "CPU", "precision": "single", "error": number, "seconds": SECONDS}]}],
+            "stability": [{"growth": number, "oracle": oracle, "points": [case]}]}
+
+
+for number in (1e-9, None):
+    with tempfile.TemporaryDirectory() as folder:
+        source = os.path.join(folder, "report.json")
+        with open(source, "w", encoding="utf-8") as file:
+            json.dump(report(number), file)
+        done = subprocess.run([sys.executable, PLOT, source, folder], capture_output=True, text=True, check=False)
+        drawn = sorted(name for name in os.listdir(folder) if name.endswith(".png"))
+        if done.returncode != 0 or drawn != ["forces.png", "integrators.png", "solver.png", "stability.png"]:
+            sys.exit(f"FAILED: with {number}: {drawn}, status {done.returncode}: {done.stderr}")
+print("passed")
