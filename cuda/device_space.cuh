@@ -179,13 +179,9 @@ class DeviceSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.stages_.empty()) return;
-        auto const& last = tree.stages_.back();
         std::size_t const apart = tree.stages_.size() - (tree.together_ ? 2 : 1);
         climb_below(tree, apart, sweep);
-        if (tree.together_)
-            launch_together(tree.stages_[apart], last, sweep);
-        else
-            launch(kernels::turn<Sweep>, last, sweep);
+        launch_turn(tree.stages_[apart], tree.together_ ? &tree.stages_.back() : nullptr, sweep);
         descend_below(tree, apart, sweep);
     }
     template <class Value>
@@ -345,14 +341,15 @@ class DeviceSpace {
         kernel<<<stage.blocks, static_cast<unsigned>(stage.threads), bytes, stream()>>>(stage.view, sweep);
         started();
     }
+    /// `upper`: null where there is none, and then blocks know nothing of each other.
     template <class Sweep>
-    void launch_together(Tree::StageHere const& lower, Tree::StageHere const& upper, Sweep const& sweep) const {
-        int const of_block = std::max(lower.threads, upper.threads);
+    void launch_turn(Tree::StageHere const& lower, Tree::StageHere const* upper, Sweep const& sweep) const {
+        int const of_block = std::max(lower.threads, upper ? upper->threads : 0);
         auto const numbers = [&](Tree::StageHere const& stage) {
             return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
         };
-        std::size_t const bytes = sizeof(double) * (numbers(lower) + numbers(upper));
-        allow_shared(kernels::turn_together<Sweep>, bytes);
+        std::size_t const bytes = sizeof(double) * (numbers(lower) + (upper ? numbers(*upper) : 0));
+        allow_shared(kernels::turn<Sweep>, bytes);
         cudaLaunchAttribute cluster{};
         cluster.id = cudaLaunchAttributeClusterDimension;
         cluster.val.clusterDim = {lower.blocks, 1, 1};
@@ -362,8 +359,9 @@ class DeviceSpace {
         config.dynamicSmemBytes = bytes;
         config.stream = stream();
         config.attrs = &cluster;
-        config.numAttrs = 1;
-        check(cudaLaunchKernelEx(&config, kernels::turn_together<Sweep>, lower.view, upper.view, sweep), "start a kernel");
+        config.numAttrs = upper ? 1 : 0;
+        check(cudaLaunchKernelEx(&config, kernels::turn<Sweep>, lower.view, upper ? upper->view : kernels::DeviceStage{}, sweep),
+              "start a kernel");
     }
     /// Of the first `stages` stages.
     template <class Sweep>

@@ -285,14 +285,6 @@ __global__ void __launch_bounds__(threads_of<Sweep>) descend(DeviceStage stage, 
     block.take_nodes();
     block.descend();
 }
-template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage stage, Sweep sweep) {
-    BlockOfStage<Sweep> const block(stage, sweep, shared_numbers);
-    block.take_merges();
-    block.climb();
-    __syncthreads();
-    block.descend();
-}
 constexpr int most_in_cluster = 8;  // any GPU that has clusters takes so many blocks
 /// All blocks of a cluster have come here, and see what the others wrote before.
 __device__ inline void meet_cluster() {
@@ -301,9 +293,10 @@ __device__ inline void meet_cluster() {
     asm volatile("barrier.cluster.arrive.release.aligned;\n\tbarrier.cluster.wait.acquire.aligned;" ::: "memory");
 #endif
 }
-/// Two stages, the upper one of one block, by one cluster of blocks: the same instructions for both.
+/// Up and down again: two stages, the upper one of one block, by one cluster of blocks, or the lower one alone. The same instructions do
+/// both.
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>) turn_together(DeviceStage lower, DeviceStage upper, Sweep sweep) {
+__global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage lower, DeviceStage upper, Sweep sweep) {
     double* const memory[] = {shared_numbers, shared_numbers + BlockOfStage<Sweep>::size(lower, static_cast<int>(blockDim.x))};
     CATENA_NO_UNROLL
     for (int up = 0; up < 2; ++up) {

@@ -3,44 +3,24 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <regex>
 
 #include "dca/oracle/oracle.hpp"
-#include "integrate/chain_system.hpp"
-#include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
+#include "tests/support/variants.hpp"
 
 namespace catena::test {
 namespace {
 
 double constexpr eps = 0x1p-53;
 
-struct Variant {
-    Backend backend;
-    Handles handles;
-};
 Variant const variants[] = {{Backend::serial, Handles::projected},      {Backend::serial, Handles::full},
                             {Backend::segments, Handles::projected},    {Backend::segments, Handles::full},
                             {Backend::cuda, Handles::projected},        {Backend::cuda, Handles::full},
                             {Backend::cuda_levels, Handles::projected}, {Backend::cuda_levels, Handles::full}};
 
-class Rings : public testing::TestWithParam<Variant> {
-  protected:
-    void SetUp() override {
-        if (uses_gpu(GetParam().backend)) need_gpu();
-    }
-    Scene with_backend(Scene scene) const {
-        scene.solver.backend = GetParam().backend;
-        scene.solver.handles = GetParam().handles;
-        return scene;
-    }
-    std::unique_ptr<Communicator> communicator_ = serial_communicator();
-};
-INSTANTIATE_TEST_SUITE_P(Variants, Rings, testing::ValuesIn(variants), [](testing::TestParamInfo<Variant> const& v) {
-    std::string const name = fmt::format("{}_{}", name_of(v.param.backend), name_of(v.param.handles));
-    return std::regex_replace(name, std::regex("-"), "_");
-});
+class Rings : public WithVariant {};
+INSTANTIATE_TEST_SUITE_P(Variants, Rings, testing::ValuesIn(variants), name_of_variant);
 
 /// A regular polygon of bars of length 1, the first of which moves; `closing` is the joint of the last to the first.
 std::string polygon(int bars, std::string const& type, std::string const& closing) {

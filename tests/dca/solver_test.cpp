@@ -5,51 +5,26 @@
 #include <cmath>
 
 #include "dca/oracle/oracle.hpp"
-#include "error.hpp"
-#include "integrate/chain_system.hpp"
 #include "report/nudged.hpp"
-#include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
+#include "tests/support/variants.hpp"
 
 namespace catena::test {
 namespace {
 
 double constexpr eps = 0x1p-53;
 
-struct Variant {
-    Backend backend;
-    Handles handles;
-};
-std::string name_of_variant(testing::TestParamInfo<Variant> const& info) {
-    std::string name = std::string(name_of(info.param.backend)) + "_" + name_of(info.param.handles);
-    std::replace(name.begin(), name.end(), '-', '_');
-    return name;
-}
-
-class Solver : public testing::TestWithParam<Variant> {
+class Solver : public WithVariant {
   protected:
-    void SetUp() override {
-        if (uses_gpu(GetParam().backend)) need_gpu();
-        if (GetParam().backend != Backend::openmp) return;
-        try {
-            openmp_executor(2);
-        } catch (InputError const& error) {
-            ASSERT_NE(std::string(error.what()).find("built without OpenMP"), std::string::npos);
-            GTEST_SKIP() << "NOT RUN: this build is without OpenMP";
-        }
-    }
     Scene scene_of(ChainSpec const& chain, Vec3 const& gravity) const {
         Scene scene;
         scene.chains = {chain};
         scene.chains[0].name = "chain";
         scene.forces.gravity = gravity;
-        scene.solver.backend = GetParam().backend;
-        scene.solver.handles = GetParam().handles;
         scene.solver.threads = 2;
-        return scene;
+        return with_backend(scene);
     }
-    std::unique_ptr<Communicator> communicator_ = serial_communicator();
 };
 
 /// Growth of relative errors from the inputs to the accelerations: no solver can be asked for less than this times eps.
