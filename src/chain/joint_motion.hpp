@@ -4,34 +4,41 @@
 
 #include "chain/chain_group.hpp"
 #include "dca/leaf.hpp"
+#include "dca/places.hpp"
 #include "scene/pose.hpp"
 
 namespace catena {
 
-using dca::Screw;
+using dca::is_one_body, dca::Mat3At, dca::QuatAt, dca::read, dca::RealAt, dca::Screw, dca::Vec3At, dca::write, dca::write_directions;
 
 /// The motion of a frame B against a frame A.
-struct Motion {
-    Quat rotation;     // Q_AB
-    Vec3 omega;        // of B against A, B
-    Vec3 translation;  // of B's origin from A's, A
-    Vec3 velocity;     // of B's origin against A, B
-    static CATENA_HD Motion none() { return {Quat::identity(), Vec3::zero(), Vec3::zero(), Vec3::zero()}; }
+template <class Real>
+struct MotionOf {
+    Quaternion<Real> rotation;    // Q_AB
+    Vector<Real, 3> omega;        // of B against A, B
+    Vector<Real, 3> translation;  // of B's origin from A's, A
+    Vector<Real, 3> velocity;     // of B's origin against A, B
+    static CATENA_HD MotionOf none() {
+        return {Quaternion<Real>::identity(), Vector<Real, 3>::zero(), Vector<Real, 3>::zero(), Vector<Real, 3>::zero()};
+    }
 };
+using Motion = MotionOf<double>;
 /// As numbers, for storage and messages.
 CATENA_HD Vector<double, 13> as_numbers(Motion const& m) {
     Quat const q = m.rotation;
     Vec3 const w = m.omega, x = m.translation, v = m.velocity;
     return {{q.w, q.x, q.y, q.z, w[0], w[1], w[2], x[0], x[1], x[2], v[0], v[1], v[2]}};
 }
-CATENA_HD Motion as_motion(Vector<double, 13> const& n) {
+template <class Real>
+CATENA_HD MotionOf<Real> as_motion(Vector<Real, 13> const& n) {
     return {{n[0], n[1], n[2], n[3]}, {{n[4], n[5], n[6]}}, {{n[7], n[8], n[9]}}, {{n[10], n[11], n[12]}}};
 }
 /// Motion of C against A from those of B against A and C against B. Without `positions` translation and velocity stay zero.
-template <bool positions>
-CATENA_HD Motion compose(Motion const& ab, Motion const& bc) {
-    Mat3 const turn = to_matrix(bc.rotation);
-    Motion ac{ab.rotation * bc.rotation, transposed_times(turn, ab.omega) + bc.omega, Vec3::zero(), Vec3::zero()};
+template <bool positions, class Real>
+CATENA_HD MotionOf<Real> compose(MotionOf<Real> const& ab, MotionOf<Real> const& bc) {
+    using Vector3 = Vector<Real, 3>;
+    Matrix<Real, 3, 3> const turn = to_matrix(bc.rotation);
+    MotionOf<Real> ac{ab.rotation * bc.rotation, transposed_times(turn, ab.omega) + bc.omega, Vector3::zero(), Vector3::zero()};
     if constexpr (positions) {
         ac.translation = ab.translation + to_matrix(ab.rotation) * bc.translation;
         ac.velocity = transposed_times(turn, ab.velocity + cross(ab.omega, bc.translation)) + bc.velocity;
@@ -40,8 +47,9 @@ CATENA_HD Motion compose(Motion const& ab, Motion const& bc) {
 }
 
 /// The coordinates' rates as a relative motion of a joint: angular and linear velocity of the outboard side against the inboard one, M.
+template <class Real>
 struct JointRate {
-    Vec3 angular, linear;
+    Vector<Real, 3> angular, linear;
 };
 
 /// State of bodies in joint coordinates (rules of BodyArrays).
@@ -64,10 +72,12 @@ struct MotionView {
 };
 
 /// The inboard side of a joint, seen from the body it is in.
-struct Meeting {
-    Vec3 point;  // from the origin
-    Mat3 axes;
+template <class Real>
+struct MeetingOf {
+    Vector<Real, 3> point;  // from the origin
+    Matrix<Real, 3, 3> axes;
 };
+using Meeting = MeetingOf<double>;
 
 /// The inboard joints of a group's bodies, as plain pointers (ChainGroup says what they hold).
 struct JointsView {
@@ -84,15 +94,45 @@ struct JointsView {
     LocalDrive const* drive = nullptr;
     std::int64_t drives = 0;
 
-    CATENA_HD Mat3 axes(std::int64_t k) const { return as_matrix(axes1.load(k)); }
-    CATENA_HD Vec3 axis(std::int64_t k) const { return {{axes1.at(k, 2), axes1.at(k, 5), axes1.at(k, 8)}}; }
+    // Of one body, or of several next to each other whose joints are of one type and none of which begins a chain.
+    CATENA_HD JointType type(std::int64_t k) const { return joint[k]; }
+    template <class Place>
+    CATENA_HD JointType type(Place const& several) const {
+        return joint[several.first];
+    }
+    CATENA_HD bool starts_chain(std::int64_t k) const { return is_first[k] != 0; }
+    CATENA_HD bool ends_chain(std::int64_t k) const { return is_last[k] != 0; }
+    template <class Place>
+    CATENA_HD bool starts_chain(Place const&) const {
+        return false;
+    }
+    template <class Place>
+    CATENA_HD bool ends_chain(Place const&) const {
+        return false;
+    }
+    template <class Place>
+    CATENA_HD Mat3At<Place> axes(Place k) const {
+        return as_matrix(read(axes1, k));
+    }
+    template <class Place>
+    CATENA_HD Vec3At<Place> axis(Place k) const {
+        return {{read(axes1, k, 2), read(axes1, k, 5), read(axes1, k, 8)}};
+    }
     /// {c, s, rate} of ChainGroup::screw: the joint turns by c rate q and slides by s rate q.
-    CATENA_HD Vec3 screw_of(std::int64_t k) const { return has_screws ? screw.load(k) : Vec3{{1, 0, 1}}; }
-    CATENA_HD Screw<double> direction_of_screw(std::int64_t k) const {
-        Vec3 const s = screw_of(k);
+    template <class Place>
+    CATENA_HD Vec3At<Place> screw_of(Place k) const {
+        using Real = RealAt<Place>;
+        return has_screws ? read(screw, k) : Vec3At<Place>{{Real(1), Real(0), Real(1)}};
+    }
+    template <class Place>
+    CATENA_HD Screw<RealAt<Place>> direction_of_screw(Place k) const {
+        auto const s = screw_of(k);
         return {s[0], s[1]};
     }
-    CATENA_HD bool has_quaternion(std::int64_t k) const { return joint[k] == JointType::free || joint[k] == JointType::spherical; }
+    template <class Place>
+    CATENA_HD bool has_quaternion(Place k) const {
+        return type(k) == JointType::free || type(k) == JointType::spherical;
+    }
     /// The piece that body k is in.
     CATENA_HD std::int64_t piece_of(std::int64_t k) const {
         std::int64_t low = 0, high = pieces;
@@ -119,83 +159,102 @@ struct JointsView {
     }
 
     /// Of B in M.
-    CATENA_HD Quat turn_of(StateView const& state, std::int64_t k) const {
-        switch (joint[k]) {
+    template <class Place>
+    CATENA_HD QuatAt<Place> turn_of(StateView const& state, Place k) const {
+        switch (type(k)) {
             case JointType::free:
             case JointType::spherical:
-                return as_quaternion(state.q.load(k));
+                return as_quaternion(read(state.q, k));
             case JointType::universal:
-                return from_axis_angle(axis(k), state.q.at(k, 1));
+                return from_axis_angle(axis(k), read(state.q, k, 1));
             case JointType::weld:
             case JointType::link:
-                return Quat::identity();
+                return QuatAt<Place>::identity();
             default:
-                Vec3 const s = screw_of(k);
-                return from_axis_angle(axis(k), s[0] * s[2] * state.q.at(k, 0));
+                auto const s = screw_of(k);
+                return from_axis_angle(axis(k), s[0] * s[2] * read(state.q, k, 0));
         }
     }
     /// Of the meeting frame M of joint k in the inboard body's axes.
-    CATENA_HD Quat meeting_rotation(StateView const& state, std::int64_t k) const {
-        Quat const frame = as_quaternion(joint_rotation.load(k));
-        if (joint[k] != JointType::universal) return frame;
-        return frame * from_axis_angle(first_axis.load(k), state.q.at(k, 0));
+    template <class Place>
+    CATENA_HD QuatAt<Place> meeting_rotation(StateView const& state, Place k) const {
+        QuatAt<Place> const frame = as_quaternion(read(joint_rotation, k));
+        if (type(k) != JointType::universal) return frame;
+        return frame * from_axis_angle(read(first_axis, k), read(state.q, k, 0));
     }
     /// Of the meeting point from the inboard body's origin, its axes.
-    CATENA_HD Vec3 meeting_point(StateView const& state, std::int64_t k) const {
-        Vec3 const point = joint_translation.load(k);
-        if (!has_screws) return point;
-        Vec3 const s = screw_of(k);
-        if (s[1] == 0) return point;
-        Mat3 const frame = to_matrix(as_quaternion(joint_rotation.load(k)));
-        return point + frame * ((s[1] * s[2] * state.q.at(k, 0)) * axis(k));
+    template <class Place>
+    CATENA_HD Vec3At<Place> meeting_point(StateView const& state, Place k) const {
+        Vec3At<Place> const point = read(joint_translation, k);
+        if (!slides(k)) return point;
+        auto const s = screw_of(k);
+        Mat3At<Place> const frame = to_matrix(as_quaternion(read(joint_rotation, k)));
+        return point + frame * ((s[1] * s[2] * read(state.q, k, 0)) * axis(k));
     }
-    CATENA_HD JointRate rate(StateView const& state, std::int64_t k) const {
-        Vec3 const qd = state.qd.load(k);
-        switch (joint[k]) {
+    template <class Place>
+    CATENA_HD bool slides(Place k) const {
+        return has_screws && (type(k) == JointType::prismatic || type(k) == JointType::helical);
+    }
+    template <class Place>
+    CATENA_HD JointRate<RealAt<Place>> rate(StateView const& state, Place k) const {
+        using Vector3 = Vec3At<Place>;
+        Vector3 const qd = read(state.qd, k);
+        switch (type(k)) {
             case JointType::free:
             case JointType::spherical:
-                return {to_matrix(turn_of(state, k)) * qd, Vec3::zero()};
+                return {to_matrix(turn_of(state, k)) * qd, Vector3::zero()};
             case JointType::universal:
-                return {qd[0] * first_axis.load(k) + qd[1] * axis(k), Vec3::zero()};
+                return {qd[0] * read(first_axis, k) + qd[1] * axis(k), Vector3::zero()};
             case JointType::weld:
             case JointType::link:
-                return {Vec3::zero(), Vec3::zero()};
+                return {Vector3::zero(), Vector3::zero()};
             default:
-                Vec3 const s = screw_of(k), along = axis(k);
+                Vector3 const s = screw_of(k), along = axis(k);
                 return {(s[0] * s[2] * qd[0]) * along, (s[1] * s[2] * qd[0]) * along};
         }
     }
     /// Of body k against its inboard body. `turn`: turn_of().
-    CATENA_HD Motion motion(StateView const& state, std::int64_t k, Quat const& turn) const {
-        if (joint[k] == JointType::free) {
-            std::int64_t const p = piece_of(k);
-            return {turn, state.qd.load(k), state.base_position.load(p), transposed_times(to_matrix(turn), state.base_velocity.load(p))};
-        }
-        Motion m{meeting_rotation(state, k) * turn, Vec3::zero(), meeting_point(state, k), Vec3::zero()};
-        switch (joint[k]) {
+    template <class Place>
+    CATENA_HD MotionOf<RealAt<Place>> motion(StateView const& state, Place k, QuatAt<Place> const& turn) const {
+        using Vector3 = Vec3At<Place>;
+        if constexpr (is_one_body<Place>)
+            if (joint[k] == JointType::free) {
+                std::int64_t const p = piece_of(k);
+                return {turn, state.qd.load(k), state.base_position.load(p),
+                        transposed_times(to_matrix(turn), state.base_velocity.load(p))};
+            }
+        MotionOf<RealAt<Place>> m{meeting_rotation(state, k) * turn, Vector3::zero(), meeting_point(state, k), Vector3::zero()};
+        switch (type(k)) {
             case JointType::spherical:
-                m.omega = state.qd.load(k);
+                m.omega = read(state.qd, k);
                 break;
             case JointType::revolute:  // B's axis is M's
-                m.omega = state.qd.at(k, 0) * axis(k);
+                m.omega = read(state.qd, k, 0) * axis(k);
                 break;
             case JointType::weld:
                 break;
             default:
-                Mat3 const to_meeting = to_matrix(turn);
-                JointRate const r = rate(state, k);
+                Mat3At<Place> const to_meeting = to_matrix(turn);
+                auto const r = rate(state, k);
                 m.omega = transposed_times(to_meeting, r.angular);
                 m.velocity = transposed_times(to_meeting, r.linear);
         }
         return m;
     }
-    CATENA_HD Meeting meeting(StateView const& state, std::int64_t k) const {
+    template <class Place>
+    CATENA_HD MeetingOf<RealAt<Place>> meeting(StateView const& state, Place k) const {
         return {meeting_point(state, k), to_matrix(meeting_rotation(state, k)) * axes(k)};
     }
     /// Of the chain's plane, the same in M and B.
-    CATENA_HD Vec3 normal(std::int64_t k) const { return planar ? axis(k) : Vec3::zero(); }
+    template <class Place>
+    CATENA_HD Vec3At<Place> normal(Place k) const {
+        return planar ? axis(k) : Vec3At<Place>::zero();
+    }
     /// In a plane bodies turn about its normal alone: composing rounds a part across it, which grows with the chain.
-    CATENA_HD Vec3 kept_in_plane(Vec3 const& plane, Vec3 const& omega) const { return planar ? dot(plane, omega) * plane : omega; }
+    template <class Real>
+    CATENA_HD Vector<Real, 3> kept_in_plane(Vector<Real, 3> const& plane, Vector<Real, 3> const& omega) const {
+        return planar ? dot(plane, omega) * plane : omega;
+    }
     /// Sets q and qd of a driven joint to its courses' at a time.
     CATENA_HD void follow_course(StateView const& state, std::int64_t k, double time) const {
         LocalDrive const* const d = drives > 0 ? drive_of(k) : nullptr;

@@ -21,28 +21,29 @@ struct JointScan {
     View<12> next_meeting;               // {point, axes}: entry 1 of the joint after this rank's last body
     View<13> shared;                     // wholes of shared chains' units, on their way between ranks
 
-    template <bool positions>
-    CATENA_HD Motion load(std::int64_t k) const {
-        Motion m{as_quaternion(rotation.load(k)), omega.load(k), Vec3::zero(), Vec3::zero()};
+    template <bool positions, class Place>
+    CATENA_HD MotionOf<RealAt<Place>> load(Place k) const {
+        using Vector3 = Vec3At<Place>;
+        MotionOf<RealAt<Place>> m{as_quaternion(read(rotation, k)), read(omega, k), Vector3::zero(), Vector3::zero()};
         if constexpr (positions) {
-            m.translation = translation.load(k);
-            m.velocity = velocity.load(k);
+            m.translation = read(translation, k);
+            m.velocity = read(velocity, k);
         }
         return m;
     }
-    template <bool positions>
-    CATENA_HD void store(std::int64_t k, Motion const& m) const {
-        rotation.store(k, as_vector(m.rotation));
-        omega.store(k, m.omega);
+    template <bool positions, class Place>
+    CATENA_HD void store(Place k, MotionOf<RealAt<Place>> const& m) const {
+        write(rotation, k, as_vector(m.rotation));
+        write(omega, k, m.omega);
         if constexpr (positions) {
-            translation.store(k, m.translation);
-            velocity.store(k, m.velocity);
+            write(translation, k, m.translation);
+            write(velocity, k, m.velocity);
         }
     }
-    template <bool positions>
-    CATENA_HD void set_relative(std::int64_t k) const {
-        Quat const turn = joints.turn_of(state, k);
-        motion.joint_turn.store(k, as_vector(turn));
+    template <bool positions, class Place>
+    CATENA_HD void set_relative(Place k) const {
+        QuatAt<Place> const turn = joints.turn_of(state, k);
+        write(motion.joint_turn, k, as_vector(turn));
         store<positions>(k, joints.motion(state, k, turn));
     }
     /// A few bodies at a time, so that their loads are under way together.
@@ -84,16 +85,22 @@ struct JointScan {
         before[m.inboard] = start;
         before[m.outboard] = compose<positions>(start, whole[m.inboard]);
     }
-    template <bool positions>
-    CATENA_HD void set_motion(std::int64_t k) const {
-        Motion const m = compose<positions>(before[slot[k]], load<positions>(k));
-        motion.orientation.store(k, as_vector(normalized(m.rotation)));
-        motion.omega.store(k, joints.kept_in_plane(joints.normal(k), m.omega));
+    /// Of the body before the run of body k, against the ground.
+    CATENA_HD Motion before_run(std::int64_t k) const { return before[slot[k]]; }
+    template <class Place>
+    CATENA_HD MotionOf<RealAt<Place>> before_run(Place const& several) const {
+        return as_motion(pick(reinterpret_cast<double const*>(before), slot, several, Vector<RealAt<Place>, 13>{}));
+    }
+    template <bool positions, class Place>
+    CATENA_HD void set_motion(Place k) const {
+        auto const m = compose<positions>(before_run(k), load<positions>(k));
+        write(motion.orientation, k, as_vector(normalized(m.rotation)));
+        write(motion.omega, k, joints.kept_in_plane(joints.normal(k), m.omega));
         if constexpr (positions) {
-            motion.origin.store(k, m.translation);
-            motion.velocity.store(k, m.velocity);
+            write(motion.origin, k, m.translation);
+            write(motion.velocity, k, m.velocity);
         }
-        if (motion.axes2.origin && !joints.is_last[k]) set_meeting(k);
+        if (motion.axes2.origin && !joints.ends_chain(k)) set_meeting(k);
     }
 
     CATENA_HD void show_unit(std::int64_t i, dca::SharedUnit const& unit) const {
@@ -103,7 +110,7 @@ struct JointScan {
         whole[unit.slot] = as_motion(shared.load(i));
     }
     CATENA_HD void show_first_meeting() const {
-        Meeting const m = joints.meeting(state, 0);
+        Meeting const m = joints.meeting(state, std::int64_t{0});
         Vector<double, 12> numbers;
         CATENA_UNROLL
         for (int i = 0; i < 12; ++i) numbers[i] = i < 3 ? m.point[i] : m.axes.data[i - 3];
@@ -114,12 +121,17 @@ struct JointScan {
         Vector<double, 12> const n = next_meeting.load(1);
         put_meeting(inboard_body, {{{n[0], n[1], n[2]}}, {{n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]}}});
     }
-    CATENA_HD void put_meeting(std::int64_t inboard_body, Meeting const& m) const {
-        motion.r2.store(inboard_body, m.point + joints.r1.load(inboard_body));
-        Vector<double, 9> axes;
+    template <class Place>
+    CATENA_HD void set_meeting(Place const& inboard_bodies) const {
+        put_meeting(inboard_bodies, joints.meeting(state, inboard_bodies + 1));
+    }
+    template <class Place>
+    CATENA_HD void put_meeting(Place inboard_body, MeetingOf<RealAt<Place>> const& m) const {
+        write(motion.r2, inboard_body, m.point + read(joints.r1, inboard_body));
+        Vector<RealAt<Place>, 9> axes;
         CATENA_UNROLL
         for (int i = 0; i < 9; ++i) axes[i] = m.axes.data[i];
-        motion.axes2.store(inboard_body, axes);
+        write(motion.axes2, inboard_body, axes);
     }
 };
 

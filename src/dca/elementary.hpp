@@ -86,6 +86,46 @@ CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
     using std::sin;
     return {cos(x), sin(x)};
 }
+/// The same operations on several numbers side by side. Beyond 1e16, where neighbours are a radian apart, digits may differ.
+template <class Real>
+    requires requires { Real::lanes; }
+CATENA_HD BasicCosSin<Real> cos_sin(Real x) {
+    if (any_above(x, 1e5)) {
+        Real const turn(0x1.921fb54442d18p+2), turn_low(0x1.1a62633145c07p-52), bound(1e5);
+        Real left = fused(-truncated(x / turn), turn, x);  // exact, but for a turn where the quotient was rounded over a whole number
+        Real const wrong = Real(0) - left * x;             // positive if so
+        left = where_less(Real(0), wrong, where_less(left, Real(0), left + turn, left - turn), left);
+        Real const reduced = fused(-floor((x - left) / turn + Real(0.5)), turn_low, left);
+        x = where_less(bound, x, reduced, where_less(x, -bound, reduced, x));
+    }
+    Real const quarters = floor(fused(x, Real(0.63661977236758134), Real(0.5))), second = quarters * Real(0x1.0b4611a600000p-34);
+    Real const once = fused(-quarters, Real(0x1.921fb54400000p+0), x), twice = once - second;
+    Real const low = fused(-quarters, Real(0x1.3198a2e037073p-69), (once - twice) - second);
+    Real const r = twice + low, rest = (twice - r) + low, z = r * r;
+    Real s(1 / 355687428096000.0), c(1 / 20922789888000.0);
+    s = fused(s, z, Real(-1 / 1307674368000.0));
+    c = fused(c, z, Real(-1 / 87178291200.0));
+    s = fused(s, z, Real(1 / 6227020800.0));
+    c = fused(c, z, Real(1 / 479001600.0));
+    s = fused(s, z, Real(-1 / 39916800.0));
+    c = fused(c, z, Real(-1 / 3628800.0));
+    s = fused(s, z, Real(1 / 362880.0));
+    c = fused(c, z, Real(1 / 40320.0));
+    s = fused(s, z, Real(-1 / 5040.0));
+    c = fused(c, z, Real(-1 / 720.0));
+    s = fused(s, z, Real(1 / 120.0));
+    c = fused(c, z, Real(1 / 24.0));
+    s = fused(s, z, Real(-1 / 6.0));
+    Real const half = Real(0.5) * z, most = Real(1) - half;
+    Real const cosine = most + (((Real(1) - most) - half) + fused(z * z, c, -r * rest));
+    Real const sine = r + fused(s * z, r, rest * cosine);
+    // turned_back: the quarters' last two bits
+    auto const odd = [](Real const& n) { return Real(0.5) * n - floor(Real(0.5) * n); };  // 0 or 1/2
+    Real const swapped = odd(quarters), zero(0);
+    Real const along = where_less(zero, swapped, sine, cosine), across = where_less(zero, swapped, cosine, sine);
+    return {where_less(zero, odd(floor(Real(0.5) * (quarters + Real(1)))), -along, along),
+            where_less(zero, odd(floor(Real(0.5) * quarters)), -across, across)};
+}
 
 /// The angle whose tangent is s / w, for s >= 0 and w >= 0 that are not both 0; within 2 units in the last place. The arc tangent of the
 /// nearest quarter is known; the rest is below 1/8.

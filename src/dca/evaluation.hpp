@@ -34,14 +34,16 @@ struct Resting {
         return body.k;
     }
 
-    // Of several bodies side by side, whose joints restrict what handles carry.
+    /// Of several bodies side by side, whose joints restrict what handles carry: as Part.
     template <class Place>
-    CATENA_HD Body<Place> at(Place k) const {
-        return {leaf.body(loads, k), Leaf::K};
-    }
+    struct Walk {
+        Resting const& bodies;
+        Place begin;
+        CATENA_HD_IN_PLACE Body<Place> body(int i) const { return {bodies.leaf.body(bodies.loads, begin + i), Leaf::K}; }
+    };
     template <class Place>
-    CATENA_HD Body<Place> after(Body<Place> const& body) const {
-        return at(body.k + 1);
+    CATENA_HD_IN_PLACE Walk<Place> walk(Place begin) const {
+        return {*this, begin};
     }
 
     template <class Place>

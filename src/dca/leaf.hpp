@@ -15,6 +15,13 @@ template <class Real, int K>
 struct Handle {
     Matrix<Real, 3, K> torque, force;
 };
+/// Whose first three directions are forces along the very axes in which forces are kept, the others torques about them.
+template <class Real, int K>
+struct GroundHandle {
+    Matrix<Real, 3, K> torque;
+    Vector<Real, 3> r;  // of make_handle
+    Matrix<Real, 3, 3> angular;
+};
 
 /// Directions at a point `r` from the centre of mass (body axes): first the three forces along the columns of `linear`, then
 /// torques about the columns of `angular` (the same axes, `angular` in body axes, `linear` where forces are kept).
@@ -35,6 +42,11 @@ CATENA_HD Handle<Real, K> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 
         h.force.set_column(j, Vector<Real, 3>::zero());
     }
     return h;
+}
+
+template <int K, class Real>
+CATENA_HD GroundHandle<Real, K> make_ground_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular) {
+    return {make_handle<K>(r, angular, Matrix<Real, 3, 3>{}).torque, r, angular};
 }
 
 /// A joint that slides along its axis a: the free motion is (angular c a, linear s a) with c^2 + s^2 = 1. In the order of
@@ -59,25 +71,32 @@ CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r,
     }
 }
 
-/// Precondition: inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite. `linear` columns of both handles
-/// orthonormal, unless `any_forces`: then every direction may have a force (screws).
-template <bool any_forces = false, class Real, int K>
-CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, Handle<Real, K> const& h1,
-                                             Handle<Real, K> const& h2) {
-    constexpr int forces = any_forces ? K : K < 3 ? K : 3;
-    Matrix<Real, 3, K> const j1 = full(inverse_inertia) * h1.torque;
-    Matrix<Real, 3, K> const j2 = full(inverse_inertia) * h2.torque;
+/// The torques' part of leaf_matrix.
+template <class Real, int K>
+CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& inverse_inertia, Matrix<Real, 3, K> const& torque1,
+                                                Matrix<Real, 3, K> const& torque2) {
+    Matrix<Real, 3, K> const j1 = full(inverse_inertia) * torque1;
+    Matrix<Real, 3, K> const j2 = full(inverse_inertia) * torque2;
     SegmentMatrix<Real, K> s;
     CATENA_UNROLL
     for (int a = 0; a < K; ++a)
         CATENA_UNROLL
         for (int b = 0; b < K; ++b) {
             if (b <= a) {
-                s.z11(a, b) = dot(h1.torque.column(a), j1.column(b));
-                s.z22(a, b) = dot(h2.torque.column(a), j2.column(b));
+                s.z11(a, b) = dot(torque1.column(a), j1.column(b));
+                s.z22(a, b) = dot(torque2.column(a), j2.column(b));
             }
-            s.z12(a, b) = dot(h1.torque.column(a), j2.column(b));
+            s.z12(a, b) = dot(torque1.column(a), j2.column(b));
         }
+    return s;
+}
+/// Precondition: inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite. The forces' columns of both handles orthonormal,
+/// unless `any_forces`: then every direction may have a force (screws).
+template <bool any_forces = false, class Real, int K>
+CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, Handle<Real, K> const& h1,
+                                             Handle<Real, K> const& h2) {
+    constexpr int forces = any_forces ? K : K < 3 ? K : 3;
+    SegmentMatrix<Real, K> s = turning_matrix(inverse_inertia, h1.torque, h2.torque);
     CATENA_UNROLL
     for (int a = 0; a < forces; ++a) {
         if constexpr (any_forces) {
@@ -95,12 +114,53 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
     }
     return s;
 }
+template <bool any_forces = false, class Real, int K>
+CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, GroundHandle<Real, K> const& h1,
+                                             GroundHandle<Real, K> const& h2) {
+    static_assert(!any_forces && (K == 3 || K == 6));
+    SegmentMatrix<Real, K> s = turning_matrix(inverse_inertia, h1.torque, h2.torque);
+    CATENA_UNROLL
+    for (int a = 0; a < 3; ++a) {
+        s.z11(a, a) = s.z11(a, a) + inverse_mass;
+        s.z22(a, a) = s.z22(a, a) + inverse_mass;
+        s.z12(a, a) = s.z12(a, a) + inverse_mass;
+    }
+    return s;
+}
 
 /// Acceleration along the handle's directions of a body with angular acceleration `alpha` (body axes) and acceleration `a` of
 /// its centre of mass, velocity terms left out.
 template <class Real, int K>
 CATENA_HD Vector<Real, K> along(Handle<Real, K> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
     return transposed_times(h.torque, alpha) + transposed_times(h.force, a);
+}
+template <class Real, int K>
+CATENA_HD Vector<Real, K> along(GroundHandle<Real, K> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
+    Vector<Real, K> v = transposed_times(h.torque, alpha);
+    CATENA_UNROLL
+    for (int i = 0; i < 3; ++i) v[i] = v[i] + a[i];
+    return v;
+}
+/// Force and torque of unit wrenches, so many of each.
+template <class Real, int K>
+CATENA_HD Vector<Real, 3> push(Handle<Real, K> const& h, Vector<Real, K> const& f) {
+    return h.force * f;
+}
+template <class Real, int K>
+CATENA_HD Vector<Real, 3> push(GroundHandle<Real, K> const&, Vector<Real, K> const& f) {
+    return {{f[0], f[1], f[2]}};
+}
+template <class Real, int K>
+CATENA_HD Vector<Real, 3> moment(Handle<Real, K> const& h, Vector<Real, K> const& f) {
+    return h.torque * f;
+}
+template <class Real, int K>
+CATENA_HD Vector<Real, 3> moment(GroundHandle<Real, K> const& h, Vector<Real, K> const& f) {
+    Vector<Real, 3> const m = cross(h.r, h.angular * push(h, f));
+    if constexpr (K == 6)
+        return m + h.angular * Vector<Real, 3>{{f[3], f[4], f[5]}};
+    else
+        return m;
 }
 
 /// A x from the inverse of A, symmetric and positive definite.

@@ -86,9 +86,9 @@ class BeadLeaf {
 };
 
 /// The two handles of a body, and the rotation from B to the axes in which forces are kept.
-template <class Real, int K>
+template <class Real, class Handle>
 struct HandlePair {
-    Handle<Real, K> h1, h2;
+    Handle h1, h2;
     Matrix<Real, 3, 3> to_force_axes;
 };
 
@@ -114,12 +114,12 @@ class MeetingFrames {
         return {read(group_.r1, k), read(r2_, k), read(rotation_, k), read(group_.axes1, k), read(axes2_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<RealAt<Place>, K> handles(State<RealAt<Place>> const& state, Place k) const {
+    CATENA_HD HandlePair<RealAt<Place>, Handle<RealAt<Place>, K>> handles(State<RealAt<Place>> const& state, Place k) const {
         using Real = RealAt<Place>;
         using Axes = Matrix<Real, 3, 3>;
         Axes const turn = to_matrix(as_quaternion(state.rotation));
         Axes const e1 = transposed_times(turn, as_matrix(state.axes1)), e2 = as_matrix(state.axes2);
-        HandlePair<Real, K> pair{make_handle<K>(state.r1, e1, e1), make_handle<K>(state.r2, e2, e2), Axes::identity()};
+        HandlePair<Real, Handle<Real, K>> pair{make_handle<K>(state.r1, e1, e1), make_handle<K>(state.r2, e2, e2), Axes::identity()};
         if constexpr (sliding) {
             auto const s1 = read(group_.screw, k);
             turn_to_screw(Screw<Real>{s1[0], s1[1]}, state.r1, e1, e1, pair.h1);
@@ -155,11 +155,11 @@ class GroundFrames {
         return {read(r1_, k), read(r2_, k), read(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<RealAt<Place>, K> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
+    CATENA_HD HandlePair<RealAt<Place>, GroundHandle<RealAt<Place>, K>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
         using Axes = Matrix<RealAt<Place>, 3, 3>;
         Axes const turn = to_matrix(as_quaternion(state.rotation));
-        Axes const to_body = transpose(turn), unit = Axes::identity();
-        return {make_handle<K>(state.r1, to_body, unit), make_handle<K>(state.r2, to_body, unit), turn};
+        Axes const to_body = transpose(turn);
+        return {make_ground_handle<K>(state.r1, to_body), make_ground_handle<K>(state.r2, to_body), turn};
     }
 
   private:
@@ -189,7 +189,7 @@ class LinkFrames {
                 read(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<RealAt<Place>, K> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
+    CATENA_HD HandlePair<RealAt<Place>, Handle<RealAt<Place>, K>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
         using Axes = Matrix<RealAt<Place>, 3, 3>;
         Axes const turn = to_matrix(as_quaternion(state.rotation)), e1 = axes(state.inboard), e2 = axes(state.outboard);
         return {make_handle<K>(state.r1, transposed_times(turn, e1), e1), make_handle<K>(state.r2, transposed_times(turn, e2), e2), turn};
@@ -271,8 +271,8 @@ class BodyLeaf {
         if (!out.acceleration.origin) return;
         auto const at_k = body(loads, k);
         auto const h = frames_.handles(at_k.state, k);
-        auto const torque = applied_torque(loads, at_k) + (h.h1.torque * inboard_force - h.h2.torque * outboard_force);
-        auto const force = at_k.force + (h.h1.force * inboard_force - h.h2.force * outboard_force);
+        auto const torque = applied_torque(loads, at_k) + (moment(h.h1, inboard_force) - moment(h.h2, outboard_force));
+        auto const force = at_k.force + (push(h.h1, inboard_force) - push(h.h2, outboard_force));
         write(out.alpha, k, at_k.inverse_inertia * torque);
         write(out.acceleration, k, at_k.inverse_mass * force);
     }

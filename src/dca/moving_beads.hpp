@@ -88,14 +88,25 @@ struct MovingBeads {
         return body;
     }
 
-    // Of several beads side by side, none of which begins or ends a chain.
+    /// Of several beads side by side, none of which begins or ends a chain: as Part.
     template <class Place>
-    CATENA_HD Body<Place> at(Place k) const {
-        return between(k, link_before(k));
-    }
+    class Walk {
+      public:
+        CATENA_HD_IN_PLACE Walk(MovingBeads const& beads, Place begin) : beads_(beads), begin_(begin), outboard_(beads.link_before(begin)) {}
+        CATENA_HD_IN_PLACE Body<Place> body(int i) {
+            Body<Place> const body = beads_.between(begin_ + i, outboard_);
+            outboard_ = body.outboard;
+            return body;
+        }
+
+      private:
+        MovingBeads const& beads_;
+        Place begin_;
+        Link<RealAt<Place>> outboard_;
+    };
     template <class Place>
-    CATENA_HD Body<Place> after(Body<Place> const& body) const {
-        return between(body.k + 1, body.outboard);
+    CATENA_HD_IN_PLACE Walk<Place> walk(Place begin) const {
+        return Walk<Place>(*this, begin);
     }
 
     template <class Place>

@@ -2,6 +2,9 @@
 // its scalar type follows from it, and the same source serves one body and several.
 #pragma once
 
+#include <type_traits>
+
+#include "dca/rotation.hpp"
 #include "dca/solver.hpp"
 
 namespace catena::dca {
@@ -16,10 +19,23 @@ struct RealOf<std::int64_t> {
 };
 template <class Place>
 using RealAt = typename RealOf<Place>::type;
+template <class Place>
+using Vec3At = Vector<RealAt<Place>, 3>;
+template <class Place>
+using Mat3At = Matrix<RealAt<Place>, 3, 3>;
+template <class Place>
+using QuatAt = Quaternion<RealAt<Place>>;
+/// Whether it stands for one body.
+template <class Place>
+inline constexpr bool is_one_body = std::is_same_v<Place, std::int64_t>;
 
 template <class T, int D>
 CATENA_HD Vector<double, D> read(FieldView<T, D> const& view, std::int64_t k) {
     return view.load(k);
+}
+template <class T, int D>
+CATENA_HD double read(FieldView<T, D> const& view, std::int64_t k, int component) {
+    return view.at(k, component);
 }
 template <int D>
 CATENA_HD void write(View<D> const& view, std::int64_t k, Vector<double, D> const& value) {

@@ -16,7 +16,10 @@ template <class Real>
 CATENA_HD Quaternion<Real> as_quaternion(Vector<Real, 4> const& v) {
     return {v[0], v[1], v[2], v[3]};
 }
-CATENA_HD Vector<double, 4> as_vector(Quat const& q) { return {{q.w, q.x, q.y, q.z}}; }
+template <class Real>
+CATENA_HD Vector<Real, 4> as_vector(Quaternion<Real> const& q) {
+    return {{q.w, q.x, q.y, q.z}};
+}
 
 /// Q_AC = Q_AB Q_BC.
 template <class Real>

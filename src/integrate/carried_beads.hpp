@@ -8,9 +8,11 @@
 
 namespace catena {
 
-struct Wrench {
-    Vec3 torque, force;  // about the centre of mass; W
+template <class Real>
+struct WrenchOf {
+    Vector<Real, 3> torque, force;  // about the centre of mass; W
 };
+using Wrench = WrenchOf<double>;
 
 /// `centre`: the centre of mass of body k, W; `axes`: its axes in W.
 struct CarriedBeadsView {

@@ -32,94 +32,128 @@ struct JointChains {
     View<4> outboard_end;  // entry -1: outboard_end_of() of the body before this rank's first
 
     CATENA_HD JointsView const& joints() const { return scan.joints; }
-    CATENA_HD Mat3 turn(std::int64_t k) const { return to_matrix(as_quaternion(scan.motion.joint_turn.load(k))); }
-    CATENA_HD Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(scan.motion.orientation.load(k))); }
-    CATENA_HD Vec3 omega(std::int64_t k) const { return scan.motion.omega.load(k); }
-    CATENA_HD Vec3 r1(std::int64_t k) const { return joints().r1.load(k); }
-    CATENA_HD Mat3 axes2(std::int64_t k) const {
-        return as_matrix(scan.motion.axes2.origin ? scan.motion.axes2.load(k) : fixed_axes2.load(k));
+    // A place k: one body, or several next to each other (dca/places.hpp, JointsView::type).
+    template <class Place>
+    CATENA_HD Mat3At<Place> turn(Place k) const {
+        return to_matrix(as_quaternion(read(scan.motion.joint_turn, k)));
     }
-    CATENA_HD Vec3 r2(std::int64_t k) const { return scan.motion.r2.origin ? scan.motion.r2.load(k) : fixed_r2.load(k); }
+    template <class Place>
+    CATENA_HD Mat3At<Place> orientation(Place k) const {
+        return to_matrix(as_quaternion(read(scan.motion.orientation, k)));
+    }
+    template <class Place>
+    CATENA_HD Vec3At<Place> omega(Place k) const {
+        return read(scan.motion.omega, k);
+    }
+    template <class Place>
+    CATENA_HD Vec3At<Place> r1(Place k) const {
+        return read(joints().r1, k);
+    }
+    template <class Place>
+    CATENA_HD Mat3At<Place> axes2(Place k) const {
+        return as_matrix(scan.motion.axes2.origin ? read(scan.motion.axes2, k) : read(fixed_axes2, k));
+    }
+    template <class Place>
+    CATENA_HD Vec3At<Place> r2(Place k) const {
+        return scan.motion.r2.origin ? read(scan.motion.r2, k) : read(fixed_r2, k);
+    }
+    /// What drives joint k; null: nothing. Of several bodies none is driven.
+    CATENA_HD LocalDrive const* drive_of(std::int64_t k) const { return joints().drives > 0 ? joints().drive_of(k) : nullptr; }
+    template <class Place>
+    CATENA_HD LocalDrive const* drive_of(Place const&) const {
+        return nullptr;
+    }
 
     // Configuration.
 
-    template <bool positions>
-    CATENA_HD void set_relative(std::int64_t k) const {
+    template <bool positions, class Place>
+    CATENA_HD void set_relative(Place k) const {
         scan.set_relative<positions>(k);
         if (given.joint_loads) set_joint_load(k);
     }
     /// With the loads, but where these wait for forces from outside.
-    template <bool positions>
-    CATENA_HD void set_motion(std::int64_t k) const {
+    template <bool positions, class Place>
+    CATENA_HD void set_motion(Place k) const {
         scan.set_motion<positions>(k);
-        if (!beads) return set_loads(k);
-        Mat3 const axes = orientation(k);
-        beads.put(k, scan.motion.origin.load(k) - axes * r1(k), axes);
-        beads.clear_forces(k);
+        if constexpr (is_one_body<Place>)
+            if (beads) {
+                Mat3 const axes = orientation(k);
+                beads.put(k, scan.motion.origin.load(k) - axes * r1(k), axes);
+                return beads.clear_forces(k);
+            }
+        set_loads(k);
     }
 
     // Loads.
 
     /// Along the joint's free directions: given, spring and damper.
-    CATENA_HD void set_joint_load(std::int64_t k) const {
-        if (joints().drives > 0 && joints().drive_of(k)) return joint_load.store(k, Vector<double, 4>::zero());
-        Vec3 along = given.torque.load(k);
-        Vec3 const qd = scan.state.qd.load(k);
-        Vector<double, 4> const q = scan.state.q.load(k);
+    template <class Place>
+    CATENA_HD void set_joint_load(Place k) const {
+        using Real = RealAt<Place>;
+        if (drive_of(k)) return write(joint_load, k, Vector<Real, 4>::zero());
+        Vec3At<Place> along = read(given.torque, k);
+        auto const qd = read(scan.state.qd, k);
+        auto const q = read(scan.state.q, k);
         if (given.springs) {
-            Vec3 const stiffness = given.stiffness.load(k);
-            Vector<double, 4> const rest = given.rest.load(k);
-            if (joints().joint[k] == JointType::spherical)
+            auto const stiffness = read(given.stiffness, k);
+            auto const rest = read(given.rest, k);
+            if (joints().type(k) != JointType::spherical) {
+                for (int i = 0; i < 2; ++i) along[i] = along[i] - stiffness[i] * (q[i] - rest[i]);
+            } else if constexpr (is_one_body<Place>) {
                 along = along + spherical_spring_torque(stiffness, as_quaternion(rest), as_quaternion(q));
-            else
-                for (int i = 0; i < 2; ++i) along[i] -= stiffness[i] * (q[i] - rest[i]);
+            }
         }
         if (given.dampers) {
-            Vec3 const damping = given.damping.load(k);
-            for (int i = 0; i < 3; ++i) along[i] -= damping[i] * qd[i];
+            auto const damping = read(given.damping, k);
+            for (int i = 0; i < 3; ++i) along[i] = along[i] - damping[i] * qd[i];
         }
-        joint_load.store(k, load_along_axes(k, along));
+        write(joint_load, k, load_along_axes(k, along));
     }
     /// On the outboard body, from the moments along the coordinates: torque along the joint's axes (universal: within the plane of its
     /// axes) and force along the last one.
-    CATENA_HD Vector<double, 4> load_along_axes(std::int64_t k, Vec3 const& along) const {
-        Mat3 const axes = joints().axes(k);
-        switch (joints().joint[k]) {
+    template <class Place>
+    CATENA_HD Vector<RealAt<Place>, 4> load_along_axes(Place k, Vec3At<Place> const& along) const {
+        using Real = RealAt<Place>;
+        Real const none(0);
+        auto const axes = joints().axes(k);
+        switch (joints().type(k)) {
             case JointType::spherical: {
-                Vec3 const t = transposed_times(axes, turn(k) * along);
-                return {{t[0], t[1], t[2], 0}};
+                auto const t = transposed_times(axes, turn(k) * along);
+                return {{t[0], t[1], t[2], none}};
             }
             case JointType::universal: {
-                Vec3 const first = joints().first_axis.load(k), second = axes.column(2);
-                double const g = dot(first, second), x = (along[0] - g * along[1]) / (1 - g * g), y = along[1] - g * x;
-                Vec3 const t = transposed_times(axes, plus_scaled(x * first, y, second));
-                return {{t[0], t[1], t[2], 0}};
+                auto const first = read(joints().first_axis, k), second = axes.column(2);
+                Real const g = dot(first, second), x = (along[0] - g * along[1]) / (Real(1) - g * g), y = along[1] - g * x;
+                auto const t = transposed_times(axes, plus_scaled(x * first, y, second));
+                return {{t[0], t[1], t[2], none}};
             }
             case JointType::free:
             case JointType::link:
             case JointType::weld:
-                return Vector<double, 4>::zero();
+                return Vector<Real, 4>::zero();
             default:
-                Vec3 const s = joints().screw_of(k);
-                return {{0, 0, s[0] / s[2] * along[0], s[1] / s[2] * along[0]}};
+                auto const s = joints().screw_of(k);
+                return {{none, none, s[0] / s[2] * along[0], s[1] / s[2] * along[0]}};
         }
     }
     /// Adds what the joints at both ends of body k do along their free directions; B.
-    CATENA_HD void add_joint_loads(std::int64_t k, Mat3 const& inboard_turn, Vec3& moment, Vec3& push) const {
-        Vector<double, 4> const in = joint_load.load(k);
-        Mat3 const e1 = transposed_times(inboard_turn, joints().axes(k));
-        moment = moment + e1 * Vec3{{in[0], in[1], in[2]}};
-        if (in[3] != 0) {
-            Vec3 const f = in[3] * e1.column(2);
+    template <class Place>
+    CATENA_HD void add_joint_loads(Place k, Mat3At<Place> const& inboard_turn, Vec3At<Place>& moment, Vec3At<Place>& push) const {
+        using Vector3 = Vec3At<Place>;
+        auto const in = read(joint_load, k);
+        auto const e1 = transposed_times(inboard_turn, joints().axes(k));
+        moment = moment + e1 * Vector3{{in[0], in[1], in[2]}};
+        if (joints().has_screws) {
+            Vector3 const f = in[3] * e1.column(2);
             push = push + f;
             moment = moment + cross(r1(k), f);
         }
-        if (joints().is_last[k]) return;
-        Vector<double, 4> const out = joint_load.load(k + 1);
-        Mat3 const e2 = axes2(k);
-        moment = moment - e2 * Vec3{{out[0], out[1], out[2]}};
-        if (out[3] != 0) {
-            Vec3 const f = out[3] * e2.column(2);
+        if (joints().ends_chain(k)) return;
+        auto const out = read(joint_load, k + 1);
+        auto const e2 = axes2(k);
+        moment = moment - e2 * Vector3{{out[0], out[1], out[2]}};
+        if (joints().has_screws) {
+            Vector3 const f = out[3] * e2.column(2);
             push = push - f;
             moment = moment - cross(r2(k), f);
         }
@@ -130,80 +164,98 @@ struct JointChains {
         if (given.wrenches) w = {w.torque + given.wrench_torque.load(k), w.force + given.wrench_force.load(k)};
         return w;
     }
+    template <class Place>
+    CATENA_HD WrenchOf<RealAt<Place>> wrench(Place const& several) const {
+        return {read(given.wrench_torque, several), read(given.wrench_force, several)};
+    }
     /// omega x J omega.
-    CATENA_HD Vec3 gyroscopic_torque(std::int64_t k) const { return cross(omega(k), as_symmetric(inertia.load(k)) * omega(k)); }
-
-    /// The velocity-dependent part c of joint k's relative acceleration (formulas, "Joint bias"), with what a drive prescribes; M.
-    CATENA_HD Vec3 joint_velocity_term(std::int64_t k, Vec3& linear) const {
-        Vec3 const w = turn(k) * omega(k);
-        JointRate const rate = joints().rate(scan.state, k);
-        Vec3 angular = cross(w, rate.angular);  // the outboard body's w does as well as the inboard one's
-        linear = 2.0 * cross(w - rate.angular, rate.linear);
-        bool const universal = joints().joint[k] == JointType::universal;
-        Mat3 const axes = joints().axes(k);
-        if (universal) {
-            Vec3 const qd = scan.state.qd.load(k);
-            angular = plus_scaled(angular, qd[0] * qd[1], cross(joints().first_axis.load(k), axes.column(2)));
-        }
-        LocalDrive const* const drive = joints().drives > 0 ? joints().drive_of(k) : nullptr;
-        if (!drive) return angular;
-        double const first = scene::acceleration_at(drive->first, time), second = scene::acceleration_at(drive->second, time);
-        if (universal) return angular + first * joints().first_axis.load(k) + second * axes.column(2);
-        Vec3 const s = joints().screw_of(k);
-        linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));
-        return plus_scaled(angular, s[0] * s[2] * first, axes.column(2));
+    template <class Place>
+    CATENA_HD Vec3At<Place> gyroscopic_torque(Place k) const {
+        return cross(omega(k), as_symmetric(read(inertia, k)) * omega(k));
     }
 
-    CATENA_HD void set_loads(std::int64_t k) const {
-        Vec3 const w = omega(k);
-        Mat3 const to_meeting = turn(k), axes1 = joints().axes(k);
+    /// The velocity-dependent part c of joint k's relative acceleration (formulas, "Joint bias"), with what a drive prescribes; M.
+    template <class Place>
+    CATENA_HD Vec3At<Place> joint_velocity_term(Place k, Vec3At<Place>& linear) const {
+        using Real = RealAt<Place>;
+        using Vector3 = Vec3At<Place>;
+        Vector3 const w = turn(k) * omega(k);
+        auto const rate = joints().rate(scan.state, k);
+        Vector3 angular = cross(w, rate.angular);  // the outboard body's w does as well as the inboard one's
+        linear = Real(2) * cross(w - rate.angular, rate.linear);
+        bool const universal = joints().type(k) == JointType::universal;
+        auto const axes = joints().axes(k);
+        if (universal) {
+            Vector3 const qd = read(scan.state.qd, k);
+            angular = plus_scaled(angular, qd[0] * qd[1], cross(read(joints().first_axis, k), axes.column(2)));
+        }
+        if constexpr (is_one_body<Place>)
+            if (LocalDrive const* const drive = drive_of(k)) {
+                double const first = scene::acceleration_at(drive->first, time), second = scene::acceleration_at(drive->second, time);
+                if (universal) return angular + first * joints().first_axis.load(k) + second * axes.column(2);
+                Vec3 const s = joints().screw_of(k);
+                linear = plus_scaled(linear, s[1] * s[2] * first, axes.column(2));
+                return plus_scaled(angular, s[0] * s[2] * first, axes.column(2));
+            }
+        return angular;
+    }
+
+    template <class Place>
+    CATENA_HD void set_loads(Place k) const {
+        using Vector3 = Vec3At<Place>;
+        Vector3 const w = omega(k);
+        auto const to_meeting = turn(k), axes1 = joints().axes(k);
         // In a plane the gyroscopic torque is across it, and large: only its rounding would count.
-        Vec3 moment = joints().planar ? Vec3::zero() : -gyroscopic_torque(k), push = Vec3::zero();
+        Vector3 moment = joints().planar ? Vector3::zero() : -gyroscopic_torque(k), push = Vector3::zero();
         if (given.joint_loads) add_joint_loads(k, to_meeting, moment, push);
         if (has_wrenches) {
-            Wrench const outside = wrench(k);
-            Mat3 const axes = orientation(k);
+            auto const outside = wrench(k);
+            auto const axes = orientation(k);
             moment = moment + transposed_times(axes, outside.torque);
             push = push + transposed_times(axes, outside.force);
         }
         if (given.dragged) {
-            Vector<double, 2> const drag = given.drag.load(k);
-            push = plus_scaled(push, -drag[0], scan.motion.velocity.load(k) - cross(w, r1(k)));
+            auto const drag = read(given.drag, k);
+            push = plus_scaled(push, -drag[0], read(scan.motion.velocity, k) - cross(w, r1(k)));
             moment = plus_scaled(moment, -drag[1], w);
         }
-        torque.store(k, moment);
+        write(torque, k, moment);
         if (joints().planar && has_forces) {  // nothing moves across the plane
-            Vec3 const axis = axes1.column(2);
+            Vector3 const axis = axes1.column(2);
             push = plus_scaled(push, -dot(axis, push), axis);
         }
-        if (has_forces) force.store(k, push);
+        if (has_forces) write(force, k, push);
         set_bias(k, to_meeting, axes1);
     }
-    CATENA_HD void set_bias(std::int64_t k, Mat3 const& to_meeting, Mat3 const& axes1) const {
-        Vec3 linear = Vec3::zero(), angular = Vec3::zero();  // -c along the joint's axes
-        JointType const type = joints().joint[k];
+    template <class Place>
+    CATENA_HD void set_bias(Place k, Mat3At<Place> const& to_meeting, Mat3At<Place> const& axes1) const {
+        using Vector3 = Vec3At<Place>;
+        Vector3 linear = Vector3::zero(), angular = Vector3::zero();  // -c along the joint's axes
+        JointType const type = joints().type(k);
         if (type != JointType::free && type != JointType::spherical && type != JointType::weld && !joints().planar) {
             angular = -transposed_times(axes1, joint_velocity_term(k, linear));
             linear = -transposed_times(axes1, linear);
         }
-        if (joints().is_first[k] && type != JointType::free)  // ground accelerates by -g
-            linear = linear + transposed_times(axes1, to_meeting * transposed_times(orientation(k), given.gravity));
-        Screw<double> const s = joints().direction_of_screw(k);
-        store_first(
-            bias, k, directions,
-            {{linear[0], linear[1], s.c * linear[2] - s.s * angular[2], angular[0], angular[1], s.s * linear[2] + s.c * angular[2]}});
+        if constexpr (is_one_body<Place>)
+            if (joints().is_first[k] && type != JointType::free)  // ground accelerates by -g
+                linear = linear + transposed_times(axes1, to_meeting * transposed_times(orientation(k), given.gravity));
+        auto const s = joints().direction_of_screw(k);
+        store_first(bias, k, directions,
+                    Vector<RealAt<Place>, 6>{{linear[0], linear[1], s.c * linear[2] - s.s * angular[2], angular[0], angular[1],
+                                              s.s * linear[2] + s.c * angular[2]}});
     }
 
     // Rates.
 
     /// Of body k along the axes of its outboard joint: angular acceleration; that of handle 2 along the last axis.
-    CATENA_HD Vector<double, 4> outboard_end_of(std::int64_t k) const {
-        Mat3 const e2 = axes2(k);
-        Vec3 const turning = alpha.load(k), along = transposed_times(e2, turning);
-        double slide = 0;
+    template <class Place>
+    CATENA_HD Vector<RealAt<Place>, 4> outboard_end_of(Place k) const {
+        auto const e2 = axes2(k);
+        Vec3At<Place> const turning = read(alpha, k), along = transposed_times(e2, turning);
+        RealAt<Place> slide(0);
         if (joints().has_screws) {
-            Vec3 const w = omega(k), r = r2(k);
-            slide = dot(e2.column(2), acceleration.load(k) + cross(turning, r) + cross(w, cross(w, r)));
+            Vec3At<Place> const w = omega(k), r = r2(k);
+            slide = dot(e2.column(2), read(acceleration, k) + cross(turning, r) + cross(w, cross(w, r)));
         }
         return {{along[0], along[1], along[2], slide}};
     }
@@ -211,44 +263,55 @@ struct JointChains {
         if (joints().is_first[k]) return Vector<double, 4>::zero();
         return k == 0 ? outboard_end.load(-1) : outboard_end_of(k - 1);
     }
+    template <class Place>
+    CATENA_HD Vector<RealAt<Place>, 4> inboard_end_of(Place const& several) const {
+        return outboard_end_of(several - 1);
+    }
     /// Second derivatives of joint k's coordinates. `relative_alpha`: outboard less inboard angular acceleration along the joint's axes.
     /// `relative_slide`: the same of the meeting points along the last axis.
-    CATENA_HD Vec3 rate_of_joint(std::int64_t k, Vec3 const& relative_alpha, double relative_slide) const {
-        switch (joints().joint[k]) {
+    template <class Place>
+    CATENA_HD Vec3At<Place> rate_of_joint(Place k, Vec3At<Place> const& relative_alpha, RealAt<Place> const& relative_slide) const {
+        using Vector3 = Vec3At<Place>;
+        RealAt<Place> const none(0);
+        switch (joints().type(k)) {
             case JointType::universal: {
-                Mat3 const axes = joints().axes(k);
-                Vec3 linear;
-                Vec3 const relative = relative_alpha - transposed_times(axes, joint_velocity_term(k, linear));
-                Vec3 const first = transposed_times(axes, joints().first_axis.load(k));  // (0, y, z); the second axis is (0, 0, 1)
-                double const u1 = relative[1] / first[1];
-                return {{u1, relative[2] - first[2] * u1, 0}};
+                auto const axes = joints().axes(k);
+                Vector3 linear;
+                Vector3 const relative = relative_alpha - transposed_times(axes, joint_velocity_term(k, linear));
+                Vector3 const first = transposed_times(axes, read(joints().first_axis, k));  // (0, y, z); the second axis is (0, 0, 1)
+                auto const u1 = relative[1] / first[1];
+                return {{u1, relative[2] - first[2] * u1, none}};
             }
             case JointType::weld:
             case JointType::link:
-                return Vec3::zero();
+                return Vector3::zero();
             default:
-                if (!joints().has_screws) return {{relative_alpha[2], 0, 0}};
-                Vec3 const s = joints().screw.load(k);
-                return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], 0, 0}};
+                if (!joints().has_screws) return {{relative_alpha[2], none, none}};
+                auto const s = read(joints().screw, k);
+                return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], none, none}};
         }
     }
     /// Second derivatives of body k's coordinates.
-    CATENA_HD Vec3 rate(std::int64_t k) const {
-        if (LocalDrive const* const d = joints().drives > 0 ? joints().drive_of(k) : nullptr)
-            return {{scene::acceleration_at(d->first, time),
-                     joints().joint[k] == JointType::universal ? scene::acceleration_at(d->second, time) : 0.0, 0}};
-        Vec3 const turning = alpha.load(k);
-        if (joints().joint[k] == JointType::free) return turning;
-        Mat3 const axes1 = joints().axes(k), to_meeting = turn(k);
-        Vector<double, 4> const before = inboard_end_of(k);
-        Vec3 const inboard{{before[0], before[1], before[2]}};
-        if (joints().joint[k] == JointType::spherical)
-            return turning - transposed_times(to_meeting, axes1 * inboard) + cross(scan.state.qd.load(k), omega(k));
-        double slide = 0;
+    template <class Place>
+    CATENA_HD Vec3At<Place> rate(Place k) const {
+        using Vector3 = Vec3At<Place>;
+        if constexpr (is_one_body<Place>)
+            if (LocalDrive const* const d = drive_of(k))
+                return {{scene::acceleration_at(d->first, time),
+                         joints().joint[k] == JointType::universal ? scene::acceleration_at(d->second, time) : 0.0, 0}};
+        Vector3 const turning = read(alpha, k);
+        if (joints().type(k) == JointType::free) return turning;
+        auto const axes1 = joints().axes(k), to_meeting = turn(k);
+        auto const before = inboard_end_of(k);
+        Vector3 const inboard{{before[0], before[1], before[2]}};
+        if (joints().type(k) == JointType::spherical)
+            return turning - transposed_times(to_meeting, axes1 * inboard) + cross(read(scan.state.qd, k), omega(k));
+        RealAt<Place> slide(0);
         if (joints().has_screws) {
-            Vec3 const r = r1(k), w = omega(k), axis = axes1.column(2);  // the axis is the same in B
-            slide = dot(axis, acceleration.load(k) + cross(turning, r) + cross(w, cross(w, r))) - before[3];
-            if (joints().is_first[k]) slide += dot(axis, transposed_times(orientation(k), given.gravity));
+            Vector3 const r = r1(k), w = omega(k), axis = axes1.column(2);  // the axis is the same in B
+            slide = dot(axis, read(acceleration, k) + cross(turning, r) + cross(w, cross(w, r))) - before[3];
+            if constexpr (is_one_body<Place>)
+                if (joints().is_first[k]) slide = slide + dot(axis, transposed_times(orientation(k), given.gravity));
         }
         return rate_of_joint(k, transposed_times(axes1, to_meeting * turning) - inboard, slide);
     }
@@ -258,9 +321,11 @@ struct JointChains {
         return orientation(k) * (acceleration.load(k) + cross(alpha.load(k), r) + cross(w, cross(w, r))) + given.gravity;
     }
     CATENA_HD bool on_free_base(std::int64_t k) const { return joints().joint[k] == JointType::free; }
-    CATENA_HD void set_rates(std::int64_t k, RatesView const& out) const {
-        out.qdd.store(k, rate(k));
-        if (on_free_base(k)) out.base_acceleration.store(joints().piece_of(k), base_rate(k));
+    template <class Place>
+    CATENA_HD void set_rates(Place k, RatesView const& out) const {
+        write(out.qdd, k, rate(k));
+        if constexpr (is_one_body<Place>)
+            if (on_free_base(k)) out.base_acceleration.store(joints().piece_of(k), base_rate(k));
     }
 };
 

@@ -1,12 +1,14 @@
 // JointDynamics in any Space: state, kinematics, loads and steps stay there.
 #pragma once
 
+#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include "dca/host_space.hpp"
 #include "error.hpp"
 #include "integrate/joint_dynamics.hpp"
+#include "integrate/joint_lanes.hpp"
 #include "integrate/joint_solution.hpp"
 #include "integrate/joint_steps.hpp"
 
@@ -23,6 +25,7 @@ class JointDynamicsIn final : public JointDynamics {
     using Fixed = typename Space::template Fixed<D>;
     template <class T>
     using List = typename Space::template List<T>;
+    static constexpr bool has_lanes = requires(Space const& space) { space.simd(); };
 
   public:
     /// `solver` takes views of the same space.
@@ -67,6 +70,8 @@ class JointDynamicsIn final : public JointDynamics {
           joint_force_(group.size + 1, group.directions),
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
+        if constexpr (has_lanes)
+            if (JointLanes lanes(group, given_.springs, space.simd()); lanes.any()) lanes_ = std::move(lanes);
         set_state(make_joint_state(group, scene));
         if (tips() > 0)
             space_.edit(other_end_, [&](View<13> view) {
@@ -185,6 +190,14 @@ class JointDynamicsIn final : public JointDynamics {
     ChainSolver& solver() const override { return *solver_; }
     ChainGroup const& group() const override { return group_; }
 
+    /// one(k) for every body; where several go side by side, some(loops, their first bodies and which of these) for them.
+    template <bool positions, class Some, class One>
+    void each_body(Some const& some, One const& one) const {
+        if constexpr (has_lanes)
+            if (lanes_) return lanes_->each(space_, positions, some, one);
+        space_.for_each(group_.size, one);
+    }
+
     // Not private: nvcc takes lambdas for kernels from public members alone.
     void set_carried_loads() {
         if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
@@ -193,10 +206,12 @@ class JointDynamicsIn final : public JointDynamics {
     void update() {
         JointChains const c = chains();
         if (!std::exchange(relative_, false))
-            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
+            each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
+                                 [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
         if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
         kinematics_.template sweep<positions>(c.scan);
-        space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k); });
+        each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
+                             [c] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k); });
         if (!group_.has_tips()) return;
         set_ends();
         space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
@@ -205,7 +220,9 @@ class JointDynamicsIn final : public JointDynamics {
     }
     template <bool positions>
     void runge_kutta(RungeKuttaStage const& stage) {
-        space_.for_each(group_.size, [s = steps(), stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
+        JointSteps const s = steps();
+        each_body<positions>([&](JointLoops const& loops, auto... bodies) { loops.runge_kutta(s, stage, bodies...); },
+                             [s, stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
         relative_ = true;
     }
     template <bool positions>
@@ -216,7 +233,9 @@ class JointDynamicsIn final : public JointDynamics {
         relative_ = true;
     }
     void set_rates(RatesView const& out) {
-        space_.for_each(group_.size, [c = chains(), out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
+        JointChains const c = chains();
+        each_body<false>([&](JointLoops const& loops, auto... bodies) { loops.set_rates(c, out, bodies...); },
+                         [c, out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
     }
     /// The kinematics alone, positions included.
     void move() {
@@ -363,6 +382,7 @@ class JointDynamicsIn final : public JointDynamics {
     FieldOf<3> zero_;
     FieldOf<13> last_end_, other_end_;  // by tip
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    std::optional<JointLanes> lanes_;
 };
 
 }  // namespace catena

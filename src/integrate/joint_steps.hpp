@@ -17,38 +17,45 @@ struct JointSteps {
     StateView start, sum;
     RatesView carried;  // accelerations that velocity Verlet carries from step to step
 
-    CATENA_HD static Vector<double, 4> rate_of_quaternion(Quat const& q, Vec3 const& omega) {
-        Quat const r = q * Quat{0, omega[0], omega[1], omega[2]};
-        return {{0.5 * r.w, 0.5 * r.x, 0.5 * r.y, 0.5 * r.z}};
+    template <class Real>
+    CATENA_HD static Vector<Real, 4> rate_of_quaternion(Quaternion<Real> const& q, Vector<Real, 3> const& omega) {
+        Quaternion<Real> const r = q * Quaternion<Real>{Real(0), omega[0], omega[1], omega[2]};
+        Real const half(0.5);
+        return {{half * r.w, half * r.x, half * r.y, half * r.z}};
     }
 
-    template <bool positions>
-    CATENA_HD void runge_kutta(std::int64_t k, RungeKuttaStage const& s) const {
+    template <bool positions, class Place>
+    CATENA_HD void runge_kutta(Place k, RungeKuttaStage const& s) const {
+        using Real = RealAt<Place>;
+        using Coordinates = Vector<Real, 4>;
         StateView const& state = chains.scan.state;
         JointsView const& joints = chains.joints();
-        Vec3 const qdd = chains.rate(k), qd = state.qd.load(k);
-        Vector<double, 4> const q = state.q.load(k);
-        Vector<double, 4> const rate =
-            joints.has_quaternion(k) ? rate_of_quaternion(as_quaternion(q), qd) : Vector<double, 4>{{qd[0], qd[1], 0, 0}};
-        Vector<double, 4> total = plus_scaled(s.first ? q : sum.q.load(k), s.weight, rate);
-        Vec3 const total_rate = plus_scaled(s.first ? qd : sum.qd.load(k), s.weight, qdd);
+        Real const weight(s.weight), next(s.next);
+        Vec3At<Place> const qdd = chains.rate(k), qd = read(state.qd, k);
+        Coordinates const q = read(state.q, k);
+        Coordinates const rate =
+            joints.has_quaternion(k) ? rate_of_quaternion(as_quaternion(q), qd) : Coordinates{{qd[0], qd[1], Real(0), Real(0)}};
+        Coordinates total = plus_scaled(s.first ? q : read(sum.q, k), weight, rate);
+        Vec3At<Place> const total_rate = plus_scaled(s.first ? qd : read(sum.qd, k), weight, qdd);
         if (s.last) {
             if (joints.has_quaternion(k)) total = as_vector(normalized(as_quaternion(total)));
-            state.q.store(k, total);
-            state.qd.store(k, total_rate);
+            write(state.q, k, total);
+            write(state.qd, k, total_rate);
         } else {
-            sum.q.store(k, total);
-            sum.qd.store(k, total_rate);
-            state.q.store(k, plus_scaled(s.first ? q : start.q.load(k), s.next, rate));
-            state.qd.store(k, plus_scaled(s.first ? qd : start.qd.load(k), s.next, qdd));
+            write(sum.q, k, total);
+            write(sum.qd, k, total_rate);
+            write(state.q, k, plus_scaled(s.first ? q : read(start.q, k), next, rate));
+            write(state.qd, k, plus_scaled(s.first ? qd : read(start.qd, k), next, qdd));
             if (s.first) {
-                start.q.store(k, q);
-                start.qd.store(k, qd);
+                write(start.q, k, q);
+                write(start.qd, k, qd);
             }
         }
-        if (chains.on_free_base(k)) runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
-        joints.follow_course(state, k, s.time);
-        chains.set_relative<positions>(k);
+        if constexpr (is_one_body<Place>) {
+            if (chains.on_free_base(k)) runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
+            joints.follow_course(state, k, s.time);
+        }
+        chains.template set_relative<positions>(k);
     }
     CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration, RungeKuttaStage const& s) const {
         StateView const& state = chains.scan.state;

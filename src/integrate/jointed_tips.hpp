@@ -34,18 +34,20 @@ std::vector<JointedTip> jointed_tips(ChainGroup const&, Scene const&, BodyMotion
 double reach_of(ChainGroup const&, Scene const&);
 
 /// Stores the first `directions` numbers of body k.
-CATENA_HD void store_first(DirectionsView view, std::int64_t k, int directions, Vector<double, 6> const& v) {
+template <class Place>
+CATENA_HD void store_first(DirectionsView view, Place k, int directions, Vector<RealAt<Place>, 6> const& v) {
+    using Real = RealAt<Place>;
     switch (directions) {
         case 2:
-            return view.store<2>(k, {{v[0], v[1]}});
+            return write_directions(view, k, Vector<Real, 2>{{v[0], v[1]}});
         case 3:
-            return view.store<3>(k, {{v[0], v[1], v[2]}});
+            return write_directions(view, k, Vector<Real, 3>{{v[0], v[1], v[2]}});
         case 4:
-            return view.store<4>(k, {{v[0], v[1], v[2], v[3]}});
+            return write_directions(view, k, Vector<Real, 4>{{v[0], v[1], v[2], v[3]}});
         case 5:
-            return view.store<5>(k, {{v[0], v[1], v[2], v[3], v[4]}});
+            return write_directions(view, k, Vector<Real, 5>{{v[0], v[1], v[2], v[3], v[4]}});
         default:
-            return view.store<6>(k, v);
+            return write_directions(view, k, v);
     }
 }
 

@@ -3,8 +3,10 @@
 
 #include "dca/simd/side_by_side.hpp"
 #include "error.hpp"
-#include "integrate/chain_system.hpp"
+#include "integrate/joint_integrators.hpp"
+#include "integrate/joint_lanes.hpp"
 #include "tests/mpi/world.hpp"
+#include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
 
 namespace catena::test {
@@ -66,6 +68,18 @@ void expect_found(Scene const& scene, Axes axes, std::string const& what) {
 
 class Simd : public ::testing::TestWithParam<char const*> {};
 
+TEST_P(Simd, IsUsedWhereAChainHasRunsForIt) {
+    std::string const joint = GetParam();
+    auto const alone = serial_communicator();
+    Scene scene = scene_of(chain(joint, 255));
+    scene.solver.backend = Backend::segments;
+    for (SimdLevel const level : simd_levels()) {
+        scene.solver.simd = level;
+        ChainSystem const system(scene, Axes::joint, *alone);
+        EXPECT_EQ(system.solver_reports().front().simd, joint == "mixed" ? SimdLevel::off : level) << joint;
+    }
+}
+
 TEST_P(Simd, FindsTheSame) {
     for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 256, 257, 2047, 2048, 2049})
         expect_found(scene_of(chain(GetParam(), bodies)), Axes::joint, std::string(GetParam()) + " " + std::to_string(bodies));
@@ -85,6 +99,70 @@ TEST(SimdInAbsoluteCoordinates, FindsTheSame) {
         for (int const bodies : {1, 31, 257, 2049})
             expect_found(scene_of(chain(joint, bodies)), Axes::world, std::string(joint) + " " + std::to_string(bodies));
     expect_found(scene_of("{generator: {random: {bodies: 300, joint: link, rigid: 0.5, seed: 8}}}"), Axes::world, "bodies on links");
+}
+
+/// What a step moves and what it needs for that, with every kind of load, and angles of many turns.
+TEST(SimdOfSteps, FindTheSame) {
+    if (testing::world().size() > 1) GTEST_SKIP() << "once is enough";
+    auto const alone = serial_communicator();
+    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::prismatic,
+                                      RandomJoints::helical, RandomJoints::planar, RandomJoints::any})
+        for (bool const springs : {false, true}) {
+            RandomChainOptions options;
+            options.bodies = 150;
+            options.joints = joints;
+            options.base = springs ? Base::free : Base::fixed;
+            options.springs = options.drag = springs;
+            Scene scene;
+            scene.chains = {random_chain(7, options)};
+            scene.chains[0].name = "chain";
+            scene.forces.gravity = {{1, 2, -9.81}};
+            scene.solver.backend = Backend::segments;
+            if (!springs && (joints == RandomJoints::revolute || joints == RandomJoints::universal))
+                for (std::size_t k = 1; k < options.bodies; k += 3)  // where a cosine's argument is reduced in another way, and beyond
+                    scene.chains[0].bodies.q[k][0] += k % 2 == 1 ? 3e5 + 7.1 * static_cast<double>(k) : -1e12 * static_cast<double>(k);
+            auto const after_steps = [&](SimdLevel level) {
+                scene.solver.simd = level;
+                ChainSystem system(scene, Axes::joint, *alone);
+                auto const integrator = make_runge_kutta4(system);
+                for (int i = 0; i < 5; ++i) integrator->step(1e-4);
+                return system.state();
+            };
+            auto const expected = after_steps(SimdLevel::off);
+            for (SimdLevel const level : simd_levels()) {
+                auto const found = after_steps(level);
+                ASSERT_EQ(found.size(), expected.size());
+                for (auto const& [name, values] : expected) {
+                    ASSERT_EQ(found.at(name).size(), values.size());
+                    EXPECT_TRUE(!base_fuses() || same_bits(found.at(name), values))
+                        << name << ", " << name_of(level) << ", joints " << static_cast<int>(joints) << ", springs " << springs;
+                }
+            }
+        }
+}
+
+/// Of a chain's bodies all go side by side but those near its ends and near other joints, whose neighbours differ.
+TEST(SimdOfSteps, DealOutBodiesOfOneType) {
+    auto const alone = serial_communicator();
+    Scene const scene = scene_of(chain("revolute", 100));
+    auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
+    for (SimdLevel const level : simd_levels()) {
+        JointLanes const lanes(*groups.front(), false, level);
+        ASSERT_EQ(lanes.any(), level != SimdLevel::off);
+        if (!lanes.any()) continue;
+        std::vector<int> seen(100, 0);
+        std::int64_t several = 0;
+        auto const executor = serial_executor(level);
+        lanes.each(
+            HostSpace(*executor), false,
+            [&](JointLoops const&, std::int64_t const* first, std::int64_t begin, std::int64_t end) {
+                for (std::int64_t i = begin; i < end; ++i, ++several)
+                    for (int j = 0; j < lanes_of(level); ++j) ++seen[static_cast<std::size_t>(first[i] + j)];
+            },
+            [&](std::int64_t k) { ++seen[static_cast<std::size_t>(k)]; });
+        EXPECT_EQ(seen, std::vector<int>(100, 1));
+        EXPECT_EQ(several, 98 / lanes_of(level));
+    }
 }
 
 /// On one rank: the oracle of all ranks' is the same.

@@ -13,7 +13,9 @@ class Real {
     Real() = default;
     Real(double x) : v_(_mm256_set1_pd(x)) {}
     static Real load(double const* place) { return Real(_mm256_load_pd(place)); }
+    static Real load_anywhere(double const* place) { return Real(_mm256_loadu_pd(place)); }
     void store(double* place) const { _mm256_store_pd(place, v_); }
+    void store_anywhere(double* place) const { _mm256_storeu_pd(place, v_); }
     /// Bit j: lane j is not a positive finite number.
     unsigned not_positive() const {
         __m256d const zero = _mm256_setzero_pd();
@@ -28,6 +30,17 @@ class Real {
     friend Real operator-(Real a) { return Real(-a.v_); }
     friend Real fused(Real a, Real b, Real c) { return Real(_mm256_fmadd_pd(a.v_, b.v_, c.v_)); }
     friend Real sqrt(Real a) { return Real(_mm256_sqrt_pd(a.v_)); }
+    friend Real floor(Real a) { return Real(_mm256_floor_pd(a.v_)); }
+    friend Real truncated(Real a) { return Real(_mm256_round_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }
+    /// a < b ? yes : no in every lane.
+    friend Real where_less(Real a, Real b, Real yes, Real no) {
+        return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_cmp_pd(a.v_, b.v_, _CMP_LT_OQ)));
+    }
+    /// Whether one is beyond +-bound.
+    friend bool any_above(Real a, double bound) {
+        __m256d const size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v_);
+        return _mm256_movemask_pd(_mm256_cmp_pd(size, _mm256_set1_pd(bound), _CMP_GT_OQ)) != 0;
+    }
 
     /// origin[at[j]] in lane j.
     static Real pick(double const* origin, std::int64_t const* at) {

@@ -13,7 +13,9 @@ class Real {
     Real() = default;
     Real(double x) : v_(_mm512_set1_pd(x)) {}
     static Real load(double const* place) { return Real(_mm512_load_pd(place)); }
+    static Real load_anywhere(double const* place) { return Real(_mm512_loadu_pd(place)); }
     void store(double* place) const { _mm512_store_pd(place, v_); }
+    void store_anywhere(double* place) const { _mm512_storeu_pd(place, v_); }
     /// Bit j: lane j is not a positive finite number.
     unsigned not_positive() const {
         __m512d const zero = _mm512_setzero_pd();
@@ -27,6 +29,14 @@ class Real {
     friend Real operator-(Real a) { return Real(-a.v_); }
     friend Real fused(Real a, Real b, Real c) { return Real(_mm512_fmadd_pd(a.v_, b.v_, c.v_)); }
     friend Real sqrt(Real a) { return Real(_mm512_sqrt_pd(a.v_)); }
+    friend Real floor(Real a) { return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)); }
+    friend Real truncated(Real a) { return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }
+    /// a < b ? yes : no in every lane.
+    friend Real where_less(Real a, Real b, Real yes, Real no) {
+        return Real(_mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v_, b.v_, _CMP_LT_OQ), no.v_, yes.v_));
+    }
+    /// Whether one is beyond +-bound.
+    friend bool any_above(Real a, double bound) { return _mm512_cmp_pd_mask(_mm512_abs_pd(a.v_), _mm512_set1_pd(bound), _CMP_GT_OQ) != 0; }
 
     /// origin[at[j]] in lane j.
     static Real pick(double const* origin, std::int64_t const* at) {

@@ -71,12 +71,11 @@ class RunsSideBySide {
 
     void climb(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
-        Segment whole = part(runs, 0);
-        for (int p = 1; p < parts_of_run; ++p) {
-            Node node;
-            whole = joined(whole, part(runs, p), node);
-            watch(runs, p * part_length, node.joint.factor);
-            store(place(item, p), node);
+        Segment whole;
+        CATENA_NO_UNROLL
+        for (int p = 0; p < parts_of_run; ++p) {
+            Node const node = add(whole, part(runs, p), runs, p, p * part_length);
+            if (p > 0) store(place(item, p), node);
         }
         scatter(whole.matrix, work_.sweeps.matrices, runs.slot);
         scatter(whole.bias, work_.sweeps.biases, runs.slot);
@@ -85,6 +84,7 @@ class RunsSideBySide {
         RunsInLanes const& runs = work_.runs[item];
         Directions const first = gather(work_.sweeps.forces, runs.body);
         Directions next = gather(work_.sweeps.forces, runs.next);
+        CATENA_NO_UNROLL
         for (int p = parts_of_run - 1; p >= 0; --p) {
             Directions const at_begin = p == 0 ? first : force(load(place(item, p)), first, next);
             down(runs, p, at_begin, next);
@@ -94,23 +94,29 @@ class RunsSideBySide {
 
   private:
     double* place(std::int64_t item, int p) const { return work_.nodes + (item * node_numbers<K> + (p - 1) * numbers) * lanes; }
-    /// The next item's bodies usually follow.
-    void fill(RunsInLanes const& runs, int p) { tile_.fill(columns(runs, p), lanes * longest_run); }
+    /// The next item's bodies usually follow, or come before where the way is back.
+    void fill(RunsInLanes const& runs, int p, int ahead) { tile_.fill(columns(runs, p), ahead * lanes * longest_run); }
     std::int64_t const* columns(RunsInLanes const& runs, int p) {
         for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
         return first_;
     }
     Segment part(RunsInLanes const& runs, int p) {
-        fill(runs, p);
-        Body body = bodies_.at(Column<Real>{0});
-        Segment segment = bodies_.segment(body);
-        for (int i = 1; i < part_length; ++i) {
-            body = bodies_.after(body);
-            Node node;
-            segment = joined(segment, bodies_.segment(body), node);
-            watch(runs, p * part_length + i, node.joint.factor);
-        }
+        fill(runs, p, 1);
+        auto bodies = bodies_.walk(Column<Real>{0});
+        Segment segment;
+        each_body<K>(0, part_length, [&](int i) { add(segment, bodies_.segment(bodies.body(i)), runs, i, p * part_length + i); });
         return segment;
+    }
+    /// Number i of those that a segment is joined of, in a loop: what makes them is long, and should stand there once.
+    Node add(Segment& segment, Segment const& outboard, RunsInLanes const& runs, int i, int body) const {
+        Node node;
+        if (i == 0) {
+            segment = outboard;
+        } else {
+            segment = joined(segment, outboard, node);
+            watch(runs, body, node.joint.factor);
+        }
+        return node;
     }
     Segment joined(Segment const& inboard, Segment const& outboard, Node& node) const {
         Segment segment;
@@ -122,7 +128,7 @@ class RunsSideBySide {
         return disassemble(node.joint, node.offset, first, next);
     }
     void down(RunsInLanes const& runs, int p, Directions const& first, Directions next) {
-        fill(runs, p);
+        fill(runs, p, -1);
         if constexpr (Leaf::at_once)
             eliminate_again(first, next);
         else
@@ -132,41 +138,48 @@ class RunsSideBySide {
     /// As Evaluation::down.
     void eliminate_again(Directions const& first, Directions next) {
         Elimination<Real, K> passed[part_length];
-        Body body = bodies_.at(Column<Real>{0});
-        Kept kept[part_length] = {bodies_.keep(body)};
-        Segment segment = bodies_.segment(body);
-        Symmetric<Real, K> z22 = segment.matrix.z22;
-        Directions b2 = segment.bias.b2 + transposed_times(segment.matrix.z12, first);
-        for (int i = 1; i < part_length; ++i) {
-            body = bodies_.after(body);
-            kept[i] = bodies_.keep(body);
-            segment = bodies_.segment(body);
-            passed[i] = eliminate(z22, b2, segment.matrix, segment.bias, K);
-        }
-        for (int i = part_length - 1; i > 0; --i) {
-            Directions const at_i = passed[i].gain * next + passed[i].offset;
-            give(kept[i], i, at_i, next);
-            next = at_i;
-        }
-        give(kept[0], 0, first, next);
+        Kept kept[part_length];
+        auto bodies = bodies_.walk(Column<Real>{0});
+        Symmetric<Real, K> z22;
+        Directions b2;
+        each_body<K>(0, part_length, [&](int i) {
+            Segment const segment = take(bodies, i, kept);
+            if (i == 0) {
+                z22 = segment.matrix.z22;
+                b2 = segment.bias.b2 + transposed_times(segment.matrix.z12, first);
+            } else {
+                passed[i] = eliminate(z22, b2, segment.matrix, segment.bias, K);
+            }
+        });
+        back(kept, first, next, [&](int i) { return passed[i].gain * next + passed[i].offset; });
     }
     /// As BiasSweep::down, the joints found once more.
     void assemble_again(Directions const& first, Directions next) {
         Node node[part_length];
-        Body body = bodies_.at(Column<Real>{0});
-        Kept kept[part_length] = {bodies_.keep(body)};
-        Segment segment = bodies_.segment(body);
-        for (int i = 1; i < part_length; ++i) {
-            body = bodies_.after(body);
-            kept[i] = bodies_.keep(body);
-            segment = joined(segment, bodies_.segment(body), node[i]);
-        }
-        for (int i = part_length - 1; i > 0; --i) {
-            Directions const at_i = force(node[i], first, next);
+        Kept kept[part_length];
+        auto bodies = bodies_.walk(Column<Real>{0});
+        Segment segment;
+        each_body<K>(0, part_length, [&](int i) {
+            Segment const outboard = take(bodies, i, kept);
+            segment = i == 0 ? outboard : joined(segment, outboard, node[i]);
+        });
+        back(kept, first, next, [&](int i) { return force(node[i], first, next); });
+    }
+    template <class Bodies>
+    Segment take(Bodies& bodies, int i, Kept* kept) const {
+        Body const body = bodies.body(i);
+        kept[i] = bodies_.keep(body);
+        return bodies_.segment(body);
+    }
+    /// From the last body, whose outboard joint's force is `next`; force(i) is that at body i's inboard joint.
+    template <class Force>
+    void back(Kept const* kept, Directions const& first, Directions& next, Force const& force) {
+        each_body<K>(0, part_length, [&](int from_end) {
+            int const i = part_length - 1 - from_end;
+            Directions const at_i = i == 0 ? first : force(i);
             give(kept[i], i, at_i, next);
             next = at_i;
-        }
-        give(kept[0], 0, first, next);
+        });
     }
     void give(Kept const& kept, int i, Directions const& inboard, Directions const& outboard) {
         bodies_.accelerate(kept, inboard, outboard, out_);
@@ -221,7 +234,7 @@ template <class Real, class Leaf>
 template <class Real, class Leaf>
 [[gnu::flatten]] void descend_runs(RunWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
     RunsSideBySide<Real, Leaf> runs(work);
-    for (std::int64_t item = begin; item < end; ++item) runs.descend(item);
+    for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>
 RunKernels<Leaf> kernels() {
