@@ -67,17 +67,17 @@ class ComparedSolver final : public ChainSolver {
     template <class Action>
     void each_as_reference(Action const& action) const {
         std::string const refused = words_of([&] { action(*reference_); });
-        for (auto const& [name, solver] : others_) EXPECT_EQ(words_of([&] { action(*solver); }), refused) << name;
+        for (NamedSolver const& other : others_) EXPECT_EQ(words_of([&] { action(*other.solver); }), refused) << other.name;
         if (!refused.empty()) throw ComputationError(refused);
     }
     template <class Action>
     void each_as_reference(AccelerationsView const& out, Action const& action) const {
         std::string const refused = words_of([&] { action(*reference_, out); });
-        for (auto const& [name, solver] : others_) {
+        for (NamedSolver const& other : others_) {
             Results own(group_);
             AccelerationsView const found = own.as(out);
-            SCOPED_TRACE(name);
-            EXPECT_EQ(words_of([&] { action(*solver, found); }), refused);
+            SCOPED_TRACE(other.name);
+            EXPECT_EQ(words_of([&] { action(*other.solver, found); }), refused);
             if (refused.empty()) expect_same(out, found);
         }
         if (!refused.empty()) throw ComputationError(refused);

@@ -158,8 +158,9 @@ class Block {
         Fiber& fiber = fibers_[threadIdx.x];
         fiber.line = line;
         fiber.of_cluster = of_cluster;
+        void* const outside = watched_;  // read before the others may go on
         watch::arrive(&arrived_);
-        watch::before_switch(watched_);
+        watch::before_switch(outside);
         swapcontext(&fiber.context, &outside_);
         watch::leave(&left_);
     }
