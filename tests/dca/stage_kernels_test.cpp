@@ -1,0 +1,156 @@
+// The GPU's sweeps, run on the host, leave the bits of the host's loops: whatever the blocks' sizes, on one rank and several.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "dca/leaf_choice.hpp"
+#include "tests/mpi/world.hpp"
+#include "tests/support/compared_solver.hpp"
+#include "tests/support/random_chain.hpp"
+#include "tests/support/stage_space.hpp"
+
+namespace catena::test {
+namespace {
+
+std::unique_ptr<ChainSolver> make_stage_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
+    auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
+        return std::make_unique<dca::TreeSolver<typename decltype(leaf)::type, StageSpace>>(group, StageSpace(executor), communicator);
+    };
+    return group.beads || group.linked || group.axes == Axes::world ? dca::with_absolute_leaf(group, make)
+                                                                    : dca::with_joint_leaf(group, make);
+}
+
+struct NamedGpu {
+    std::string name;
+    StagedGpu gpu;
+};
+char const* const h100 = "an H100";
+std::vector<NamedGpu> gpus(int directions) {
+    auto const with = [](std::int64_t threads, std::int64_t most, std::int64_t together, bool runs_apart) {
+        return NamedGpu{"of " + std::to_string(threads) + " threads and " + std::to_string(most) + " items a block, " +
+                            std::to_string(together) + " blocks together" + (runs_apart ? ", runs apart" : ""),
+                        {{threads, most, together}, runs_apart}};
+    };
+    return {with(32, 2, 0, false),
+            with(64, 4, 3, true),
+            with(64, 12, 0, false),
+            with(128, 8, 8, false),
+            with(256, 16, 8, true),
+            {"of too few threads", {{128, 32, 4}, false, 32}},
+            {h100, {dca::stage_sizes(directions, cuda_on_host::most_shared_bytes, cuda::kernels::most_in_cluster)}}};
+}
+
+class StageKernels : public ::testing::Test {
+  protected:
+    void SetUp() override { StageSpace::seen = {}; }
+    void expect_same(Scene const& scene, Axes axes = Axes::joint) {
+        for (Handles const handles : alone() ? std::vector{Handles::projected, Handles::full} : std::vector{Handles::projected})
+            for (auto const& group : make_groups(scene, axes, handles, false, testing::world())) {
+                std::vector<NamedSolver> solvers;
+                for (NamedGpu const& each : gpus(group->directions)) {
+                    if (h100_alone_ && each.name != h100) continue;
+                    StageSpace::gpu = each.gpu;
+                    solvers.push_back({each.name, make_stage_solver(*group, *executor_, testing::world())});
+                }
+                directions_.insert(group->directions);
+                auto compared = compared_solver(*group, make_tree_solver(*group, *executor_, testing::world()), std::move(solvers));
+                evaluate_compared(*group, scene, *executor_, testing::world(), std::move(compared), true);
+            }
+    }
+    static Scene scene_of(std::string const& chains) {
+        return parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
+    }
+    static Scene scene_of(std::vector<ChainSpec> const& chains) {
+        Scene scene;
+        for (ChainSpec const& chain : chains) {
+            scene.chains.push_back(chain);
+            scene.chains.back().name = "chain " + std::to_string(scene.chains.size());
+        }
+        scene.forces.gravity = {{1, 2, -9.81}};
+        return scene;
+    }
+    /// Several ranks share chains, and what is above; the rest is said once.
+    static bool alone() { return testing::world().size() == 1; }
+    std::unique_ptr<Executor> executor_ = serial_executor(SimdLevel::off);
+    bool h100_alone_ = false;
+    std::set<int> directions_;
+};
+
+TEST_F(StageKernels, EveryKindAndSize) {
+    for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld", "mixed"})
+        for (int const bodies : alone() ? std::vector<int>{1, 2, 5, 16, 33, 257} : std::vector<int>{2, 257}) {
+            SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies));
+            expect_same(scene_of(std::string("{base: ") + (bodies % 2 ? "free" : "fixed") +
+                                 ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 1}}}"));
+            if (HasFailure()) return;
+        }
+    EXPECT_EQ(directions_, (std::set<int>{1, 2, 3, 4, 5, 6}));
+}
+
+TEST_F(StageKernels, ManyChainsAndTips) {
+    std::string const of = "generator: {random: {joint: ", tip = ", seed: 3}}, tip: {joint: {type: spherical}}}";
+    expect_same(
+        scene_of("{name: a, count: 9, generator: {random: {joint: link, bodies: 70, rigid: 0.3, seed: 2}}}, {name: b, base: fixed, " + of +
+                 "spherical, bodies: 40" + tip + ", {name: c, base: fixed, " + of + "mixed, bodies: 130" + tip +
+                 ", {name: d, base: fixed, tip: {joint: {type: link, anchor: [1, 2, 3]}}, " + of + "link, bodies: 33, seed: 4}}}, " +
+                 "{name: e, count: 40, generator: {freely_jointed: {beads: 3, length: 0.38}}}"));
+}
+
+TEST_F(StageKernels, LoadsDrivesTipsAndRings) {
+    if (!alone()) return;
+    using enum JointType;
+    std::uint64_t seed = 0;
+    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::any})
+        for (JointType const type : {spherical, weld, helical})
+            for (bool const ring : {false, true}) {
+                SCOPED_TRACE("seed " + std::to_string(++seed));
+                RandomChainOptions options{
+                    .bodies = 70, .joints = joints, .base = ring ? Base::free : Base::fixed, .springs = true, .drag = true, .driven = 0.2};
+                options.tip = type;
+                options.ring = ring;
+                expect_same(scene_of({random_chain(seed, options)}));
+                if (HasFailure()) return;
+            }
+}
+
+TEST_F(StageKernels, AbsoluteCoordinates) {
+    for (char const* const base : {"free", "fixed"})
+        for (char const* const tip : {"", ", tip: {joint: {type: spherical}}"})
+            expect_same(
+                scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: 200, joint: spherical, seed: 1}}" + tip + "}"),
+                Axes::world);
+}
+
+TEST_F(StageKernels, LinksWithTipsAndRings) {
+    for (Base const base : {Base::fixed, Base::free})
+        for (Tip const tip : {Tip::free, Tip::jointed})
+            expect_same(scene_of({random_bead_chain(5, 300, base, tip), random_linked_chain(5, 300, base, tip)}));
+    expect_same(scene_of({closed(random_bead_chain(6, 170, Base::free)), random_bead_chain(7, 50, Base::fixed),
+                          closed(random_linked_chain(8, 90, Base::free)), closed(random_bead_chain(9, 5, Base::free))}));
+}
+
+/// With eight runs a block.
+TEST_F(StageKernels, ClustersOfEverySize) {
+    if (!alone()) return;
+    for (int blocks = 1; blocks <= 8; ++blocks)
+        expect_same(scene_of({random_bead_chain(3, static_cast<std::size_t>(128 * blocks - 5), Base::fixed)}));
+    for (unsigned blocks = 2; blocks <= 8; ++blocks) EXPECT_TRUE(StageSpace::seen.blocks_of_clusters.contains(blocks)) << blocks;
+    EXPECT_GE(StageSpace::seen.most_stages, 6U);
+    EXPECT_GT(StageSpace::seen.turns_alone, 0);
+    EXPECT_GT(StageSpace::seen.runs_apart, 0);
+    EXPECT_GT(StageSpace::seen.runs_in_stages, 0);
+}
+
+/// So many that launches of their own do them.
+TEST_F(StageKernels, VeryManyRuns) {
+    if (!alone()) return;
+    h100_alone_ = true;
+    expect_same(
+        scene_of("{count: 8500, generator: {freely_jointed: {beads: 17, length: 0.38}}}, "
+                 "{base: fixed, generator: {random: {bodies: 3000, joint: link, seed: 3}}}"));
+    EXPECT_EQ(StageSpace::seen.runs_in_stages, 0);
+}
+
+}  // namespace
+}  // namespace catena::test

@@ -1,0 +1,133 @@
+#include "tests/support/compared_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <functional>
+
+#include "error.hpp"
+#include "integrate/joint_dynamics.hpp"
+
+namespace catena::test {
+namespace {
+
+template <class View>
+bool same_numbers(View const& a, View const& b, std::int64_t count, int width) {
+    if (!a.origin) return true;
+    for (int i = 0; i < width; ++i)
+        if (std::memcmp(a.origin + i * a.pitch, b.origin + i * b.pitch, static_cast<std::size_t>(count) * sizeof(double)) != 0)
+            return false;
+    return true;
+}
+
+struct Results {
+    explicit Results(ChainGroup const& group)
+        : alpha(group.size),
+          acceleration(group.size),
+          joint_force(group.size + 1, group.directions),
+          tip_force(group.size, group.directions) {}
+    AccelerationsView as(AccelerationsView const& wanted) {
+        AccelerationsView v;
+        if (wanted.alpha.origin) v.alpha = alpha.view();
+        if (wanted.acceleration.origin) v.acceleration = acceleration.view();
+        if (wanted.joint_force) v.joint_force = joint_force.view();
+        if (wanted.tip_force) v.tip_force = tip_force.view();
+        return v;
+    }
+    Field<3> alpha, acceleration;
+    DirectionsField joint_force, tip_force;
+};
+
+std::string words_of(std::function<void()> const& action) {
+    try {
+        action();
+    } catch (ComputationError const& error) {
+        return error.what();
+    }
+    return "";
+}
+
+class ComparedSolver final : public ChainSolver {
+  public:
+    ComparedSolver(ChainGroup const& group, std::unique_ptr<ChainSolver> reference, std::vector<NamedSolver> others)
+        : group_(group), reference_(std::move(reference)), others_(std::move(others)) {}
+    void assemble_matrices(ConfigurationView const& c) override {
+        each_as_reference([&](ChainSolver& solver) { solver.assemble_matrices(c); });
+    }
+    void solve(LoadsView const& loads, AccelerationsView const& out) override {
+        each_as_reference(out, [&](ChainSolver& solver, AccelerationsView const& own) { solver.solve(loads, own); });
+    }
+    void assemble_and_solve(ConfigurationView const& c, LoadsView const& loads, AccelerationsView const& out) override {
+        each_as_reference(out, [&](ChainSolver& solver, AccelerationsView const& own) { solver.assemble_and_solve(c, loads, own); });
+    }
+    bool at_once() const override { return reference_->at_once(); }
+    SolverReport report() const override { return reference_->report(); }
+
+  private:
+    template <class Action>
+    void each_as_reference(Action const& action) const {
+        std::string const refused = words_of([&] { action(*reference_); });
+        for (NamedSolver const& other : others_) EXPECT_EQ(words_of([&] { action(*other.solver); }), refused) << other.name;
+        if (!refused.empty()) throw ComputationError(refused);
+    }
+    template <class Action>
+    void each_as_reference(AccelerationsView const& out, Action const& action) const {
+        std::string const refused = words_of([&] { action(*reference_, out); });
+        for (NamedSolver const& other : others_) {
+            Results own(group_);
+            AccelerationsView const found = own.as(out);
+            SCOPED_TRACE(other.name);
+            EXPECT_EQ(words_of([&] { action(*other.solver, found); }), refused);
+            if (refused.empty()) expect_same(out, found);
+        }
+        if (!refused.empty()) throw ComputationError(refused);
+    }
+    void expect_same(AccelerationsView const& out, AccelerationsView const& found) const {
+        EXPECT_TRUE(same_numbers(out.alpha, found.alpha, group_.size, 3));
+        EXPECT_TRUE(same_numbers(out.acceleration, found.acceleration, group_.size, 3));
+        EXPECT_TRUE(same_numbers(out.joint_force, found.joint_force, group_.size + 1, group_.directions));
+        for (std::int64_t k = 0; out.tip_force && k < group_.size; ++k) {  // of last bodies alone
+            if (!group_.has_jointed_tip(k)) continue;
+            for (int i = 0; i < group_.directions; ++i)
+                EXPECT_EQ(out.tip_force.origin[i * out.tip_force.pitch + k], found.tip_force.origin[i * found.tip_force.pitch + k]);
+        }
+    }
+
+    ChainGroup const& group_;
+    std::unique_ptr<ChainSolver> reference_;
+    std::vector<NamedSolver> others_;
+};
+
+void evaluate(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
+              std::unique_ptr<ChainSolver> solver, bool at_once) {
+    if (!group.beads && group.axes == Axes::joint && !group.linked) {
+        auto const dynamics = make_joint_dynamics(group, scene, executor, communicator, std::move(solver));
+        dynamics->update_configuration();
+        dynamics->assemble_matrices();
+        dynamics->solve();
+        return;
+    }
+    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
+    auto const dynamics = make(group, scene, executor, communicator, std::move(solver));
+    dynamics->update_configuration();
+    dynamics->assemble_matrices();
+    dynamics->set_simple_forces();
+    dynamics->observe(0);  // without accelerations
+    dynamics->evaluate();
+    if (at_once) dynamics->evaluate_at_once();
+}
+
+}  // namespace
+
+std::unique_ptr<ChainSolver> compared_solver(ChainGroup const& group, std::unique_ptr<ChainSolver> reference,
+                                             std::vector<NamedSolver> others) {
+    return std::make_unique<ComparedSolver>(group, std::move(reference), std::move(others));
+}
+
+void evaluate_compared(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator,
+                       std::unique_ptr<ChainSolver> compared, bool at_once) {
+    std::string const refused = words_of([&] { evaluate(group, scene, executor, communicator, std::move(compared), at_once); });
+    EXPECT_TRUE(refused.empty() || refused.find("not positive definite") != std::string::npos) << refused;
+}
+
+}  // namespace catena::test

@@ -1,0 +1,217 @@
+// CUDA's words for a host compiler, so that kernels run where there is no GPU. A block is a thread of the host and its threads are fibers
+// of that: from barrier to barrier they go one after the other, each time in another order, and what passes between them without a barrier
+// comes too late for some. Blocks of a cluster go side by side. The thread sanitizer takes every fiber for a thread.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <ucontext.h>
+
+#include <algorithm>
+#include <barrier>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <random>
+#include <span>
+#include <thread>
+#include <type_traits>
+#include <vector>
+
+#if defined(__has_feature)
+#if __has_feature(thread_sanitizer)
+#define CATENA_FIBERS_ARE_WATCHED
+#endif
+#endif
+#if defined(__SANITIZE_THREAD__)
+#define CATENA_FIBERS_ARE_WATCHED
+#endif
+#if defined(CATENA_FIBERS_ARE_WATCHED)
+#include <sanitizer/tsan_interface.h>
+#endif
+
+#define __global__
+#define __device__
+#define __host__
+#define __shared__ thread_local
+#define __launch_bounds__(...)
+
+namespace catena::cuda_on_host {
+
+struct Index {
+    unsigned x = 0;
+};
+
+/// What the thread sanitizer is told: a switch from fiber to fiber orders nothing, a barrier does.
+namespace watch {
+#if defined(CATENA_FIBERS_ARE_WATCHED)
+inline void* self() { return __tsan_get_current_fiber(); }
+inline void* create() { return __tsan_create_fiber(0); }
+inline void destroy(void* fiber) { __tsan_destroy_fiber(fiber); }
+inline void before_switch(void* to) { __tsan_switch_to_fiber(to, __tsan_switch_to_fiber_no_sync); }
+inline void arrive(void* at) { __tsan_release(at); }
+inline void leave(void* from) { __tsan_acquire(from); }
+#else
+inline void* self() { return nullptr; }
+inline void* create() { return nullptr; }
+inline void destroy(void*) {}
+inline void before_switch(void*) {}
+inline void arrive(void*) {}
+inline void leave(void*) {}
+#endif
+}  // namespace watch
+
+/// An H100's or H200's, of a block.
+constexpr std::size_t most_shared_bytes = 232448;
+constexpr std::size_t numbers_to_see_overruns = 64;
+
+}  // namespace catena::cuda_on_host
+
+inline constinit thread_local catena::cuda_on_host::Index threadIdx{}, blockIdx{}, blockDim{};
+
+namespace catena::cuda::kernels {
+inline constinit thread_local double
+    shared_numbers[cuda_on_host::most_shared_bytes / sizeof(double) + cuda_on_host::numbers_to_see_overruns]{};
+}  // namespace catena::cuda::kernels
+
+namespace catena::cuda_on_host {
+
+/// Of a block's fibers, one block after the other.
+class Stacks {
+  public:
+    explicit Stacks(std::size_t count) : memory_(std::make_unique_for_overwrite<std::byte[]>(count * bytes)) {}
+    stack_t of(std::size_t fiber) const { return {memory_.get() + fiber * bytes, 0, bytes}; }
+
+  private:
+    static constexpr std::size_t bytes = 256 << 10;
+    std::unique_ptr<std::byte[]> memory_;
+};
+
+/// One that runs.
+class Block {
+  public:
+    /// `cluster`: where its cluster's blocks meet; null for a block alone.
+    Block(unsigned threads, Stacks const& stacks, std::barrier<>* cluster, std::function<void()> const& kernel)
+        : kernel_(kernel), cluster_(cluster), fibers_(threads) {
+        here_ = this;
+        for (std::size_t t = 0; t < threads; ++t) {
+            Fiber& fiber = fibers_[t];
+            fiber.watched = watch::create();
+            getcontext(&fiber.context);
+            fiber.context.uc_stack = stacks.of(t);
+            makecontext(&fiber.context, &Block::enter, 0);
+        }
+    }
+    ~Block() {
+        for (Fiber const& fiber : fibers_) watch::destroy(fiber.watched);
+    }
+    Block(Block const&) = delete;
+    Block& operator=(Block const&) = delete;
+
+    void run() {
+        std::vector<unsigned> order(fibers_.size());
+        std::iota(order.begin(), order.end(), 0U);
+        std::minstd_rand random(blockIdx.x + 1);
+        do {
+            std::shuffle(order.begin(), order.end(), random);
+            watch::arrive(&left_);
+            for (unsigned const t : order) resume(t);
+            watch::leave(&arrived_);
+            for (Fiber const& fiber : fibers_)
+                if (fiber.line != fibers_[0].line || fiber.of_cluster != fibers_[0].of_cluster) {
+                    ADD_FAILURE() << "threads of a block wait in lines " << fiber.line << " and " << fibers_[0].line << " (0: nowhere)";
+                    std::abort();  // nothing says how to go on
+                }
+            if (fibers_[0].of_cluster) cluster_->arrive_and_wait();
+        } while (fibers_[0].line != 0);
+        if (cluster_) cluster_->arrive_and_drop();
+    }
+    /// Where the running fiber waits for the others. Alone, it waits for no cluster: a GPU without clusters knows nothing of them.
+    static void wait(int line, bool of_cluster) {
+        if (!of_cluster || here_->cluster_) here_->leave_fiber(line, of_cluster);
+    }
+
+  private:
+    struct Fiber {
+        ucontext_t context{};
+        void* watched = nullptr;
+        int line = 0;
+        bool of_cluster = false;
+    };
+    static void enter() {
+        watch::leave(&here_->left_);
+        here_->kernel_();
+        here_->leave_fiber(0, false);
+    }
+    /// No race with the fibers that read it.
+    __attribute__((noinline, no_sanitize("thread"))) static void number_thread(unsigned t) { threadIdx.x = t; }
+    void resume(unsigned t) {
+        number_thread(t);
+        watch::before_switch(fibers_[t].watched);
+        swapcontext(&outside_, &fibers_[t].context);
+    }
+    void leave_fiber(int line, bool of_cluster) {
+        Fiber& fiber = fibers_[threadIdx.x];
+        fiber.line = line;
+        fiber.of_cluster = of_cluster;
+        void* const outside = watched_;  // read before the others may go on
+        watch::arrive(&arrived_);
+        watch::before_switch(outside);
+        swapcontext(&fiber.context, &outside_);
+        watch::leave(&left_);
+    }
+
+    static inline thread_local Block* here_ = nullptr;
+    std::function<void()> const& kernel_;
+    std::barrier<>* cluster_;
+    std::vector<Fiber> fibers_;
+    ucontext_t outside_{};
+    void* watched_ = watch::self();
+    char arrived_ = 0, left_ = 0;  // what the sanitizer knows them by
+};
+
+struct Launch {
+    unsigned blocks = 0, threads = 0;
+    std::size_t numbers = 0;  // of shared memory
+    unsigned cluster = 1;
+};
+
+/// Block `b`. Its shared memory is full of NaN at first.
+inline void run_block(unsigned b, Launch const& grid, Stacks const& stacks, std::barrier<>* cluster, std::function<void()> const& kernel) {
+    constexpr double unset = std::numeric_limits<double>::quiet_NaN();
+    std::span const own(cuda::kernels::shared_numbers, grid.numbers + numbers_to_see_overruns);
+    std::fill(own.begin(), own.end(), unset);
+    blockIdx.x = b;
+    blockDim.x = grid.threads;
+    Block(grid.threads, stacks, cluster, kernel).run();
+    for (double const beyond : own.last(numbers_to_see_overruns))
+        if (std::bit_cast<std::uint64_t>(beyond) != std::bit_cast<std::uint64_t>(unset)) ADD_FAILURE() << "wrote beyond shared memory";
+}
+
+template <class... Parameters>
+void launch(Launch const& grid, void (*kernel)(Parameters...), std::type_identity_t<Parameters> const&... parameters) {
+    ASSERT_LE(grid.numbers * sizeof(double), most_shared_bytes);
+    ASSERT_TRUE(grid.cluster == 1 || grid.cluster == grid.blocks);
+    std::function<void()> const of_thread = [&] { kernel(parameters...); };
+    unsigned const workers = grid.cluster > 1 ? grid.cluster : std::min(grid.blocks, 2U);
+    std::barrier<> cluster(workers);
+    std::vector<std::jthread> threads;
+    for (unsigned w = 0; w < workers; ++w)
+        threads.emplace_back([&, w] {
+            Stacks const stacks(grid.threads);
+            for (unsigned b = w; b < grid.blocks; b += workers)
+                run_block(b, grid, stacks, grid.cluster > 1 ? &cluster : nullptr, of_thread);
+        });
+}
+
+}  // namespace catena::cuda_on_host
+
+/// `line`: that of the call.
+inline void __syncthreads(int line = __builtin_LINE()) { catena::cuda_on_host::Block::wait(line, false); }
+namespace catena::cuda {
+inline void sync_cluster(int line = __builtin_LINE()) { cuda_on_host::Block::wait(line, true); }
+}  // namespace catena::cuda
