@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 #include <type_traits>
-#include <vector>
 
+#include "dca/large_pages.hpp"
 #include "dca/linear.hpp"
 
 namespace catena {
@@ -63,7 +63,7 @@ class BasicField {
         return 8 * (lines | 1);
     }
     std::int64_t pitch_ = 0, size_ = 0;
-    std::vector<Real> data_;
+    LongArray<Real> data_;
 };
 
 template <int D>

@@ -56,6 +56,7 @@ endif()
 set(CMAKE_COMPILE_WARNING_AS_ERROR ${CATENA_WERROR})
 
 if(CATENA_SANITIZE)
+    add_compile_definitions(CATENA_WHOLE=)  # checks of what is inlined whole are six times as long to compile
     add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fsanitize=${CATENA_SANITIZE}> $<$<COMPILE_LANGUAGE:CXX>:-fno-omit-frame-pointer>)
     add_link_options(-fsanitize=${CATENA_SANITIZE})
     if(CATENA_SANITIZE MATCHES "undefined")

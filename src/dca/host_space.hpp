@@ -14,7 +14,9 @@
 
 /// Of what a loop does with one item: all that it calls is inlined, small vectors and matrices then stay in registers. By itself gcc stops
 /// at a size that these functions are beyond, and they take two to three times as long.
+#if !defined(CATENA_WHOLE)  // the build leaves it out where it does not optimise
 #define CATENA_WHOLE __attribute__((flatten))
+#endif
 
 namespace catena {
 
@@ -65,7 +67,7 @@ class HostSpace : public HostAccess {
         dca::RecordsView<T, order> view() { return {reinterpret_cast<double*>(records_.data()), 0}; }
 
       private:
-        std::vector<T> records_;
+        LongArray<T> records_;
     };
     /// Runs, merges level by level and roots: those of a level are independent, the next level's need them.
     class Tree {

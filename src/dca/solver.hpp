@@ -47,7 +47,7 @@ class DirectionsField {
 
   private:
     std::int64_t pitch_ = 0;
-    std::vector<double> data_;
+    LongArray<double> data_;
 };
 
 /// The part of a chain in absolute coordinates on this rank.

@@ -37,7 +37,7 @@ class AlignedNumbers {
     std::int64_t bytes() const { return static_cast<std::int64_t>(storage_.size() * sizeof(double)); }
 
   private:
-    std::vector<double> storage_;
+    LongArray<double> storage_;
 };
 
 template <class Leaf>
