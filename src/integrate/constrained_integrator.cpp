@@ -17,7 +17,7 @@ int ConstrainedIntegrator::bias_sweeps_a_step() const { return scheme_.kind == I
 void ConstrainedIntegrator::step(std::int64_t n) {
     double const h = scheme_.step;
     ConstrainedStep step;
-    step.langevin = scheme_.kind == Integrator::g_baoab;
+    step.langevin = is_langevin(scheme_.kind);
     step.kick = pending_ * h;
     step.drift = h;
     step.sweeps = sweeps_;

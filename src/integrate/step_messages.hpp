@@ -2,7 +2,7 @@
 #pragma once
 
 #include "chain/chain_group.hpp"
-#include "scene/scene.hpp"
+#include "integrate/joint_integrators.hpp"
 
 namespace catena {
 
@@ -25,8 +25,9 @@ class StepMessages {
     Traffic joint(int corrections, Cut const&) const;
 
     Integrator integrator_;
+    SweepsAStep sweeps_;
     std::int64_t directions_;
-    bool absolute_, beads_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
+    bool absolute_, beads_, implicit_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
     std::int64_t refinements_;
 };
 

@@ -16,7 +16,8 @@ class JointStepper final : public Stepper {
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
         : system_(system),
           h_(d.step),
-          integrator_(d.integrator == Integrator::rk4 ? make_runge_kutta4(system) : make_velocity_verlet(system)) {
+          sweeps_(sweeps_a_step(d)),
+          integrator_(make_joint_integrator(system, d)) {
         system.close_tips();
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
@@ -60,8 +61,8 @@ class JointStepper final : public Stepper {
         integrator_->restored();
     }
     json describe() const override {
-        int const sweeps = integrator_->evaluations_a_step() + (has_tips() ? corrections_ + 1 : 0);
-        json found = {{"matrix_sweeps_a_step", sweeps}, {"bias_sweeps_a_step", sweeps}};
+        int const more = has_tips() ? corrections_ + 1 : 0;
+        json found = {{"matrix_sweeps_a_step", sweeps_.matrices + more}, {"bias_sweeps_a_step", sweeps_.biases + more}};
         if (has_tips()) found["corrections_of_tips"] = corrections_;
         return found;
     }
@@ -75,6 +76,7 @@ class JointStepper final : public Stepper {
     static constexpr int most_corrections = 10;
     ChainSystem& system_;
     double h_;
+    SweepsAStep sweeps_;
     int corrections_ = JointDynamics::usual_corrections;  // of tips' positions after a step
     std::unique_ptr<JointIntegrator> integrator_;
 };
