@@ -118,13 +118,14 @@ Vec3 JointSolution::yielded(std::int64_t k) const {
 double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView biases, std::int64_t at,
                               Screw<double> const& s, int restricted, double size, Vec3 const& yielded_by_it) const {
     Vector<double, 6> b = load_first(biases, at, group.directions);
-    for (int i = 0; i < 3; ++i) b[3 + i] += yielded_by_it[i];
+    auto yields = Vector<double, 6>::zero();
+    for (int i = 0; i < 3; ++i) yields[3 + i] = yielded_by_it[i];
     for (int i = restricted; i < 6; ++i) b[i] = 0.0;
-    Vector<double, 6> const e = opening(out, in, b, s, restricted);
+    Vector<double, 6> const e = opening(out, in, b + yields, s, restricted);
     auto const sizes = [&](Vector<double, 6> const& v) {
         return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) + size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
     };
-    return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b));
+    return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b) + sizes(yields));
 }
 
 double JointSolution::residual(Communicator const& communicator) const {

@@ -62,10 +62,12 @@ struct JointRotors {
     CATENA_HD void take(std::int64_t k, ConstView<3> const& omega) const {
         if (has(k)) rate.store(k, relative(omega, k));
     }
+    CATENA_HD Quat gone(std::int64_t body) const {
+        return conjugate(as_quaternion(orientation.load(body))) * as_quaternion(flown.load(body));
+    }
     /// For a drift: how far the joint has turned beyond what its rotor has, `scale` times.
     CATENA_HD void set_opening(DirectionsView const& bias, std::int64_t k, double scale) const {
         if (!has(k)) return;
-        auto const gone = [&](std::int64_t body) { return conjugate(as_quaternion(orientation.load(body))) * as_quaternion(flown.load(body)); };
         Quat const own = gone(k);
         Quat turned = own;
         if (!is_first[k]) {
@@ -80,9 +82,11 @@ struct JointRotors {
         Vec3 const opening{{bias.at(k, 3), bias.at(k, 4), bias.at(k, 5)}};
         rate.store(k, rate.load(k) + relative(alpha, k) + transposed_times(axes(k), opening));
     }
-    CATENA_HD void add_noise(std::int64_t k, Thermostat const& t, std::uint64_t step, std::uint64_t body, NoiseStage stage) const {
+    /// Harmonic springs sample exactly at any step (BAOAB). Where forces are, at whole steps, velocities u then have the covariance
+    /// kt (M + B)^-1 M (M + B)^-1, that of noise on bodies alone; in the middle of drifts kt (M + B)^-1.
+    CATENA_HD void add_noise(std::int64_t k, Thermostat const& t, std::uint64_t step, std::uint64_t body) const {
         if (!has(k)) return;
-        Vec3 noise = normal3(t.seed, step, body, stage);
+        Vec3 noise = normal3(t.seed, step, body, NoiseStage::thermostat_joint);
         for (int i = 0; i < 3; ++i) noise[i] /= std::sqrt(inertia(k, i));
         rate.store(k, plus_scaled(t.keep * rate.load(k), t.spread, noise));
     }

@@ -149,7 +149,7 @@ class RigidDynamics final : public AbsoluteDynamics {
         }
     }
     void thermalise(Thermostat const& t, std::uint64_t step) override {
-        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular, NoiseStage::thermostat_joint}, 0, group_.size);
+        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular, true}, 0, group_.size);
     }
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
         for (dca::Piece const& piece : group_.pieces)

@@ -167,7 +167,7 @@ class Run {
         ++counted_steps_;
         counted_ += of_step;
         for (std::size_t i = 0; i < messages_.size(); ++i)
-            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]));
+            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]), stepper_->parts());
     }
 
     /// What fails within a step says at which.

@@ -64,11 +64,13 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     springs_ = loads.springs;
 }
 
-Traffic StepMessages::a_step(int sweeps, Cut const& cut) const { return absolute_ ? absolute(sweeps, cut) : joint(sweeps, cut); }
+Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts) const {
+    return absolute_ ? absolute(sweeps, parts, cut) : joint(sweeps, cut);
+}
 
 /// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its matrices; a projection beside each.
-Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
-    std::int64_t const drifts = is_langevin(integrator_) ? 2 : 1, closings = drifts * sweeps;
+Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
+    std::int64_t const drifts = (is_langevin(integrator_) ? 2 : 1) * parts, closings = drifts * sweeps;
     Sum sum(cut);
     sum.matrix_sweeps(drifts, directions_);
     sum.bias_sweeps(drifts + closings, directions_);

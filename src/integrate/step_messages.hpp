@@ -17,11 +17,11 @@ Cut cut_of(ChainGroup const&);
 class StepMessages {
   public:
     StepMessages(ChainGroup const&, Scene const&);
-    /// `sweeps`: Stepper::sweeps().
-    Traffic a_step(int sweeps, Cut const&) const;
+    /// `sweeps`, `parts`: Stepper's.
+    Traffic a_step(int sweeps, Cut const&, int parts = 1) const;
 
   private:
-    Traffic absolute(int sweeps, Cut const&) const;
+    Traffic absolute(int sweeps, int parts, Cut const&) const;
     Traffic joint(int corrections, Cut const&) const;
 
     Integrator integrator_;

@@ -118,19 +118,24 @@ class ConstrainedStepper final : public Stepper {
         return true;
     }
     int sweeps() const override { return integrator_.sweeps(); }
+    int parts() const override { return integrator_.parts(); }
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
+        if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
         c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
     }
     void restore(Checkpoint const& c) override {
         integrator_.set_sweeps(static_cast<int>(c.integers.at("sweeps_a_drift")));
+        if (auto const kept = c.integers.find("parts_a_drift"); kept != c.integers.end()) integrator_.set_parts(static_cast<int>(kept->second));
         integrator_.set_pending(0.5 * static_cast<double>(c.integers.at("pending_half_kicks")));
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
     json describe() const override {
-        return {{"matrix_sweeps_a_step", integrator_.matrix_sweeps_a_step()},
-                {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
-                {"sweeps_a_drift", integrator_.sweeps()}};
+        json found = {{"matrix_sweeps_a_step", integrator_.matrix_sweeps_a_step()},
+                      {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
+                      {"sweeps_a_drift", integrator_.sweeps()}};
+        if (integrator_.parts() > 1) found["parts_a_drift"] = integrator_.parts();
+        return found;
     }
 
   private:
