@@ -358,7 +358,7 @@ class JointDynamicsIn final : public JointDynamics {
         JointChains c;
         c.scan = kinematics_.scan(state_.view(), motion_.view());
         if (has_implicit())
-            c.implicit = {0.25 * implicit_step_ * implicit_step_, 0.5 * implicit_step_, implicit_list_.data(), compliance_.view(),
+            c.implicit = {0.5 * implicit_step_ * implicit_step_, 0.5 * implicit_step_, implicit_list_.data(), compliance_.view(),
                           yielding_.view(), start_.view().qd};
         c.given = loads_.view();
         c.time = time_;

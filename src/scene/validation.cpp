@@ -46,7 +46,7 @@ void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft)
         joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
 }
 
-/// An implicit joint carries the inertia h C / 2 + h^2 K / 4 along each coordinate: somewhere none, elsewhere one, is no definite matrix
+/// An implicit joint carries the inertia h C / 2 + h^2 K / 2 along each coordinate: somewhere none, elsewhere one, is no definite matrix
 /// in the joint's axes, and of very different ones the smaller would be rounding.
 void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
     double constexpr widest = 1e10;

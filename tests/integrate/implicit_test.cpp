@@ -68,7 +68,7 @@ DenseMatrix mobility(ChainSpec const& chain, std::vector<Coordinate> const& at) 
 }
 
 double inertia(BodyArrays const& b, Coordinate const& c, double h) {
-    return 0.25 * h * h * b.stiffness[c.body][c.number] + 0.5 * h * b.damping[c.body][c.number];
+    return 0.5 * h * h * b.stiffness[c.body][c.number] + 0.5 * h * b.damping[c.body][c.number];
 }
 
 /// (M + B) u' = M a, a the accelerations of forward dynamics; spherical joints keep B in the outboard body, as a rotor.
@@ -78,7 +78,7 @@ DenseVector expected_rates(ChainSpec const& chain, std::vector<Coordinate> const
     for (std::size_t k = 0; k < b.size(); ++k) {
         if (b.joint[k] != JointType::spherical || !scene::resists(b, k)) continue;
         Vec3 momentum;
-        for (int i = 0; i < 3; ++i) momentum[i] = 0.25 * h * h * b.stiffness[k][i] * b.qd[k][i];
+        for (int i = 0; i < 3; ++i) momentum[i] = 0.5 * h * h * b.stiffness[k][i] * b.qd[k][i];
         b.torque[k] = b.torque[k] - cross(b.qd[k], momentum);
     }
     auto const n = static_cast<Eigen::Index>(at.size());
@@ -132,7 +132,6 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
         worst = std::max(worst, error / bound);
     }
     RecordProperty("worst_error_over_bound", std::to_string(worst));
-    printf("worst %g\n", worst);
 }
 
 /// Springs and dampers of spherical, universal, revolute, prismatic and helical joints, with loads and a start in motion.
@@ -236,7 +235,6 @@ TEST(Staggered, IsStableHoweverStiff) {
                 integrator->step(h);
                 most = std::max(most, energy_of(scene, system));
             }
-            printf("joints %d omega h %g: most %g of the start\n", (int)joints, times, most / start);
             EXPECT_LE(most, 1.5 * start) << static_cast<int>(joints) << ", omega h " << times;
         }
 }
@@ -269,7 +267,6 @@ TEST(Staggered, SamplesHarmonicSpringsExactly) {
         }
         // Ten steps at this friction apart they are all but independent: half the samples at worst.
         double const error = std::sqrt(2.0 / (0.5 * static_cast<double>(samples)));
-        printf("omega h %g: %g +- %g\n", times, sum / static_cast<double>(samples), error);
         EXPECT_NEAR(sum / static_cast<double>(samples), 1.0, 4 * error) << times;
     }
 }
@@ -295,7 +292,6 @@ TEST(ImplicitLangevin, IsOfSecondOrderWithoutFriction) {
     };
     auto const exact = end(Integrator::rattle, 3200);
     double const slope = std::log2(distance(end(Integrator::implicit_g_baoab, 100), exact) / distance(end(Integrator::implicit_g_baoab, 200), exact));
-    printf("slope %g (errors %g)\n", slope, distance(end(Integrator::implicit_g_baoab, 100), exact));
     EXPECT_NEAR(slope, 2.0, 0.1);
 }
 

@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 from catena import ROOT, Runs, arguments, blocked_error, columns, verdict
 
-options = arguments(__doc__, bodies=2000, times=20.0, frames=400, every=25, friction=0.003, explicit_friction=0.003)
+options = arguments(__doc__, bodies=2000, times=20.0, frames=150, every=20, friction=0.02, explicit_friction=0.02)
 bodies, frames = (300, 160) if options.quick else (options.bodies, options.frames)
 LENGTH, BEND, TWIST = 0.34, 50.0, 100.0
 STRETCHES = [s for s in (10, 30, 100, 300) if 3 * s <= bodies]   # longer ones take longer to forget their start than runs last
