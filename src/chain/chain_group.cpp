@@ -349,7 +349,8 @@ int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
 }  // namespace
 
 int ChainGroup::restricted(std::int64_t k) const {
-    return std::min(directions, is_implicit(k) || (!drives.empty() && is_driven(k)) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
+    return std::min(directions,
+                    is_implicit(k) || (!drives.empty() && is_driven(k)) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
 }
 
 LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t last) {
@@ -363,14 +364,16 @@ LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t 
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,
                                                      Communicator const& communicator, bool implicit) {
     std::map<int, std::vector<int>> chains;
-    for (std::size_t i = 0; i < scene.chains.size(); ++i) chains[group_of(scene.chains[i], axes, handles, implicit)].push_back(static_cast<int>(i));
+    for (std::size_t i = 0; i < scene.chains.size(); ++i)
+        chains[group_of(scene.chains[i], axes, handles, implicit)].push_back(static_cast<int>(i));
     // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the order.
     bool const together = scene.forces.openmm && communicator.size() > 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (auto& [kind, members] : chains) {
         ChainSpec const& any = scene.chains[members.front()];
         if (together && (any.is_beads() || any.is_linked())) members = compact_order(placed_chains(scene, members), communicator.size());
-        bool const of_resisting = implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
+        bool const of_resisting =
+            implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
         groups.push_back(std::make_unique<ChainGroup>(
             make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise, communicator, of_resisting)));
     }

@@ -54,7 +54,7 @@ struct ChainGroup {
     int smallest_directions = 6;  // what would be enough
     bool has_universal = false, has_screws = false;
     std::vector<std::uint8_t> implicit_joint;  // of local body k: its springs and dampers stand in the matrices; empty where none does
-    std::vector<int> chain;  // index in the scene of each chain of the group
+    std::vector<int> chain;                    // index in the scene of each chain of the group
     std::vector<std::string> name;
     std::vector<Base> base;                    // one a chain
     std::vector<std::int64_t> first_in_scene;  // scene-wide index of each chain's first body (bodies counted over all chains of the scene)

@@ -99,7 +99,7 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k, SegmentMa
     if constexpr (K == 6)
         if (compliance.origin) {
             auto const c = as_symmetric(read(compliance, k));
-            CATENA_UNROLL
+    CATENA_UNROLL
             for (int i = 0; i < 3; ++i)
                 CATENA_UNROLL
                 for (int j = 0; j <= i; ++j) s.z11(3 + i, 3 + j) = s.z11(3 + i, 3 + j) + c(i, j);

@@ -36,7 +36,8 @@ double ConstrainedIntegrator::error_after(int sweeps) {
     for (AbsoluteDynamics* group : groups_) {
         std::vector<StateArray> const before = group->state();
         // Steps with implicit joints are long for what may start at rest.
-        if (is_implicit(scheme_.kind)) group->draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group->group().chain.size(), true));
+        if (is_implicit(scheme_.kind))
+            group->draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group->group().chain.size(), true));
         group->kick(pending_ * scheme_.step);
         group->drift(h, sweeps);
         double const error = group->constraint_error();

@@ -164,10 +164,9 @@ class JointDynamicsIn final : public JointDynamics {
         need_for_noise();
         JointChains noisy = chains();
         noisy.force = noise_force_.view();
-        space_.for_each(group_.size, [noisy, piece = pieces_in_scene_.data(), pieces = pieces(), seed = thermostat.seed,
-                                      step] CATENA_LAMBDA(std::int64_t k) {
-            noisy.set_noise(k, piece_of(piece, pieces, k).body_of(k), seed, step);
-        });
+        space_.for_each(group_.size,
+                        [noisy, piece = pieces_in_scene_.data(), pieces = pieces(), seed = thermostat.seed,
+                         step] CATENA_LAMBDA(std::int64_t k) { noisy.set_noise(k, piece_of(piece, pieces, k).body_of(k), seed, step); });
         if (group_.has_tips())
             space_.for_each(tips(), [t = jointed_tips(), out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) { t.set_no_bias(i, out); });
         solver_->solve({torque_.view(), noise_force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
@@ -257,9 +256,8 @@ class JointDynamicsIn final : public JointDynamics {
     }
     template <bool positions>
     void drift(double h) {
-        space_.for_each(group_.size, [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
-            s.template drift<positions>(k, h, time);
-        });
+        space_.for_each(group_.size,
+                        [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template drift<positions>(k, h, time); });
         relative_ = true;
     }
     void kick(double h, bool by_carried) {
@@ -358,8 +356,12 @@ class JointDynamicsIn final : public JointDynamics {
         JointChains c;
         c.scan = kinematics_.scan(state_.view(), motion_.view());
         if (has_implicit())
-            c.implicit = {0.5 * implicit_step_ * implicit_step_, 0.5 * implicit_step_, implicit_list_.data(), compliance_.view(),
-                          yielding_.view(), start_.view().qd};
+            c.implicit = {0.5 * implicit_step_ * implicit_step_,
+                          0.5 * implicit_step_,
+                          implicit_list_.data(),
+                          compliance_.view(),
+                          yielding_.view(),
+                          start_.view().qd};
         c.given = loads_.view();
         c.time = time_;
         c.directions = group_.directions;
@@ -418,7 +420,7 @@ class JointDynamicsIn final : public JointDynamics {
     bool has_wrenches_, has_forces_, needs_positions_;
     bool has_matrices_ = false;  // of the configuration updated last
     bool has_noise_ = false;
-    bool relative_ = false;      // the state's motions joint by joint are known
+    bool relative_ = false;  // the state's motions joint by joint are known
     double start_time_ = 0;
     JointKinematics<Space> kinematics_;
     BodyLoadsIn<Space> loads_;

@@ -1,7 +1,7 @@
-// Implicit springs of spherical joints in absolute coordinates, for every Space: within a step of length h a spring K acts on a chain with a
-// rotor in every joint, of inertia B = h^2 K / 2 along the body's axes, that turns as the joint does (formulas, "Implicit joint springs",
-// staggered). A rotor has a velocity of its own, as bodies have theirs, and the sweeps that close joints make both agree: kicks so that it is
-// the joint's, drifts so that it is the joint's mean one.
+// Implicit springs of spherical joints in absolute coordinates, for every Space: within a step of length h a spring K acts on a chain with
+// a rotor in every joint, of inertia B = h^2 K / 2 along the body's axes, that turns as the joint does (ImplicitJoints: why not less). A
+// rotor has a velocity of its own, as bodies have theirs, and the sweeps that close joints make both agree: kicks so that it is the
+// joint's, drifts so that it is the joint's mean one.
 #pragma once
 
 #include "chain/chain_group.hpp"
@@ -13,15 +13,15 @@
 namespace catena {
 
 struct JointRotors {
-    double of_stiffness = 0;                    // what of K is B
-    std::uint8_t const* implicit = nullptr;     // whether joint k is; null where none is
-    std::uint8_t const* is_first = nullptr;     // of its chain
+    double of_stiffness = 0;                 // what of K is B
+    std::uint8_t const* implicit = nullptr;  // whether joint k is; null where none is
+    std::uint8_t const* is_first = nullptr;  // of its chain
     ConstView<3> stiffness;
-    ConstView<4> orientation;                   // of bodies; entry -1: of the neighbour's last body, as in what follows
-    View<3> rate;                               // of the rotor against the inboard body, B
-    View<3> torque;                             // of the spring, B
-    View<4> flown;                              // orientations at the end of a drift's flight
-    View<6> compliance;                         // ConfigurationView::compliance, W
+    ConstView<4> orientation;  // of bodies; entry -1: of the neighbour's last body, as in what follows
+    View<3> rate;              // of the rotor against the inboard body, B
+    View<3> torque;            // of the spring, B
+    View<4> flown;             // orientations at the end of a drift's flight
+    View<6> compliance;        // ConfigurationView::compliance, W
 
     CATENA_HD bool has(std::int64_t k) const { return implicit && implicit[k] != 0; }
     CATENA_HD double inertia(std::int64_t k, int i) const { return of_stiffness * stiffness.at(k, i); }

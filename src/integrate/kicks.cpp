@@ -32,7 +32,8 @@ class Kicks final : public JointIntegrator {
 
   private:
     bool is_warm() const { return thermostat_.friction > 0; }
-    /// Velocities and accelerations at a kick's middle, where it has `before` of it behind it; the velocities so far are those at its start.
+    /// Velocities and accelerations at a kick's middle, where it has `before` of it behind it; the velocities so far are those at its
+    /// start.
     void accelerate(double before) {
         system_.solve_joint_groups();
         for (JointDynamics* const group : system_.joint()) group->kick(before);

@@ -82,7 +82,8 @@ double reach_of_joints(ChainGroup const& group, Communicator const& communicator
 }
 
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
-                                                      Communicator const& communicator, std::unique_ptr<ChainSolver> solver, double implicit_step) {
+                                                      Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+                                                      double implicit_step) {
     return std::make_unique<RigidDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
 }
 

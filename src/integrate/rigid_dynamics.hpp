@@ -215,7 +215,8 @@ class RigidDynamics final : public AbsoluteDynamics {
     /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
     void project(double h, View<3> velocity, View<3> omega) {
         space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
-        solver_->solve({moment_.view(), momentum_.view(), {}, rotors() > 0 ? bias_.view() : DirectionsView{}, {}}, {omega, velocity, {}, {}});
+        solver_->solve({moment_.view(), momentum_.view(), {}, rotors() > 0 ? bias_.view() : DirectionsView{}, {}},
+                       {omega, velocity, {}, {}});
     }
     void take_rotors(View<3> omega) {
         exchange_from_inboard(communicator_, group_, omega, space_);
@@ -294,7 +295,7 @@ class RigidDynamics final : public AbsoluteDynamics {
         c.principal_moment = principal_moment_.view();
         c.given = loads_.view();
         if (rotors() > 0)
-            c.rotors = {of_stiffness_,  implicit_.data(), is_first_.data(), c.given.stiffness,  orientation_.view(),
+            c.rotors = {of_stiffness_, implicit_.data(), is_first_.data(), c.given.stiffness, orientation_.view(),
                         rotor_.view(), spring_.view(),   flown_.view(),    compliance_.view()};
         c.beads = beads_.view();
         c.position = position_.view();

@@ -14,10 +14,7 @@ using nlohmann::json;
 class JointStepper final : public Stepper {
   public:
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
-        : system_(system),
-          h_(d.step),
-          sweeps_(sweeps_a_step(d)),
-          integrator_(make_joint_integrator(system, d)) {
+        : system_(system), h_(d.step), sweeps_(sweeps_a_step(d)), integrator_(make_joint_integrator(system, d)) {
         system.close_tips();
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
@@ -126,7 +123,8 @@ class ConstrainedStepper final : public Stepper {
     }
     void restore(Checkpoint const& c) override {
         integrator_.set_sweeps(static_cast<int>(c.integers.at("sweeps_a_drift")));
-        if (auto const kept = c.integers.find("parts_a_drift"); kept != c.integers.end()) integrator_.set_parts(static_cast<int>(kept->second));
+        if (auto const kept = c.integers.find("parts_a_drift"); kept != c.integers.end())
+            integrator_.set_parts(static_cast<int>(kept->second));
         integrator_.set_pending(0.5 * static_cast<double>(c.integers.at("pending_half_kicks")));
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }

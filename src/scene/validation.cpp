@@ -40,7 +40,8 @@ void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft)
         draft, bodies.damping, [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; }, "joint damping" + under,
         joint_integrators + ", or set `damping: 0` (" + thermostat + " has `friction`)");
     if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
-        fail(*root.find("forces")->find("drag"), "drag" + under, joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
+        fail(*root.find("forces")->find("drag"), "drag" + under,
+             joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
     refuse_at_body<std::array<double, 2>>(
         draft, bodies.drag, [](std::array<double, 2> const& d) { return d[0] != 0 || d[1] != 0; }, "drag" + under,
         joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
@@ -57,7 +58,7 @@ void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
         for (int i = 0; i < coordinates_of(bodies.joint[k]); ++i) {
             double const stiffness = bodies.stiffness.empty() ? 0 : bodies.stiffness[k][i];
             double const damping = bodies.damping.empty() ? 0 : bodies.damping[k][i];
-            double const inertia = 0.5 * dynamics.step * (damping + 0.5 * dynamics.step * stiffness);
+            double const inertia = 0.5 * dynamics.step * (damping + dynamics.step * stiffness);
             least = std::min(least, inertia), most = std::max(most, inertia);
         }
         auto const body = static_cast<std::int64_t>(k) + 1;
@@ -77,8 +78,8 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
     Integrator const integrator = scene.dynamics.integrator;
     Node const& at = *root.find("dynamics")->find("integrator");
     if (is_implicit(integrator) && scene.output.joint_forces)
-        fail(*root.find("output")->find("joint_forces"), fmt::format("not in this version: joint forces under integrator {}", name_of(integrator)),
-             "leave it out");
+        fail(*root.find("output")->find("joint_forces"),
+             fmt::format("not in this version: joint forces under integrator {}", name_of(integrator)), "leave it out");
     if (uses_joint_coordinates(integrator)) {
         if (chain.is_beads() || chain.is_linked())
             fail(at, fmt::format("integrator {} works in joint coordinates, chain `{}` has links", name_of(integrator), shown(chain.name)),

@@ -114,7 +114,9 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
         system.joint().front()->drift(0.0);  // whose velocities are those before a kick
         system.evaluate();
         auto const found = system.accelerations().joint_acceleration;
-        for (DrivenJoint const& driven : chain.bodies.driven) chain.bodies.stiffness[static_cast<std::size_t>(driven.body)] = Vec3::zero(), chain.bodies.damping[static_cast<std::size_t>(driven.body)] = Vec3::zero();
+        for (DrivenJoint const& driven : chain.bodies.driven)
+            chain.bodies.stiffness[static_cast<std::size_t>(driven.body)] = Vec3::zero(),
+            chain.bodies.damping[static_cast<std::size_t>(driven.body)] = Vec3::zero();
         std::vector<Coordinate> const at = resisting(chain.bodies);
         if (at.empty()) continue;
         DenseVector const exact = expected_rates(chain, at, h);
@@ -127,7 +129,8 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
         for (std::size_t k = 0; k < chain.size(); ++k) size = std::max({size, norm(alpha[k]), norm(found[k])});
         // Rates are differences of bodies' accelerations; those go through n eliminations, whose pivots differ by what masses do.
         double const bound = 1e4 * static_cast<double>(options.bodies) * 0x1p-53 * size;
-        EXPECT_LE(error, bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints) << ", h " << h;
+        EXPECT_LE(error, bound) << "seed " << seed << ", " << options.bodies << " bodies, joints " << static_cast<int>(options.joints)
+                                << ", h " << h;
         EXPECT_LE(system.residual(), system.residual_bound()) << "seed " << seed;
         worst = std::max(worst, error / bound);
     }
@@ -167,15 +170,16 @@ double distance(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
 }
 
 TEST(Staggered, IsOfSecondOrder) {
-    for (RandomJoints const joints :
-         {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::prismatic, RandomJoints::helical, RandomJoints::mixed})
+    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::prismatic,
+                                      RandomJoints::helical, RandomJoints::mixed})
         for (Base const base : {Base::fixed, Base::free})
             for (bool const damped : {false, true}) {
                 double constexpr time = 0.2;
                 Scene const scene = swinging(joints, base, damped);
                 auto const exact = end_of(scene, make_runge_kutta4, time, 1600);
                 auto const error = [&](int steps) { return distance(end_of(scene, make_staggered, time, steps), exact); };
-                EXPECT_NEAR(std::log2(error(200) / error(400)), 2.0, 0.1) << static_cast<int>(joints) << ' ' << static_cast<int>(base) << ' ' << damped;
+                EXPECT_NEAR(std::log2(error(200) / error(400)), 2.0, 0.1)
+                    << static_cast<int>(joints) << ' ' << static_cast<int>(base) << ' ' << damped;
             }
 }
 
@@ -204,7 +208,8 @@ Scene plucked(RandomJoints joints, double off) {
         b.stiffness[k] = b.joint[k] == JointType::spherical ? Vec3{{3, 4, 5}} : b.stiffness[k];
         b.rest[k] = b.q[k];
         if (b.joint[k] == JointType::spherical) {
-            Quat const q = Quat{b.rest[k][0], b.rest[k][1], b.rest[k][2], b.rest[k][3]} * from_rotation_vector(off * Vec3{{0.5, -0.6, 0.7}});
+            Quat const q =
+                Quat{b.rest[k][0], b.rest[k][1], b.rest[k][2], b.rest[k][3]} * from_rotation_vector(off * Vec3{{0.5, -0.6, 0.7}});
             b.q[k] = {q.w, q.x, q.y, q.z};
         } else {
             b.q[k][0] += off;
@@ -219,8 +224,8 @@ double energy_of(Scene const& scene, ChainSystem& system) {
     return sum;
 }
 
-/// Velocities at whole steps are those of the chain with its rotors, slower than the chain's alone: the energy falls from where it starts at
-/// rest and comes back to it.
+/// Velocities at whole steps are those of the chain with its rotors, slower than the chain's alone: the energy falls from where it starts
+/// at rest and comes back to it.
 TEST(Staggered, IsStableHoweverStiff) {
     auto const communicator = serial_communicator();
     for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::mixed})
@@ -246,9 +251,16 @@ TEST(Staggered, SamplesHarmonicSpringsExactly) {
     std::string const joint = "stiffness: 4e4";
     std::string const scene_text =
         "chains: [{name: a, count: 100, base: fixed, bodies: ["
-        "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], " + joint + "}},"
-        "{mass: 2, com: [0.1, 0, 0], inertia: [1, 2, 2], joint: {type: universal, axes: [[1, 0, 0], [0, 1, 0]], translation: [0.3, 0, 0], " + joint + "}},"
-        "{mass: 1, com: [0, 0.1, 0], inertia: [1, 1, 1.5], joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0], " + joint + "}}]}]\n"
+        "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], " +
+        joint +
+        "}},"
+        "{mass: 2, com: [0.1, 0, 0], inertia: [1, 2, 2], joint: {type: universal, axes: [[1, 0, 0], [0, 1, 0]], translation: [0.3, 0, "
+        "0], " +
+        joint +
+        "}},"
+        "{mass: 1, com: [0, 0.1, 0], inertia: [1, 1, 1.5], joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0], " +
+        joint +
+        "}}]}]\n"
         "dynamics: {integrator: implicit-baoab, step: 1, steps: 1}\n";
     auto const communicator = serial_communicator();
     Scene const scene = parse_scene(scene_text, "scene.yaml");
@@ -274,8 +286,10 @@ TEST(Staggered, SamplesHarmonicSpringsExactly) {
 /// In absolute coordinates: rods at friction 0, against RATTLE at a far smaller step.
 TEST(ImplicitLangevin, IsOfSecondOrderWithoutFriction) {
     auto const communicator = serial_communicator();
-    Scene const scene = parse_scene("chains: [{generator: {elastic_rod: {bodies: 12, mass: 6500, length: 3.4, radius: 1, bend: 50, twist: 100, seed: 2}}}]\n"
-                                    "dynamics: {integrator: implicit-g-baoab, step: 1, steps: 1}\n", "scene.yaml");
+    Scene const scene = parse_scene(
+        "chains: [{generator: {elastic_rod: {bodies: 12, mass: 6500, length: 3.4, radius: 1, bend: 50, twist: 100, seed: 2}}}]\n"
+        "dynamics: {integrator: implicit-g-baoab, step: 1, steps: 1}\n",
+        "scene.yaml");
     auto const end = [&](Integrator kind, int steps) {
         double const h = 40.0 / steps;
         ChainSystem system(scene, Axes::world, *communicator, is_implicit(kind) ? h : 0.0);
@@ -291,7 +305,8 @@ TEST(ImplicitLangevin, IsOfSecondOrderWithoutFriction) {
         return system.snapshot().position;
     };
     auto const exact = end(Integrator::rattle, 3200);
-    double const slope = std::log2(distance(end(Integrator::implicit_g_baoab, 100), exact) / distance(end(Integrator::implicit_g_baoab, 200), exact));
+    double const slope =
+        std::log2(distance(end(Integrator::implicit_g_baoab, 100), exact) / distance(end(Integrator::implicit_g_baoab, 200), exact));
     EXPECT_NEAR(slope, 2.0, 0.1);
 }
 
