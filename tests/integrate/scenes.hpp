@@ -116,7 +116,7 @@ inline RunScene const run_scenes[] = {
      "{name: "
      "b, base: fixed, tip: {joint: {type: spherical}}, generator: {elastic_rod: {bodies: 20, mass: 650, length: 0.34, radius: 1, bend: 50, "
      "twist: 100}}}]\n"
-     "dynamics: {integrator: implicit-baoab, step: 2, steps: 20, friction: 0.01, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+     "dynamics: {integrator: implicit-baoab, step: 0.05, steps: 20, friction: 0.01, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"implicit_langevin_rods",
      "chains: [{name: a, generator: {elastic_rod: {bodies: 60, mass: 650, length: 0.34, radius: 1, bend: 50, twist: 100, seed: 1}}}, "
      "{name: "
