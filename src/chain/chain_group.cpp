@@ -83,9 +83,15 @@ bool is_driven_joint(ChainSpec const& spec, std::int64_t body) {
         std::lower_bound(driven.begin(), driven.end(), body, [](DrivenJoint const& d, std::int64_t k) { return d.body < k; });
     return found != driven.end() && found->body == body;
 }
+/// Of joints in joint coordinates with springs or dampers.
+bool has_implicit_joint(ChainSpec const& spec, std::int64_t body) {
+    return body < static_cast<std::int64_t>(spec.bodies.size()) && scene::resists(spec.bodies, static_cast<std::size_t>(body)) &&
+           !is_driven_joint(spec, body);
+}
 /// In a ring the first body's joint is the one that closes it.
-int restricted_at(ChainSpec const& spec, std::int64_t body) {
+int restricted_at(ChainSpec const& spec, std::int64_t body, bool implicit) {
     if (body == 0 && spec.is_ring()) return restricted_directions(spec.tip_joint.type);
+    if (implicit && has_implicit_joint(spec, body)) return 6;
     return is_driven_joint(spec, body) ? 6 : restricted_directions(joint_type(spec, body));
 }
 
@@ -231,14 +237,19 @@ void fill(ChainGroup& group, Scene const& scene) {
 }
 
 /// Joints at the boundaries of shared units are eliminated at the top, under another index: their local entries stay 0.
-void fill_restricted(ChainGroup& group, Scene const& scene) {
+void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
     dca::Schedule const& s = group.schedule;
     auto const restricted = [&](int chain, std::int64_t body) {
-        return static_cast<std::uint8_t>(std::min(group.directions, restricted_at(scene.chains[group.chain[chain]], body)));
+        return static_cast<std::uint8_t>(std::min(group.directions, restricted_at(scene.chains[group.chain[chain]], body, implicit)));
     };
     group.restricted_of_joint.assign(static_cast<std::size_t>(s.joints), 0);
+    if (implicit) group.implicit_joint.assign(static_cast<std::size_t>(group.size), 0);
     for (dca::Piece const& piece : group.pieces)
-        for (std::int64_t i = 0; i < piece.count; ++i) group.restricted_of_joint[piece.local + i] = restricted(piece.chain, piece.body + i);
+        for (std::int64_t i = 0; i < piece.count; ++i) {
+            group.restricted_of_joint[piece.local + i] = restricted(piece.chain, piece.body + i);
+            if (implicit)
+                group.implicit_joint[piece.local + i] = has_implicit_joint(scene.chains[group.chain[piece.chain]], piece.body + i);
+        }
     for (std::size_t i = 0; i < s.tip_chain.size(); ++i)
         if (!group.partition.is_split(s.tip_chain[i]))
             group.restricted_of_joint[s.first_tip() + static_cast<std::int64_t>(i)] =
@@ -287,7 +298,7 @@ void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
 }
 
 ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes, Handles handles, bool pairwise,
-                      Communicator const& communicator) {
+                      Communicator const& communicator, bool implicit) {
     ChainGroup group;
     ChainSpec const& any = scene.chains[chains.front()];
     group.beads = any.is_beads();
@@ -320,7 +331,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     allocate(group);
     fill(group, scene);
     if (!group.beads) fill_carried(group, scene);
-    fill_restricted(group, scene);
+    fill_restricted(group, scene, implicit);
     find_neighbours(group, communicator.rank());
     find_rings(group, communicator.rank());
     if (group.has_screws) exchange_from_outboard(communicator, group, group.screw.view());
@@ -328,17 +339,18 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
 }
 
 /// Chains of one number go into one group.
-int group_of(ChainSpec const& spec, Axes axes, Handles handles) {
+int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;
-    if (handles == Handles::full) return 6;
+    if (handles == Handles::full || (implicit && scene::resists(spec))) return 6;
     return axes == Axes::world ? 3 : smallest_directions(spec);
 }
 
 }  // namespace
 
 int ChainGroup::restricted(std::int64_t k) const {
-    return std::min(directions, !drives.empty() && is_driven(k) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
+    return std::min(directions,
+                    is_implicit(k) || (!drives.empty() && is_driven(k)) ? 6 : restricted_directions(joint[static_cast<std::size_t>(k)]));
 }
 
 LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t last) {
@@ -350,16 +362,20 @@ LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t 
 }
 
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,
-                                                     Communicator const& communicator) {
+                                                     Communicator const& communicator, bool implicit) {
     std::map<int, std::vector<int>> chains;
-    for (std::size_t i = 0; i < scene.chains.size(); ++i) chains[group_of(scene.chains[i], axes, handles)].push_back(static_cast<int>(i));
+    for (std::size_t i = 0; i < scene.chains.size(); ++i)
+        chains[group_of(scene.chains[i], axes, handles, implicit)].push_back(static_cast<int>(i));
     // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the order.
     bool const together = scene.forces.openmm && communicator.size() > 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (auto& [kind, members] : chains) {
         ChainSpec const& any = scene.chains[members.front()];
         if (together && (any.is_beads() || any.is_linked())) members = compact_order(placed_chains(scene, members), communicator.size());
-        groups.push_back(std::make_unique<ChainGroup>(make_group(scene, members, axes, handles, pairwise, communicator)));
+        bool const of_resisting =
+            implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
+        groups.push_back(std::make_unique<ChainGroup>(
+            make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise, communicator, of_resisting)));
     }
     return groups;
 }

@@ -53,7 +53,8 @@ struct ChainGroup {
     int directions = 6;           // K: what a handle carries
     int smallest_directions = 6;  // what would be enough
     bool has_universal = false, has_screws = false;
-    std::vector<int> chain;  // index in the scene of each chain of the group
+    std::vector<std::uint8_t> implicit_joint;  // of local body k: its springs and dampers stand in the matrices; empty where none does
+    std::vector<int> chain;                    // index in the scene of each chain of the group
     std::vector<std::string> name;
     std::vector<Base> base;                    // one a chain
     std::vector<std::int64_t> first_in_scene;  // scene-wide index of each chain's first body (bodies counted over all chains of the scene)
@@ -104,6 +105,7 @@ struct ChainGroup {
     /// Whether handle 2 of a body depends on the joint there.
     bool moving_meeting() const { return has_universal || has_screws; }
     bool is_driven(std::int64_t k) const;
+    bool is_implicit(std::int64_t k) const { return !implicit_joint.empty() && implicit_joint[static_cast<std::size_t>(k)] != 0; }
     /// Restricted directions of local body k's inboard joint, of those that the handles carry.
     int restricted(std::int64_t k) const;
     /// Global body index over the scene of local body k.
@@ -173,7 +175,9 @@ std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGr
 }
 
 /// Groups the scene's chains by the smallest handle kind that holds them (full handles: by what they consist of). `pairwise` chooses
-/// the chapter's tree.
-std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const&, Axes, Handles, bool pairwise, Communicator const&);
+/// the chapter's tree. `implicit`: joints with springs or dampers carry all six directions, along the free ones what these do to the
+/// matrices; their chains have full handles.
+std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const&, Axes, Handles, bool pairwise, Communicator const&,
+                                                     bool implicit = false);
 
 }  // namespace catena

@@ -107,7 +107,7 @@ std::string dynamics_text(Scene const& scene) {
     if (!d.given) return "none (solve and report need none)";
     std::string text = fmt::format("{}, {} steps of {} {} ({:.6g} {})", name_of(d.integrator), d.steps, d.step, time_unit(scene),
                                    static_cast<double>(d.steps) * d.step, time_unit(scene));
-    if (d.integrator == Integrator::g_baoab)
+    if (is_langevin(d.integrator))
         text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
     if (d.fixman) text += fmt::format(", Fixman potential at {} K", d.temperature);
     return text;
@@ -121,7 +121,9 @@ Directions directions_of(Scene const& scene) {
         if (kind == scene::HandleKind::link)
             d.beads = full ? 3 : 1;
         else
-            d.bodies = full ? 6 : std::max(d.bodies, scene::directions_of(kind));
+            d.bodies = full || (scene.dynamics.given && is_implicit(scene.dynamics.integrator) && scene::resists(chain))
+                           ? 6
+                           : std::max(d.bodies, scene::directions_of(kind));
     }
     return d;
 }
@@ -130,7 +132,7 @@ std::string block_text(bool beads, int directions, Handles handles) {
     std::string const size = fmt::format("{0}x{0}", directions);
     if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
     if (beads) return size + ", projected on the links";
-    if (directions == 6) return size + ", every direction: welds or driven joints restrict them all";
+    if (directions == 6) return size + ", every direction: welds, driven or implicit joints restrict them all";
     auto const kind = static_cast<scene::HandleKind>(directions - 1);
     return size + fmt::format(", projected on the restricted directions of {} joints", scene::name_of(kind));
 }

@@ -8,6 +8,7 @@
 #include "command/plan_messages.hpp"
 #include "command/predictions.hpp"
 #include "integrate/chain_system.hpp"
+#include "integrate/joint_integrators.hpp"
 #include "plan/cache.hpp"
 
 namespace catena::command {
@@ -86,6 +87,15 @@ StepPlan step_of(Scene const& scene) {
     std::string const chosen =
         fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
     switch (d.integrator) {
+        case Integrator::staggered:
+        case Integrator::baoab:
+        case Integrator::implicit_baoab: {
+            SweepsAStep const sweeps = sweeps_a_step(d);
+            std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias sweeps (2 of the kick, thermostat)"
+                                                    : "1 matrix sweep; 2 bias sweeps of the kick";
+            if (is_implicit(d.integrator)) text += "; joints with springs or dampers are implicit: their chains have full handles";
+            return {sweeps.matrices, sweeps.biases, 0, text};
+        }
         case Integrator::rk4:
         case Integrator::velocity_verlet: {
             bool const tips =
@@ -102,6 +112,7 @@ StepPlan step_of(Scene const& scene) {
                 1, 1, 1,
                 "1 matrix sweep; 1 + s bias sweeps: 1 projection of the velocities (both half kicks in one), s of the drift; " + chosen};
         case Integrator::g_baoab:
+        case Integrator::implicit_g_baoab:
             return {
                 2, 2, 2,
                 "2 matrix sweeps; 2 + 2 s bias sweeps: projections of the kick and of the thermostat, s for either half drift; " + chosen};

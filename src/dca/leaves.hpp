@@ -92,6 +92,20 @@ struct HandlePair {
     Matrix<Real, 3, 3> to_force_axes;
 };
 
+/// What the joint on the inboard side yields is part of a body's handle (formulas, "the compliance form"): Z + P B^-1 P^T. The angular
+/// directions are the last ones of full handles.
+template <int K, class Place>
+CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k, SegmentMatrix<RealAt<Place>, K>& s) {
+    if constexpr (K == 6)
+        if (compliance.origin) {
+            auto const c = as_symmetric(read(compliance, k));
+    CATENA_UNROLL
+            for (int i = 0; i < 3; ++i)
+                CATENA_UNROLL
+                for (int j = 0; j <= i; ++j) s.z11(3 + i, 3 + j) = s.z11(3 + i, 3 + j) + c(i, j);
+        }
+}
+
 /// Joint coordinates: handles along the axes of the meeting frames, forces in B. `sliding`: prismatic and helical joints too.
 template <int K, bool sliding>
 class MeetingFrames {
@@ -100,6 +114,7 @@ class MeetingFrames {
     explicit MeetingFrames(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
+        compliance_ = c.compliance;
         if (c.axes2.origin) axes2_ = c.axes2;
         if (c.r2.origin) r2_ = c.r2;
     }
@@ -130,9 +145,14 @@ class MeetingFrames {
         }
         return pair;
     }
+    template <class Place>
+    CATENA_HD void yield(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
+        add_compliance(compliance_, k, s);
+    }
 
   private:
     GroupView group_;
+    ConstView<6> compliance_;
     ConstView<9> axes2_;
     ConstView<3> r2_;
     ConstView<4> rotation_;
@@ -144,7 +164,14 @@ class GroundFrames {
   public:
     static constexpr bool any_forces = false, at_once = true, in_joints = false, on_links = false;
     explicit GroundFrames(GroupView const& group) : r1_(group.r1), r2_(group.r2) {}
-    void set(ConfigurationView const& c) { rotation_ = c.rotation; }
+    void set(ConfigurationView const& c) {
+        rotation_ = c.rotation;
+        compliance_ = c.compliance;
+    }
+    template <class Place>
+    CATENA_HD void yield(Place k, SegmentMatrix<RealAt<Place>, K>& s) const {
+        add_compliance(compliance_, k, s);
+    }
     template <class Real>
     struct State {
         Vector<Real, 3> r1, r2;
@@ -165,6 +192,7 @@ class GroundFrames {
   private:
     ConstView<3> r1_, r2_;
     ConstView<4> rotation_;
+    ConstView<6> compliance_;
 };
 
 /// Bodies and beads on links in absolute coordinates: handles along the links (full handles: and across), forces in ground axes.
@@ -246,7 +274,9 @@ class BodyLeaf {
     template <class Place>
     CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body) const {
         auto const h = frames_.handles(body.state, body.k);
-        return leaf_matrix<Frames::any_forces>(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);
+        auto s = leaf_matrix<Frames::any_forces>(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);
+        if constexpr (!Frames::on_links) frames_.yield(body.k, s);
+        return s;
     }
     template <class Place>
     CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body) const {

@@ -79,6 +79,9 @@ struct ConfigurationView {
     /// the meeting frame's axes; B.
     ConstView<3> r2;
     ConstView<9> axes2;
+    /// Full handles of bodies without links: compliance of joint k along its three angular directions, the last ones (lower triangle): its
+    /// outboard side yields by that to the joint's force. Absent where no joint does.
+    ConstView<6> compliance{};
     /// Beads, for assemble_and_solve() alone, instead of directions: positions with their halo, W, and the pieces they belong to.
     ConstView<3> position{};
     LocalPiece const* piece = nullptr;

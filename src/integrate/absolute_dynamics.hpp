@@ -132,7 +132,7 @@ std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene co
                                                      std::unique_ptr<ChainSolver>);
 /// Rigid bodies on spherical joints, or on links among point beads.
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                                                      std::unique_ptr<ChainSolver>);
+                                                      std::unique_ptr<ChainSolver>, double implicit_step = 0);
 
 /// One array of the given name; throws ComputationError if it is not there.
 StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);

@@ -37,9 +37,8 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (uses_gpu(asked) && scene.dynamics.fixman)
-        throw InputError("the Fixman force is computed on the host", "solver.backend: " + std::string(name_of(asked)),
-                         "use auto, segments, openmp or serial");
+    if (std::string const why = scene.dynamics.why_host_alone(); uses_gpu(asked) && !why.empty())
+        throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
@@ -65,13 +64,17 @@ SimdLevel choose_simd_level(Scene const& scene, Communicator const& communicator
     return static_cast<SimdLevel>(weakest);
 }
 
-ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator)
-    : scene_(scene), communicator_(communicator), axes_(axes), backend_(choose_backend(scene, communicator)) {
+ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator, double implicit_step)
+    : scene_(scene),
+      communicator_(communicator),
+      axes_(axes),
+      backend_(choose_backend(scene, communicator)),
+      implicit_step_(implicit_step) {
     if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator), without_gpu);
     bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda_levels && openmp_is_built());
     SimdLevel const simd = choose_simd_level(scene, communicator);
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
-    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator);
+    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, implicit_step > 0);
     if (uses_gpu(backend_)) require_gpu_memory();
     if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {
@@ -109,12 +112,12 @@ std::unique_ptr<AbsoluteDynamics> ChainSystem::make_absolute(ChainGroup const& g
         auto const make = group.beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics;
         return make(group, scene_, communicator_);
     }
-    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
-    return make(group, scene_, *executor_, communicator_, make_solver(group));
+    if (group.beads) return make_bead_dynamics(group, scene_, *executor_, communicator_, make_solver(group));
+    return make_rigid_dynamics(group, scene_, *executor_, communicator_, make_solver(group), implicit_step_);
 }
 std::unique_ptr<JointDynamics> ChainSystem::make_joint(ChainGroup const& group) const {
     if (backend_ == Backend::cuda) return cuda::make_joint_dynamics(group, scene_, communicator_);
-    return make_joint_dynamics(group, scene_, *executor_, communicator_, make_solver(group));
+    return make_joint_dynamics(group, scene_, *executor_, communicator_, make_solver(group), implicit_step_);
 }
 std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) const {
     if (backend_ == Backend::cuda_levels)
@@ -184,6 +187,12 @@ void ChainSystem::solve_joint_groups() {
     seconds_["kinematics and loads"] += moved - start;
     seconds_["bias sweep"] += seconds_now() - finished;
     note_overlap(moved, begun, assembled, assembled, finished);
+}
+
+void ChainSystem::solve_joint_groups_again() {
+    double const start = seconds_now();
+    for (auto const& group : joint_) group->solve_again();
+    seconds_["bias sweep"] += seconds_now() - start;
 }
 
 void ChainSystem::refine() {

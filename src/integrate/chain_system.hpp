@@ -24,7 +24,9 @@ class ChainSystem {
   public:
     /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4, velocity-verlet) or world (rattle,
     /// g-baoab). Collective.
-    ChainSystem(Scene const&, Axes axes, Communicator const&);
+    /// `implicit_step`: of an implicit integrator, in whose matrices stand what springs and dampers do within a step; 0: those of
+    /// forward dynamics.
+    ChainSystem(Scene const&, Axes axes, Communicator const&, double implicit_step = 0);
     ~ChainSystem();
     /// Where OpenMM computes on the chains' GPU, the system lives in OpenMM's context there, which construction makes that of the thread.
     /// To be called before a system is used again after another was made or used.
@@ -77,10 +79,15 @@ class ChainSystem {
     std::vector<AbsoluteDynamics*> absolute() const;
     std::vector<JointDynamics*> joint() const;
     /// Whether matrices have nothing to hide and are not needed again.
-    bool solves_once() const { return !openmm_ && scene_.solver.refine == 0; }
+    bool solves_once() const { return !openmm_ && scene_.solver.refine == 0 && !keeps_matrices_; }
+    /// From here on they are.
+    void keep_matrices() { keeps_matrices_ = true; }
     /// Accelerations of the groups in joint coordinates at their states, refined `solver.refine` times; OpenMM computes while matrices are
     /// assembled. Collective.
     void solve_joint_groups();
+    /// The same at the same coordinates and with OpenMM's forces and the matrices of then, but the velocities of now. Precondition: the
+    /// integrator keeps matrices (solves_once()). Collective.
+    void solve_joint_groups_again();
     /// JointDynamics::close_tips of every group. Collective.
     void close_tips(int corrections = JointDynamics::usual_corrections);
     OpenMmForce* openmm() const { return openmm_.get(); }
@@ -143,6 +150,8 @@ class ChainSystem {
     Communicator const& communicator_;
     Axes axes_;
     Backend backend_;
+    double implicit_step_;
+    bool keeps_matrices_ = false;
     std::unique_ptr<Executor> executor_;
     std::vector<std::unique_ptr<ChainGroup>> groups_;
     std::vector<ChainGroup const*> bead_groups_;  // those that are beads or carry some, in the order of bead_hosts_

@@ -36,16 +36,21 @@ class ConstrainedIntegrator {
     void set_sweeps(int sweeps) { sweeps_ = sweeps; }
     double pending() const { return pending_; }
     void set_pending(double pending) { pending_ = pending; }
+    /// Parts that each drift is taken in, so that a few sweeps close its joints: with implicit joints, whose steps are long; else one.
+    int parts() const { return parts_; }
+    void set_parts(int parts) { parts_ = parts; }
     /// Bias sweeps and matrix sweeps of one step.
-    int bias_sweeps_a_step() const;
-    int matrix_sweeps_a_step() const { return scheme_.kind == Integrator::rattle ? 1 : 2; }
+    int bias_sweeps_a_step() const { return drifts() * (1 + sweeps_); }
+    int matrix_sweeps_a_step() const { return drifts(); }
 
   private:
+    int drifts() const { return (is_langevin(scheme_.kind) ? 2 : 1) * parts_; }
     double error_after(int sweeps);
+    bool choose_sweeps(int most);
     ConstrainedScheme scheme_;
     std::vector<AbsoluteDynamics*> groups_;
-    int sweeps_ = 0;
-    double pending_ = 0.5;
+    int sweeps_ = 0, parts_ = 1;
+    double pending_ = 0.5, last_error_ = 0;
 };
 
 }  // namespace catena

@@ -21,10 +21,12 @@ struct ConstrainedStep {
     double kick = 0;   // of the forces at its beginning
     double drift = 0;  // of all of it
     int sweeps = 0;    // a drift
+    int parts = 1;     // of a drift, each with its own matrices: geodesic steps (Leimkuhler & Matthews 2016)
     Thermostat thermostat;
     std::uint64_t number = 0;
-    int matrix_sweeps() const { return langevin ? 1 : 0; }
-    int bias_sweeps() const { return langevin ? 2 + 2 * sweeps : 1 + sweeps; }
+    int drifts() const { return (langevin ? 2 : 1) * parts; }
+    int matrix_sweeps() const { return drifts() - 1; }
+    int bias_sweeps() const { return drifts() * (1 + sweeps); }
 };
 
 /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is.
@@ -32,13 +34,13 @@ CATENA_EITHER_SIDE
 template <class Parts>
 CATENA_HD_IN_PLACE void take_step(Parts&& parts, ConstrainedStep const& s) {
     // One loop, not one part after the other: written out, a GPU would spend its time fetching instructions.
-    int const drifts = s.langevin ? 2 : 1;
+    int const drifts = (s.langevin ? 2 : 1) * s.parts;
     CATENA_NO_UNROLL
     for (int d = 0; d < drifts; ++d) {
         if (d > 0) {
             parts.update_configuration();
             parts.assemble_matrices();
-            parts.thermalise(s.thermostat, s.number);
+            if (s.langevin && d == s.parts) parts.thermalise(s.thermostat, s.number);
         }
         parts.kick(d == 0 ? s.kick : 0.0);
         parts.drift(s.drift / drifts, s.sweeps);

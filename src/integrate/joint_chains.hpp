@@ -2,6 +2,7 @@
 #pragma once
 
 #include "chain/joint_scan.hpp"
+#include "dca/philox.hpp"
 #include "integrate/body_loads.hpp"
 #include "integrate/carried_beads.hpp"
 #include "integrate/jointed_tips.hpp"
@@ -14,8 +15,27 @@ struct RatesView {
     View<3> base_acceleration;  // one a piece: of a free base's origin, W
 };
 
+/// Springs K and dampers C within a step of length h: B = h^2 K / 2 + h C / 2 in P^T phi = tau - B u' (formulas, "Implicit joint springs",
+/// have h^2 K / 4, the least that is stable where K is constant; twice that leaves room for what bending and turning add to K).
+/// The joint's force then is unknown along every direction, and its sides part by u' = B^-1 (tau - P^T phi).
+struct ImplicitJoints {
+    double of_stiffness = 0, of_damping = 0;  // what of K and of C is in B
+    std::uint8_t const* joint = nullptr;      // whether joint k is one; null where none is
+    View<6> compliance;                       // P B^-1 P^T along the joint's axes (a sliding one's: its free direction is the last)
+    View<3> yielding;                         // P B^-1 tau, along the same
+    View<3> start;                            // velocities by which dampers act: B has what a step adds
+
+    CATENA_HD bool has(std::int64_t k) const { return joint && joint[k] != 0; }
+    /// Several bodies next to each other have none.
+    template <class Place>
+    CATENA_HD bool has(Place const&) const {
+        return false;
+    }
+};
+
 struct JointChains {
     JointScan scan;
+    ImplicitJoints implicit;
     BodyLoadsView given;
     double time = 0;
     int directions = 6;
@@ -73,10 +93,10 @@ struct JointChains {
     }
     /// With the loads, but where these wait for forces from outside.
     template <bool positions, class Place>
-    CATENA_HD void set_motion(Place k) const {
+    CATENA_HD void set_motion(Place k, bool keeps_forces) const {
         scan.set_motion<positions>(k);
         if constexpr (is_one_body<Place>)
-            if (beads) {
+            if (beads && !keeps_forces) {
                 Mat3 const axes = orientation(k);
                 beads.put(k, scan.motion.origin.load(k) - axes * r1(k), axes);
                 return beads.clear_forces(k);
@@ -92,7 +112,9 @@ struct JointChains {
         using Real = RealAt<Place>;
         if (drive_of(k)) return write(joint_load, k, Vector<Real, 4>::zero());
         Vec3At<Place> along = read(given.torque, k);
-        auto const qd = read(scan.state.qd, k);
+        Vec3At<Place> qd = read(scan.state.qd, k);
+        if constexpr (is_one_body<Place>)
+            if (implicit.has(k)) qd = implicit.start.load(k);
         auto const q = read(scan.state.q, k);
         if (given.springs) {
             auto const stiffness = read(given.stiffness, k);
@@ -107,7 +129,57 @@ struct JointChains {
             auto const damping = read(given.damping, k);
             for (int i = 0; i < 3; ++i) along[i] = along[i] - damping[i] * qd[i];
         }
+        if constexpr (is_one_body<Place>)
+            if (implicit.has(k)) return set_implicit(k, along);
         write(joint_load, k, load_along_axes(k, along));
+    }
+    /// B along a joint's coordinate i.
+    CATENA_HD double implicit_inertia(std::int64_t k, int i) const {
+        double const stiffness = given.springs ? given.stiffness.at(k, i) : 0, damping = given.dampers ? given.damping.at(k, i) : 0;
+        return fused(implicit.of_stiffness, stiffness, implicit.of_damping * damping);
+    }
+    /// P of an implicit joint: what a unit rate of each coordinate is along the joint's axes. Returns how many there are.
+    CATENA_HD int free_motions(std::int64_t k, Mat3& motions) const {
+        Mat3 const axes = joints().axes(k);
+        motions = Mat3::zero();
+        switch (joints().joint[k]) {
+            case JointType::spherical:
+                motions = transposed_times(axes, turn(k));
+                return 3;
+            case JointType::universal:
+                motions.set_column(0, transposed_times(axes, joints().first_axis.load(k)));
+                motions.set_column(1, Vec3{{0, 0, 1}});
+                return 2;
+            default:
+                motions.set_column(0, Vec3{{0, 0, joints().screw_of(k)[2]}});
+                return 1;
+        }
+    }
+    CATENA_HD void set_implicit(std::int64_t k, Vec3 const& torque_along) const {
+        Mat3 motions;
+        int const count = free_motions(k, motions);
+        Vec3 along = torque_along, b = Vec3::zero();
+        for (int i = 0; i < count; ++i) b[i] = implicit_inertia(k, i);
+        if (count == 3 && given.springs) {  // their part of B is a rotor's, whose axes are the outboard body's
+            Vec3 const qd = scan.state.qd.load(k), stiffness = given.stiffness.load(k);
+            Vec3 momentum;
+            for (int i = 0; i < 3; ++i) momentum[i] = implicit.of_stiffness * stiffness[i] * qd[i];
+            along = along - cross(qd, momentum);
+        }
+        auto compliance = Symmetric<double, 3>::zero();
+        Vec3 yielding = Vec3::zero();
+        for (int i = 0; i < count; ++i) {
+            Vec3 const p = motions.column(i);
+            double const yields = 1 / b[i];
+            yielding = plus_scaled(yielding, yields * along[i], p);
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c <= r; ++c) compliance(r, c) = fused(yields * p[r], p[c], compliance(r, c));
+        }
+        Vector<double, 6> numbers;
+        for (int i = 0; i < 6; ++i) numbers[i] = compliance.data[i];
+        implicit.compliance.store(k, numbers);
+        implicit.yielding.store(k, yielding);
+        joint_load.store(k, Vector<double, 4>::zero());
     }
     /// On the outboard body, from the moments along the coordinates: torque along the joint's axes (universal: within the plane of its
     /// axes) and force along the last one.
@@ -232,7 +304,8 @@ struct JointChains {
         using Vector3 = Vec3At<Place>;
         Vector3 linear = Vector3::zero(), angular = Vector3::zero();  // -c along the joint's axes
         JointType const type = joints().type(k);
-        if (type != JointType::free && type != JointType::spherical && type != JointType::weld && !joints().planar) {
+        bool const any_axis = type == JointType::spherical && !implicit.has(k);
+        if (type != JointType::free && !any_axis && type != JointType::weld && !joints().planar) {
             angular = -transposed_times(axes1, joint_velocity_term(k, linear));
             linear = -transposed_times(axes1, linear);
         }
@@ -240,9 +313,38 @@ struct JointChains {
             if (joints().is_first[k] && type != JointType::free)  // ground accelerates by -g
                 linear = linear + transposed_times(axes1, to_meeting * transposed_times(orientation(k), given.gravity));
         auto const s = joints().direction_of_screw(k);
-        store_first(bias, k, directions,
-                    Vector<RealAt<Place>, 6>{{linear[0], linear[1], s.c * linear[2] - s.s * angular[2], angular[0], angular[1],
-                                              s.s * linear[2] + s.c * angular[2]}});
+        Vector<RealAt<Place>, 6> b{
+            {linear[0], linear[1], s.c * linear[2] - s.s * angular[2], angular[0], angular[1], s.s * linear[2] + s.c * angular[2]}};
+        if constexpr (is_one_body<Place>)
+            if (implicit.has(k)) add_yielding(b, -implicit.yielding.load(k));
+        store_first(bias, k, directions, b);
+    }
+    CATENA_HD static void add_yielding(Vector<double, 6>& b, Vec3 const& yielding) {
+        for (int i = 0; i < 3; ++i) b[3 + i] += yielding[i];
+    }
+
+    // Noise of a thermostat.
+
+    /// Loads whose answer is normal with the inverse of the chain's matrix, springs' and dampers' part included, for covariance.
+    CATENA_HD void set_noise(std::int64_t k, std::uint64_t body, std::uint64_t seed, std::uint64_t step) const {
+        Vec3 const turning = normal3(seed, step, body, NoiseStage::thermostat_angular);
+        Sym3 const factor = dca::factorize(as_symmetric(inertia.load(k)), 3);  // J = L S L^T
+        Vec3 scaled, moment;
+        for (int i = 0; i < 3; ++i) scaled[i] = turning[i] / std::sqrt(factor(i, i));
+        for (int i = 0; i < 3; ++i) {
+            moment[i] = scaled[i];
+            for (int j = 0; j < i; ++j) moment[i] = fused(factor(i, j), scaled[j], moment[i]);
+        }
+        torque.store(k, moment);
+        force.store(k, std::sqrt(mass.at(k, 0)) * normal3(seed, step, body, NoiseStage::thermostat));
+        auto b = Vector<double, 6>::zero();
+        if (implicit.has(k)) {
+            Vec3 const along = normal3(seed, step, body, NoiseStage::thermostat_joint);
+            Mat3 motions;
+            int const count = free_motions(k, motions);
+            for (int i = 0; i < count; ++i) add_yielding(b, -(along[i] / std::sqrt(implicit_inertia(k, i))) * motions.column(i));
+        }
+        store_first(bias, k, directions, b);
     }
 
     // Rates.

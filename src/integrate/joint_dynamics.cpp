@@ -13,8 +13,9 @@ std::vector<JointedTip> tips_at_start(ChainGroup const& group, Scene const& scen
 }
 
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
-                                                   Communicator const& communicator, std::unique_ptr<ChainSolver> solver) {
-    return std::make_unique<JointDynamicsIn<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver));
+                                                   Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+                                                   double implicit_step) {
+    return std::make_unique<JointDynamicsIn<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
 }
 
 }  // namespace catena

@@ -7,6 +7,7 @@
 #include "chain/joint_kinematics.hpp"
 #include "dca/solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
+#include "integrate/constrained_step.hpp"
 
 namespace catena {
 
@@ -31,6 +32,8 @@ class JointDynamics : public BeadHost {
     virtual void solve() = 0;
     /// assemble_matrices() and solve() together, where nothing is to be hidden between them. Collective.
     virtual void solve_once() = 0;
+    /// solve() at the same coordinates with the velocities of now; matrices and forces on carried beads are those of before. Collective.
+    virtual void solve_again() = 0;
     /// Those of coordinates, after solve(); and as they were set last, on the host.
     virtual void set_rates() = 0;
     /// One step of iterative refinement of what solve() found last: what the equations of bodies and joints lack is solved for with the
@@ -49,6 +52,15 @@ class JointDynamics : public BeadHost {
     /// Positions and a first guess of velocities after h, and then the velocities.
     virtual void verlet_move(double h) = 0;
     virtual void verlet_finish(double h) = 0;
+
+    /// Coordinates after h of the velocities, which are kept as the start of kicks.
+    virtual void drift(double h) = 0;
+    /// Velocities after h of the accelerations solved for last, from those at the start; and from those of now, of the carried ones.
+    virtual void kick(double h) = 0;
+    virtual void kick_by_carried(double h) = 0;
+    /// Velocities keep u + spread xi: xi normal, its covariance the inverse of the matrix at the coordinates of now, springs' and dampers'
+    /// part included. `step` numbers the noise. Collective.
+    virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
 
     /// Motion at the present state, positions included, on the host. Collective.
     virtual BodyMotion motion() = 0;
@@ -71,6 +83,6 @@ class JointDynamics : public BeadHost {
 };
 
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&,
-                                                   std::unique_ptr<ChainSolver>);
+                                                   std::unique_ptr<ChainSolver>, double implicit_step = 0);
 
 }  // namespace catena

@@ -30,12 +30,16 @@ class JointDynamicsIn final : public JointDynamics {
   public:
     /// `solver` takes views of the same space.
     JointDynamicsIn(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
-                    std::unique_ptr<ChainSolver> solver)
+                    std::unique_ptr<ChainSolver> solver, double implicit_step = 0)
         : group_(group),
           space_(space),
           communicator_(communicator),
           solver_(std::move(solver)),
           given_(make_body_loads(group, scene)),
+          implicit_step_(implicit_step),
+          implicit_list_(group.implicit_joint),
+          pieces_list_(local_pieces(group, scene)),
+          pieces_in_scene_(pieces_list_),
           tip_(tips_at_start(group, scene, communicator)),
           reach_(group.has_tips() ? reach_of(group, scene) : 1.0),
           has_wrenches_(given_.wrenches || group.carried_beads() > 0),
@@ -54,6 +58,8 @@ class JointDynamicsIn final : public JointDynamics {
           sum_(group),
           motion_(group, space),
           joint_load_(given_.joint_loads ? group.size : 0),
+          compliance_(group.implicit_joint.empty() ? 0 : group.size),
+          yielding_(group.implicit_joint.empty() ? 0 : group.size),
           torque_(group.size),
           force_(has_forces_ ? group.size : 0),
           alpha_(group.size),
@@ -98,7 +104,7 @@ class JointDynamicsIn final : public JointDynamics {
 
     void update_configuration() override {
         has_matrices_ = false;
-        needs_positions_ ? update<true>() : update<false>();
+        update(false);
     }
     void assemble_matrices() override {
         solver_->assemble_matrices(configuration());
@@ -113,6 +119,11 @@ class JointDynamicsIn final : public JointDynamics {
         set_carried_loads();
         solver_->solve_once(configuration(), loads(), found());
         has_matrices_ = false;
+        exchange_ends();
+    }
+    void solve_again() override {
+        update(true);
+        solver_->solve(loads(), found());
         exchange_ends();
     }
     void refine() override {
@@ -143,6 +154,32 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void verlet_finish(double h) override {
         space_.for_each(group_.size, [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.verlet_finish(k, h); });
+        relative_ = false;
+    }
+
+    void drift(double h) override {
+        needs_positions_ ? drift<true>(h) : drift<false>(h);
+        time_ += h;
+    }
+    void kick(double h) override { kick(h, false); }
+    void kick_by_carried(double h) override { kick(h, true); }
+    void thermalise(Thermostat const& thermostat, std::uint64_t step) override {
+        update(false);
+        assemble_matrices();
+        need_for_noise();
+        JointChains noisy = chains();
+        noisy.force = noise_force_.view();
+        space_.for_each(group_.size,
+                        [noisy, piece = pieces_in_scene_.data(), pieces = pieces(), seed = thermostat.seed,
+                         step] CATENA_LAMBDA(std::int64_t k) { noisy.set_noise(k, piece_of(piece, pieces, k).body_of(k), seed, step); });
+        if (group_.has_tips())
+            space_.for_each(tips(), [t = jointed_tips(), out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) { t.set_no_bias(i, out); });
+        solver_->solve({torque_.view(), noise_force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
+                       {alpha_.view(), acceleration_.view(), {}, {}});
+        JointSteps const still = at_rest();
+        exchange_ends(still.chains);
+        space_.for_each(group_.size, [still, state = state_.view(), keep = thermostat.keep,
+                                      spread = thermostat.spread] CATENA_LAMBDA(std::int64_t k) { still.mix(k, state, keep, spread); });
         relative_ = false;
     }
 
@@ -202,8 +239,10 @@ class JointDynamicsIn final : public JointDynamics {
     void set_carried_loads() {
         if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
     }
+    void update(bool again) { needs_positions_ ? update<true>(again) : update<false>(again); }
+    /// `again`: the forces on carried beads stay.
     template <bool positions>
-    void update() {
+    void update(bool again) {
         JointChains const c = chains();
         if (!std::exchange(relative_, false))
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
@@ -211,7 +250,7 @@ class JointDynamicsIn final : public JointDynamics {
         if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
         kinematics_.template sweep<positions>(c.scan);
         each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
-                             [c] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k); });
+                             [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); });
         if (!group_.has_tips()) return;
         set_ends();
         space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
@@ -231,6 +270,16 @@ class JointDynamicsIn final : public JointDynamics {
             s.template verlet_move<positions>(k, h, time);
         });
         relative_ = true;
+    }
+    template <bool positions>
+    void drift(double h) {
+        space_.for_each(group_.size,
+                        [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template drift<positions>(k, h, time); });
+        relative_ = true;
+    }
+    void kick(double h, bool by_carried) {
+        space_.for_each(group_.size, [s = steps(), h, by_carried] CATENA_LAMBDA(std::int64_t k) { s.kick(k, h, by_carried); });
+        relative_ = false;
     }
     void set_rates(RatesView const& out) {
         JointChains const c = chains();
@@ -266,10 +315,7 @@ class JointDynamicsIn final : public JointDynamics {
             t.set_opening(i, velocities, out);
         });
         solver_->solve({{}, {}, {}, {}, tip_bias_.view()}, {alpha_.view(), acceleration_.view(), {}, {}});
-        JointSteps still = steps();
-        still.chains.scan.state.qd = zero_.view();
-        still.chains.scan.motion.omega = zero_.view();
-        still.chains.given.gravity = Vec3::zero();
+        JointSteps const still = at_rest();
         exchange_ends(still.chains);
         space_.for_each(group_.size,
                         [still, state = state_.view(), velocities] CATENA_LAMBDA(std::int64_t k) { still.correct(k, state, velocities); });
@@ -288,7 +334,15 @@ class JointDynamicsIn final : public JointDynamics {
   private:
     ConfigurationView configuration() {
         MotionView const m = motion_.view();
-        return {{}, m.joint_turn, {}, m.r2, m.axes2};
+        return {{}, m.joint_turn, {}, m.r2, m.axes2, has_implicit() ? compliance_.view() : View<6>{}};
+    }
+    bool has_implicit() const { return !group_.implicit_joint.empty(); }
+    /// What only thermostats need.
+    void need_for_noise() {
+        if (has_noise_) return;
+        has_noise_ = true;
+        noise_force_ = FieldOf<3>(group_.size);
+        if (!group_.has_tips()) zero_ = FieldOf<3>(group_.size);
     }
     LoadsView loads() {
         return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
@@ -320,6 +374,13 @@ class JointDynamicsIn final : public JointDynamics {
     JointChains chains() {
         JointChains c;
         c.scan = kinematics_.scan(state_.view(), motion_.view());
+        if (has_implicit())
+            c.implicit = {0.5 * implicit_step_ * implicit_step_,
+                          0.5 * implicit_step_,
+                          implicit_list_.data(),
+                          compliance_.view(),
+                          yielding_.view(),
+                          start_.view().qd};
         c.given = loads_.view();
         c.time = time_;
         c.directions = group_.directions;
@@ -339,6 +400,14 @@ class JointDynamicsIn final : public JointDynamics {
         c.outboard_end = outboard_end_.view();
         return c;
     }
+    /// With nothing but what was solved for last.
+    JointSteps at_rest() {
+        JointSteps still = steps();
+        still.chains.scan.state.qd = zero_.view();
+        still.chains.scan.motion.omega = zero_.view();
+        still.chains.given.gravity = Vec3::zero();
+        return still;
+    }
     JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
     template <class Use>
     auto with_solution(Use const& use) const {
@@ -347,12 +416,13 @@ class JointDynamicsIn final : public JointDynamics {
         auto const& axes2 = space_.read(motion_.axes2);
         auto const &torque = space_.read(torque_), &force = space_.read(force_), &alpha = space_.read(alpha_),
                    &acceleration = space_.read(acceleration_), &bead_force = space_.read(beads_.force());
+        auto const& compliance = space_.read(compliance_);
         auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
                    &tip_force = space_.read(tip_force_);
         return use(JointSolution{group_, given_, joint_turn.view(), orientation.view(), omega.view(), velocity.view(), r2.view(),
                                  axes2.view(), torque.view(), has_forces_ ? force.view() : ConstView<3>{}, alpha.view(),
                                  acceleration.view(), beads_.any() ? bead_force.view() : ConstView<3>{}, bias.view(), joint_force.view(),
-                                 tip_bias.view(), tip_force.view()});
+                                 tip_bias.view(), tip_force.view(), compliance.view()});
     }
 
     ChainGroup const& group_;
@@ -360,11 +430,16 @@ class JointDynamicsIn final : public JointDynamics {
     Communicator const& communicator_;
     std::unique_ptr<ChainSolver> solver_;
     BodyLoads given_;
+    double implicit_step_;
+    List<std::uint8_t> implicit_list_;
+    std::vector<LocalPiece> pieces_list_;
+    List<LocalPiece> pieces_in_scene_;
     std::vector<JointedTip> tip_;
     double reach_;
     bool has_wrenches_, has_forces_, needs_positions_;
     bool has_matrices_ = false;  // of the configuration updated last
-    bool relative_ = false;      // the state's motions joint by joint are known
+    bool has_noise_ = false;
+    bool relative_ = false;  // the state's motions joint by joint are known
     double start_time_ = 0;
     JointKinematics<Space> kinematics_;
     BodyLoadsIn<Space> loads_;
@@ -377,6 +452,8 @@ class JointDynamicsIn final : public JointDynamics {
     JointCoordinates<Space> state_, start_, sum_;
     MotionFields<Space> motion_;
     FieldOf<4> joint_load_;
+    FieldOf<6> compliance_;
+    FieldOf<3> yielding_, noise_force_;
     FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;

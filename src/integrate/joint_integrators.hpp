@@ -14,12 +14,19 @@ class JointIntegrator {
     virtual void step(double h) = 0;
     /// What the next step needs beside the states is made where it is not there yet. Collective.
     virtual void prepare() {}
-    virtual int evaluations_a_step() const = 0;
     /// Whether that is the groups' carried rates.
     virtual bool carries_rates() const { return false; }
     /// These were set from outside.
     virtual void restored() {}
 };
+
+/// Of an integrator in joint coordinates, jointed tips left out. As many bias sweeps, so many passes of the kinematics.
+struct SweepsAStep {
+    int matrices = 1, biases = 1;
+};
+SweepsAStep sweeps_a_step(DynamicsSpec const&);
+/// The one that the scene's dynamics names.
+std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem&, DynamicsSpec const&);
 
 /// The classical fourth-order Runge-Kutta step (the chapter's integrator). Quaternions follow q' = 1/2 q (0, omega) and are normalised
 /// at the end of the step.
@@ -29,5 +36,22 @@ std::unique_ptr<JointIntegrator> make_runge_kutta4(ChainSystem&);
 /// 4423, 1997, with lambda = 1): q moves by h q' + h^2/2 q'', the acceleration is taken there with q' + h q'', and q' gets the
 /// mean of both accelerations. Orientations move by the exponential of that rotation vector.
 std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem&);
+
+/// Kick, drift, kick with velocity-dependent forces at the kick's middle, whose velocities a first bias sweep finds: second order, one
+/// matrix sweep a step. With springs K and dampers C of implicit joints (JointDynamics) it is the staggered scheme (formulas, "Implicit
+/// joint springs"), B = h^2 K / 2 + h C / 2, stable however stiff they are: velocity Verlet of a chain with a rotor of inertia B in every
+/// joint.
+///
+/// With friction Langevin dynamics: an Ornstein-Uhlenbeck step in the middle of the drift (BAOAB: Leimkuhler & Matthews, J. Chem. Phys.
+/// 138, 174102, 2013), whose velocities have the covariance kt (M + B)^-1 of where the chain is. How fast the chain moves depends on B;
+/// where it is, harmonic springs sample exactly at any step, for a rotor changes no more than the weight sqrt(det(M + B)) of rigid joints.
+struct JointThermostat {
+    double friction = 0, kt = 0;
+    std::uint64_t seed = 1;
+};
+std::unique_ptr<JointIntegrator> make_kicks(ChainSystem&, JointThermostat const&);
+
+/// Lists of ghosts belong to the step at which they were asked for: a restart makes them there.
+void make_ghosts(ChainSystem&);
 
 }  // namespace catena

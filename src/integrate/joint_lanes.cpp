@@ -30,7 +30,7 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
 }  // namespace
 
 JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
-    if (level == SimdLevel::off || !group.drives.empty() || group.carried_in_scene) return;
+    if (level == SimdLevel::off || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty()) return;
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);

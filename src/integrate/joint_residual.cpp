@@ -107,17 +107,25 @@ Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<do
     return e;
 }
 
+Vec3 JointSolution::yielded(std::int64_t k) const {
+    if (!group.is_implicit(k)) return Vec3::zero();
+    Vector<double, 6> const f = load_first(joint_force, k, group.directions);
+    return as_symmetric(compliance.load(k)) * Vec3{{f[3], f[4], f[5]}};
+}
+
 /// |opening| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
 /// does not depend on the unit of length.
 double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView biases, std::int64_t at,
-                              Screw<double> const& s, int restricted, double size) const {
+                              Screw<double> const& s, int restricted, double size, Vec3 const& yielded_by_it) const {
     Vector<double, 6> b = load_first(biases, at, group.directions);
+    auto yields = Vector<double, 6>::zero();
+    for (int i = 0; i < 3; ++i) yields[3 + i] = yielded_by_it[i];
     for (int i = restricted; i < 6; ++i) b[i] = 0.0;
-    Vector<double, 6> const e = opening(out, in, b, s, restricted);
+    Vector<double, 6> const e = opening(out, in, b + yields, s, restricted);
     auto const sizes = [&](Vector<double, 6> const& v) {
         return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) + size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
     };
-    return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b));
+    return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b) + sizes(yields));
 }
 
 double JointSolution::residual(Communicator const& communicator) const {
@@ -133,11 +141,11 @@ double JointSolution::residual(Communicator const& communicator) const {
         worst = larger(worst, balance(inertial_moment(k), t.moments, t.moment_sizes + weight * norm(group.r1[k])));
         if (group.is_first[k]) before = Vector<double, 8>::zero();
         double const size = norm(group.r1[k]) + radius_of(group, k);
-        worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size));
+        worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size, yielded(k)));
         before = outboard_handle(k);
         if (!group.has_jointed_tip(k)) continue;
         worst = larger(worst, closing(at_tips[group.tip_index(k)], before, tip_bias, k, outboard_screw(k), group.tip_of(k).restricted,
-                                      norm(r2(k)) + radius_of(group, k)));
+                                      norm(r2(k)) + radius_of(group, k), Vec3::zero()));
     }
     return communicator.max(worst);
 }

@@ -15,6 +15,7 @@ struct JointSolution {
     ConstView<3> torque, force, alpha, acceleration;  // force: absent where no body has any
     ConstView<3> bead_force;                          // on carried beads
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
+    ConstView<6> compliance;  // ConfigurationView::compliance
 
     /// Collective.
     BodyResults results(Communicator const&) const;
@@ -56,10 +57,12 @@ struct JointSolution {
     Vector<double, 8> handle_before_first(Communicator const&) const;
     /// What each of the group's tips is joined to: the ground's handle, or handle 1 of a ring's first body. Collective.
     std::vector<Vector<double, 8>> handles_at_tips(Communicator const&) const;
+    /// What an implicit joint yields to its force along its last three directions; 0 of others.
+    Vec3 yielded(std::int64_t k) const;
     static Vector<double, 6> opening(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, Vector<double, 6> const& bias,
                                      Screw<double> const&, int restricted);
     double closing(Vector<double, 8> const& outboard, Vector<double, 8> const& inboard, ConstDirectionsView biases, std::int64_t at,
-                   Screw<double> const&, int restricted, double size) const;
+                   Screw<double> const&, int restricted, double size, Vec3 const& yielded) const;
 };
 
 /// Of bodies at `motion`, positions included.

@@ -110,6 +110,43 @@ struct JointSteps {
         chains.joints().follow_course(state, k, chains.time);
     }
 
+    /// Positions by h of the velocities, which are kept, to those at `time`.
+    template <bool positions>
+    CATENA_HD void drift(std::int64_t k, double h, double time) const {
+        StateView const& state = chains.scan.state;
+        Vec3 const qd = state.qd.load(k);
+        turn_by(k, h * qd, true);
+        start.qd.store(k, qd);
+        if (chains.on_free_base(k)) {
+            std::int64_t const p = chains.joints().piece_of(k);
+            Vec3 const v = state.base_velocity.load(p);
+            state.base_position.store(p, plus_scaled(state.base_position.load(p), h, v));
+            start.base_velocity.store(p, v);
+        }
+        chains.joints().follow_course(state, k, time);
+        chains.set_relative<positions>(k);
+    }
+    /// Velocities from those kept by h of the rates found last, or from those of now by h of the carried ones.
+    CATENA_HD void kick(std::int64_t k, double h, bool by_carried) const {
+        StateView const& state = chains.scan.state;
+        StateView const& from = by_carried ? state : start;
+        state.qd.store(k, plus_scaled(from.qd.load(k), h, by_carried ? carried.qdd.load(k) : chains.rate(k)));
+        if (chains.on_free_base(k)) {
+            std::int64_t const p = chains.joints().piece_of(k);
+            Vec3 const a = by_carried ? carried.base_acceleration.load(p) : chains.base_rate(k);
+            state.base_velocity.store(p, plus_scaled(from.base_velocity.load(p), h, a));
+        }
+        chains.joints().follow_course(state, k, chains.time);
+    }
+    /// Velocities between those of before and the answer to noise, which `chains` must have without velocities and gravity.
+    CATENA_HD void mix(std::int64_t k, StateView const& state, double keep, double spread) const {
+        JointsView const& joints = chains.joints();
+        if (!(joints.drives > 0 && joints.drive_of(k))) state.qd.store(k, plus_scaled(keep * state.qd.load(k), spread, chains.rate(k)));
+        if (!chains.on_free_base(k)) return;
+        std::int64_t const p = joints.piece_of(k);
+        state.base_velocity.store(p, plus_scaled(keep * state.base_velocity.load(p), spread, chains.base_rate(k)));
+    }
+
     /// Coordinates of a correction that closes tips; those of accelerations without velocities and gravity, which `chains` must not
     /// have.
     CATENA_HD void correct(std::int64_t k, StateView const& state, bool velocities) const {

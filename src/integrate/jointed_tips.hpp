@@ -202,6 +202,9 @@ struct JointedTips {
         Place const m = place(t, e);
         store_first(out, t.body, directions, along_directions(t, velocities ? opening_rate(t, e, m) : opening(t, e, m)));
     }
+    CATENA_HD void set_no_bias(std::int64_t i, DirectionsView out) const {
+        if (tip[i].body >= 0) store_first(out, tip[i].body, directions, Vector<double, 6>::zero());
+    }
     /// Largest opening over the reach (angles count by it already).
     CATENA_HD double error(std::int64_t i) const {
         JointedTip const& t = tip[i];

@@ -9,6 +9,7 @@
 #include "integrate/body_loads.hpp"
 #include "integrate/carried_beads.hpp"
 #include "integrate/constrained_step.hpp"
+#include "integrate/joint_rotors.hpp"
 #include "integrate/link_geometry.hpp"
 #include "integrate/ring_ends.hpp"
 #include "integrate/rotor.hpp"
@@ -26,6 +27,7 @@ struct RigidNoise {
     Thermostat thermostat;
     std::uint64_t step = 0;
     NoiseStage linear = NoiseStage::start, angular = NoiseStage::start_angular;
+    bool between_drifts = false;  // not where forces are: there velocities of a chain with rotors have another covariance
 };
 
 /// Of body k relative to the joint frame (`frame`, in the inboard body).
@@ -52,6 +54,7 @@ struct RigidChains {
     ConstView<4> principal_axes;    // in B
     ConstView<3> principal_moment;  // a bead: 0
     BodyLoadsView given;
+    JointRotors rotors;
     CarriedBeadsView beads;
     View<3> position, velocity, omega;
     View<4> orientation;
@@ -127,6 +130,7 @@ struct RigidChains {
     /// For a drift that ended with the handles here: `scale` times how far joints are open.
     CATENA_HD void set_openings(std::int64_t k, double scale) const {
         set_bias(bias, k, is_joined(k) ? scale * opening(apart(k), link(k)) : Vec3::zero());
+        rotors.set_opening(bias, k, scale);
         if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, scale * opening(apart(*t), link(*t)));
     }
     /// For accelerations: what the joints' velocities add, less the centripetal terms of the bodies, which are all there is but on links.
@@ -151,6 +155,10 @@ struct RigidChains {
                 Quat const turn = turn_of_joint(inboard, as_quaternion(joint_frame.load(k)), as_quaternion(orientation.load(k)));
                 torque_on_body = torque_on_body + spherical_spring_torque(given.stiffness.load(k), as_quaternion(given.rest.load(k)), turn);
             }
+        }
+        if (rotors.has(k)) {
+            rotors.torque.store(k, torque_on_body);
+            torque_on_body = Vec3::zero();
         }
         joint_torque.store(k, axes(k) * torque_on_body);
     }
@@ -181,6 +189,7 @@ struct RigidChains {
     CATENA_HD void set_momenta(std::int64_t k, double h) const {
         momentum.store(k, plus_scaled(mass.at(k, 0) * velocity.load(k), h, force.load(k)));
         moment.store(k, plus_scaled(as_symmetric(inertia.load(k)) * omega.load(k), h, torque.load(k)));
+        if (rotors.implicit) rotors.set_kick(bias, k, h);
     }
     /// A free flight from the drift's start, with what the sweep before it found added to the velocities there.
     CATENA_HD void fly(std::int64_t k, DriftSweep const& sweep) const {
@@ -194,7 +203,10 @@ struct RigidChains {
         }
         Vec3 const x = plus_scaled(position.load(k), sweep.time, v);
         if (!is_bead(k)) turning = free_rotor({as_quaternion(principal_axes.load(k)), principal_moment.load(k)}, turning, sweep.time);
-        if (!sweep.last) return set_ends(k, x, to_matrix(turning.orientation));
+        if (!sweep.last) {
+            if (rotors.implicit) rotors.flown.store(k, as_vector(turning.orientation));
+            return set_ends(k, x, to_matrix(turning.orientation));
+        }
         position.store(k, x);
         orientation.store(k, as_vector(turning.orientation));
         omega.store(k, turning.omega);
@@ -204,6 +216,7 @@ struct RigidChains {
         Thermostat const& t = n.thermostat;
         Vec3 const noise = normal3(t.seed, n.step, body, n.linear);
         velocity.store(k, plus_scaled(t.keep * velocity.load(k), t.spread * std::sqrt(inverse_mass.at(k, 0)), noise));
+        rotors.add_noise(k, {t.keep, n.between_drifts ? t.spread : 0.0, t.seed}, n.step, body);
         if (is_bead(k)) return;
         Vec3 const moments = principal_moment.load(k);
         Vec3 turning = normal3(t.seed, n.step, body, n.angular);

@@ -82,8 +82,9 @@ double reach_of_joints(ChainGroup const& group, Communicator const& communicator
 }
 
 std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const& group, Scene const& scene, Executor const& executor,
-                                                      Communicator const& communicator, std::unique_ptr<ChainSolver> solver) {
-    return std::make_unique<RigidDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver));
+                                                      Communicator const& communicator, std::unique_ptr<ChainSolver> solver,
+                                                      double implicit_step) {
+    return std::make_unique<RigidDynamics<HostSpace>>(group, scene, HostSpace(executor), communicator, std::move(solver), implicit_step);
 }
 
 }  // namespace catena

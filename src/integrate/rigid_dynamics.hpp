@@ -39,7 +39,7 @@ class RigidDynamics final : public AbsoluteDynamics {
   public:
     /// `solver` takes views of the same space.
     RigidDynamics(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
-                  std::unique_ptr<ChainSolver> solver)
+                  std::unique_ptr<ChainSolver> solver, double implicit_step = 0)
         : group_(group),
           space_(space),
           communicator_(communicator),
@@ -48,6 +48,8 @@ class RigidDynamics final : public AbsoluteDynamics {
           principal_(principal_frames(group)),
           piece_(local_pieces(group, scene)),
           reach_(group.linked ? 1.0 : reach_of_joints(group, communicator)),
+          of_stiffness_(0.5 * implicit_step * implicit_step),
+          implicit_(group.implicit_joint),
           loads_(given_),
           beads_(group, space),
           pieces_(piece_),
@@ -79,6 +81,10 @@ class RigidDynamics final : public AbsoluteDynamics {
           inboard_end_(group.size),
           outboard_end_(group.size),
           joint_torque_(given_.joint_loads ? group.size : 0),
+          rotor_(rotors()),
+          spring_(rotors()),
+          flown_(rotors()),
+          compliance_(rotors()),
           direction_(group.linked ? group.size : 0),
           tip_direction_(group.linked && group.has_tips() ? group.size : 0),
           bias_(group.size + 1, group.directions),
@@ -88,10 +94,15 @@ class RigidDynamics final : public AbsoluteDynamics {
           tip_(start(scene)),
           tips_(tip_),
           rings_(group.rings),
-          ring_ends_(group, space, communicator) {}
+          ring_ends_(group, space, communicator) {
+        if (rotors() == 0) return;
+        exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
+        take_rotors(omega_.view());
+    }
 
     void update_configuration() override {
         if (given_.springs) exchange_from_inboard(communicator_, group_, orientation_.view(), space_);
+        if (rotors() > 0) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.rotors.set_compliance(k); });
         if (!group_.linked) return;
         set_ends();
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_directions(k); });
@@ -118,7 +129,10 @@ class RigidDynamics final : public AbsoluteDynamics {
         if (beads_.any()) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.take_bead_forces(k); });
     }
 
-    void kick(double h) override { project(h, velocity_.view(), omega_.view()); }
+    void kick(double h) override {
+        project(h, velocity_.view(), omega_.view());
+        if (rotors() > 0) take_rotors(omega_.view());
+    }
     void observe(double h) override { project(h, observed_velocity_.view(), observed_omega_.view()); }
     /// Impulses along the joints at the start enter momenta before the drift, and the free rotor runs again in every sweep
     /// (formulas, "Rigid bodies under RATTLE").
@@ -131,10 +145,11 @@ class RigidDynamics final : public AbsoluteDynamics {
             show_ends();
             space_.for_each(group_.size, [c, scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.set_openings(k, scale); });
             solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
+            if (rotors() > 0) add_to_rotors();
         }
     }
     void thermalise(Thermostat const& t, std::uint64_t step) override {
-        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular}, 0, group_.size);
+        add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular, true}, 0, group_.size);
     }
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
         for (dca::Piece const& piece : group_.pieces)
@@ -151,14 +166,18 @@ class RigidDynamics final : public AbsoluteDynamics {
 
     std::vector<StateArray> state() const override {
         solver_->check();
-        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view()),
-                to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(omega_).view())};
+        std::vector<StateArray> all{
+            to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view()),
+            to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(omega_).view())};
+        if (rotors() > 0) all.push_back(to_array<3>("rotor", space_.read(rotor_).view()));
+        return all;
     }
     void set_state(std::vector<StateArray> const& arrays) override {
         space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
         space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
         space_.edit(orientation_, [&](View<4> view) { from_array<4>(array_named(arrays, "orientation"), view); });
         space_.edit(omega_, [&](View<3> view) { from_array<3>(array_named(arrays, "omega"), view); });
+        if (rotors() > 0) space_.edit(rotor_, [&](View<3> view) { from_array<3>(array_named(arrays, "rotor"), view); });
     }
     std::vector<StateArray> observed_state() const override {
         return {to_array<3>("velocity", space_.read(observed_velocity_).view()), to_array<3>("omega", space_.read(observed_omega_).view())};
@@ -196,7 +215,16 @@ class RigidDynamics final : public AbsoluteDynamics {
     /// P (v + h M^-1 f): the solver with momenta in the place of forces gives velocities in the place of accelerations.
     void project(double h, View<3> velocity, View<3> omega) {
         space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
-        solver_->solve({moment_.view(), momentum_.view(), {}, {}, {}}, {omega, velocity, {}, {}});
+        solver_->solve({moment_.view(), momentum_.view(), {}, rotors() > 0 ? bias_.view() : DirectionsView{}, {}},
+                       {omega, velocity, {}, {}});
+    }
+    void take_rotors(View<3> omega) {
+        exchange_from_inboard(communicator_, group_, omega, space_);
+        space_.for_each(group_.size, [c = chains(), omega] CATENA_LAMBDA(std::int64_t k) { c.rotors.take(k, omega); });
+    }
+    void add_to_rotors() {
+        exchange_from_inboard(communicator_, group_, alpha_.view(), space_);
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.rotors.add(c.bias, k, c.alpha); });
     }
     void add_noise(RigidNoise const& noise, std::int64_t first, std::int64_t count) {
         space_.for_each(count, [c = chains(), noise, first] CATENA_LAMBDA(std::int64_t i) { c.add_noise(first + i, noise); });
@@ -208,6 +236,7 @@ class RigidDynamics final : public AbsoluteDynamics {
     /// To neighbours, on whatever rank.
     void show_ends() {
         exchange_from_inboard(communicator_, group_, outboard_end_.view(), space_);
+        if (rotors() > 0) exchange_from_inboard(communicator_, group_, flown_.view(), space_);
         ring_ends_.take(inboard_end_.view(), outboard_end_.view());
     }
     void set_loads() {
@@ -229,7 +258,7 @@ class RigidDynamics final : public AbsoluteDynamics {
                          [&](std::int64_t k) { return at.position[k] + to_matrix(as_quaternion(at.orientation[k])) * group_.r2[k]; });
     }
     ConfigurationView configuration() const {
-        if (!group_.linked) return {{}, orientation_.view(), {}, {}, {}};
+        if (!group_.linked) return {{}, orientation_.view(), {}, {}, {}, rotors() > 0 ? ConstView<6>(compliance_.view()) : ConstView<6>{}};
         return {direction_.view(), orientation_.view(), group_.has_tips() ? ConstView<3>(tip_direction_.view()) : ConstView<3>{}, {}, {}};
     }
     LoadsView loads() { return {moment_.view(), force_.view(), observed_omega_.view(), bias_.view(), of_tips(group_, tip_bias_)}; }
@@ -265,6 +294,9 @@ class RigidDynamics final : public AbsoluteDynamics {
         c.principal_axes = principal_axes_.view();
         c.principal_moment = principal_moment_.view();
         c.given = loads_.view();
+        if (rotors() > 0)
+            c.rotors = {of_stiffness_, implicit_.data(), is_first_.data(), c.given.stiffness, orientation_.view(),
+                        rotor_.view(), spring_.view(),   flown_.view(),    compliance_.view()};
         c.beads = beads_.view();
         c.position = position_.view();
         c.velocity = velocity_.view();
@@ -287,6 +319,8 @@ class RigidDynamics final : public AbsoluteDynamics {
         c.tip_bias = tip_bias_.view();
         return c;
     }
+    /// As many as bodies, or none.
+    std::int64_t rotors() const { return std::ssize(group_.implicit_joint); }
     template <class Use>
     auto with_solution(Use const& use) const {
         auto const& orientation = space_.read(orientation_);
@@ -307,7 +341,8 @@ class RigidDynamics final : public AbsoluteDynamics {
     BodyLoads given_;
     PrincipalFrames principal_;
     std::vector<LocalPiece> piece_;
-    double reach_;
+    double reach_, of_stiffness_;
+    List<std::uint8_t> implicit_;
     BodyLoadsIn<Space> loads_;
     CarriedBeadsIn<Space> beads_;
     List<LocalPiece> pieces_;
@@ -322,7 +357,11 @@ class RigidDynamics final : public AbsoluteDynamics {
     FieldOf<3> position_, velocity_, omega_;
     FieldOf<4> orientation_;
     FieldOf<3> observed_velocity_, observed_omega_, force_, torque_, momentum_, moment_, acceleration_, alpha_, inboard_end_, outboard_end_,
-        joint_torque_, direction_, tip_direction_;
+        joint_torque_;
+    FieldOf<3> rotor_, spring_;  // JointRotors: rate, torque
+    FieldOf<4> flown_;
+    FieldOf<6> compliance_;
+    FieldOf<3> direction_, tip_direction_;
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     std::vector<HeldTip> tip_;
     List<HeldTip> tips_;

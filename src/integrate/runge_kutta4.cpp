@@ -6,7 +6,6 @@ namespace {
 class RungeKutta4 final : public JointIntegrator {
   public:
     explicit RungeKutta4(ChainSystem& system) : system_(system) {}
-    int evaluations_a_step() const override { return 4; }
 
     void step(double h) override {
         for (int stage = 0; stage < 4; ++stage) {

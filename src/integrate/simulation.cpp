@@ -44,10 +44,13 @@ class Run {
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene_.dynamics.steps)),
           sites_(scene_),
-          system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator) {
-        if (scene_.solver.refine > 0 && system_.joint().empty())
-            throw InputError("solutions in absolute coordinates are not refined", "solver.refine",
-                             "leave it out, or take rk4 or velocity-verlet where the chains allow it");
+          system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator,
+                  is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0) {
+        bool const implicit = is_implicit(scene_.dynamics.integrator);
+        if (scene_.solver.refine > 0 && (system_.joint().empty() || implicit))
+            throw InputError(
+                std::string("solutions ") + (implicit ? "with implicit joints" : "in absolute coordinates") + " are not refined",
+                "solver.refine", "leave it out, or take rk4 or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
@@ -165,7 +168,7 @@ class Run {
         ++counted_steps_;
         counted_ += of_step;
         for (std::size_t i = 0; i < messages_.size(); ++i)
-            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]));
+            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]), stepper_->parts());
     }
 
     /// What fails within a step says at which.

@@ -49,9 +49,11 @@ Cut cut_of(ChainGroup const& group) {
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     : integrator_(scene.dynamics.integrator),
+      sweeps_(sweeps_a_step(scene.dynamics)),
       directions_(group.directions),
       absolute_(group.beads || group.linked || group.axes == Axes::world),
       beads_(group.beads),
+      implicit_(!group.implicit_joint.empty()),
       linked_(group.linked),
       moving_meeting_(group.moving_meeting()),
       tips_(group.has_tips()),
@@ -62,11 +64,13 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     springs_ = loads.springs;
 }
 
-Traffic StepMessages::a_step(int sweeps, Cut const& cut) const { return absolute_ ? absolute(sweeps, cut) : joint(sweeps, cut); }
+Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts) const {
+    return absolute_ ? absolute(sweeps, parts, cut) : joint(sweeps, cut);
+}
 
 /// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its matrices; a projection beside each.
-Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
-    std::int64_t const drifts = integrator_ == Integrator::g_baoab ? 2 : 1, closings = drifts * sweeps;
+Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
+    std::int64_t const drifts = (is_langevin(integrator_) ? 2 : 1) * parts, closings = drifts * sweeps;
     Sum sum(cut);
     sum.matrix_sweeps(drifts, directions_);
     sum.bias_sweeps(drifts + closings, directions_);
@@ -79,6 +83,10 @@ Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
         sum.from_outboard(drifts + forces, 3);
     } else {
         if (springs_) sum.from_inboard(drifts, 4);
+        if (implicit_) {  // rotors: of kicks; of each closing's flight and of what it adds
+            sum.from_inboard(drifts + closings, 3);
+            sum.from_inboard(closings, 4);
+        }
         if (joint_loads_) sum.from_outboard(1, 3);
     }
     return sum.traffic();
@@ -86,14 +94,14 @@ Traffic StepMessages::absolute(int sweeps, Cut const& cut) const {
 
 /// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without loads.
 Traffic StepMessages::joint(int corrections, Cut const& cut) const {
-    std::int64_t const evaluations = integrator_ == Integrator::rk4 ? 4 : 1, motions = evaluations + (tips_ ? corrections + 1 : 0);
-    std::int64_t const refinements = evaluations * refinements_;
+    auto const [matrices, biases] = sweeps_;
+    std::int64_t const more = tips_ ? corrections + 1 : 0, motions = biases + more, refinements = matrices * refinements_;
     Sum sum(cut);
     sum.gathers(motions, 13);
     sum.from_ring_ends(motions, 13);
     if (moving_meeting_) sum.from_outboard(motions, 12);
-    if (joint_loads_) sum.from_outboard(evaluations, 4);
-    sum.matrix_sweeps(motions, directions_);
+    if (joint_loads_) sum.from_outboard(biases, 4);
+    sum.matrix_sweeps(matrices + more, directions_);
     sum.bias_sweeps(motions + refinements, directions_);
     sum.from_inboard(motions + refinements, 4);
     sum.from_inboard(refinements, 8);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "chain/chain_group.hpp"
-#include "scene/scene.hpp"
+#include "integrate/joint_integrators.hpp"
 
 namespace catena {
 
@@ -17,16 +17,17 @@ Cut cut_of(ChainGroup const&);
 class StepMessages {
   public:
     StepMessages(ChainGroup const&, Scene const&);
-    /// `sweeps`: Stepper::sweeps().
-    Traffic a_step(int sweeps, Cut const&) const;
+    /// `sweeps`, `parts`: Stepper's.
+    Traffic a_step(int sweeps, Cut const&, int parts = 1) const;
 
   private:
-    Traffic absolute(int sweeps, Cut const&) const;
+    Traffic absolute(int sweeps, int parts, Cut const&) const;
     Traffic joint(int corrections, Cut const&) const;
 
     Integrator integrator_;
+    SweepsAStep sweeps_;
     std::int64_t directions_;
-    bool absolute_, beads_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
+    bool absolute_, beads_, implicit_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
     std::int64_t refinements_;
 };
 

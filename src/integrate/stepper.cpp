@@ -14,9 +14,7 @@ using nlohmann::json;
 class JointStepper final : public Stepper {
   public:
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
-        : system_(system),
-          h_(d.step),
-          integrator_(d.integrator == Integrator::rk4 ? make_runge_kutta4(system) : make_velocity_verlet(system)) {
+        : system_(system), h_(d.step), sweeps_(sweeps_a_step(d)), integrator_(make_joint_integrator(system, d)) {
         system.close_tips();
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
@@ -60,8 +58,8 @@ class JointStepper final : public Stepper {
         integrator_->restored();
     }
     json describe() const override {
-        int const sweeps = integrator_->evaluations_a_step() + (has_tips() ? corrections_ + 1 : 0);
-        json found = {{"matrix_sweeps_a_step", sweeps}, {"bias_sweeps_a_step", sweeps}};
+        int const more = has_tips() ? corrections_ + 1 : 0;
+        json found = {{"matrix_sweeps_a_step", sweeps_.matrices + more}, {"bias_sweeps_a_step", sweeps_.biases + more}};
         if (has_tips()) found["corrections_of_tips"] = corrections_;
         return found;
     }
@@ -75,6 +73,7 @@ class JointStepper final : public Stepper {
     static constexpr int most_corrections = 10;
     ChainSystem& system_;
     double h_;
+    SweepsAStep sweeps_;
     int corrections_ = JointDynamics::usual_corrections;  // of tips' positions after a step
     std::unique_ptr<JointIntegrator> integrator_;
 };
@@ -116,19 +115,25 @@ class ConstrainedStepper final : public Stepper {
         return true;
     }
     int sweeps() const override { return integrator_.sweeps(); }
+    int parts() const override { return integrator_.parts(); }
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
+        if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
         c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
     }
     void restore(Checkpoint const& c) override {
         integrator_.set_sweeps(static_cast<int>(c.integers.at("sweeps_a_drift")));
+        if (auto const kept = c.integers.find("parts_a_drift"); kept != c.integers.end())
+            integrator_.set_parts(static_cast<int>(kept->second));
         integrator_.set_pending(0.5 * static_cast<double>(c.integers.at("pending_half_kicks")));
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
     json describe() const override {
-        return {{"matrix_sweeps_a_step", integrator_.matrix_sweeps_a_step()},
-                {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
-                {"sweeps_a_drift", integrator_.sweeps()}};
+        json found = {{"matrix_sweeps_a_step", integrator_.matrix_sweeps_a_step()},
+                      {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
+                      {"sweeps_a_drift", integrator_.sweeps()}};
+        if (integrator_.parts() > 1) found["parts_a_drift"] = integrator_.parts();
+        return found;
     }
 
   private:

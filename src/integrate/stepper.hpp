@@ -23,6 +23,8 @@ class Stepper {
     virtual bool add_sweep() = 0;
     /// Of a drift; in joint coordinates corrections of jointed tips.
     virtual int sweeps() const = 0;
+    /// That every drift is taken in.
+    virtual int parts() const { return 1; }
     virtual void save(Checkpoint&) const = 0;
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;

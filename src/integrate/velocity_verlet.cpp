@@ -6,12 +6,11 @@ namespace {
 class VelocityVerlet final : public JointIntegrator {
   public:
     explicit VelocityVerlet(ChainSystem& system) : system_(system) {}
-    int evaluations_a_step() const override { return 1; }
     bool carries_rates() const override { return true; }
     void restored() override { ready_ = true; }
     void prepare() override {
         if (ready_) {
-            make_ghosts();
+            make_ghosts(system_);
             return;
         }
         system_.solve_joint_groups();
@@ -27,11 +26,6 @@ class VelocityVerlet final : public JointIntegrator {
     }
 
   private:
-    /// Lists of ghosts belong to the step at which they were asked for: a restart makes them there.
-    void make_ghosts() {
-        if (system_.openmm() && system_.openmm()->ghosts_are_due()) system_.evaluate();
-    }
-
     ChainSystem& system_;
     bool ready_ = false;
 };

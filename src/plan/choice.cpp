@@ -14,7 +14,7 @@ namespace {
 /// Why a GPU is not for `auto`, besides there being none.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
-    return scene.dynamics.fixman ? "the Fixman force is computed on the host" : "";
+    return scene.dynamics.why_host_alone();
 }
 /// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and the solver.
 bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {

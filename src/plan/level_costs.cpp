@@ -102,8 +102,8 @@ LevelSeconds measure_level_costs(Family const& family, std::int64_t bodies, dca:
         dynamics->solve();
         return probe.least();
     }
-    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
-    auto const dynamics = make(group, scene, *executor, *communicator, std::move(owned));
+    auto const dynamics = group.beads ? make_bead_dynamics(group, scene, *executor, *communicator, std::move(owned))
+                                      : make_rigid_dynamics(group, scene, *executor, *communicator, std::move(owned));
     dynamics->update_configuration();
     dynamics->set_simple_forces();
     dynamics->assemble_matrices();

@@ -90,6 +90,16 @@ int coordinates_of(JointType type) {
     return 0;
 }
 
+bool resists(BodyArrays const& bodies, std::size_t body) {
+    auto const any = [&](std::vector<Vec3> const& v) { return !v.empty() && (v[body][0] != 0 || v[body][1] != 0 || v[body][2] != 0); };
+    return any(bodies.stiffness) || any(bodies.damping);
+}
+bool resists(ChainSpec const& chain) {
+    for (std::size_t body = 0; body < chain.bodies.size(); ++body)
+        if (resists(chain.bodies, body)) return true;
+    return false;
+}
+
 bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) { return parallel_within(printed_digits, chain, first_odd); }
 
 HandleKind handle_kind(ChainSpec const& chain) {

@@ -16,6 +16,11 @@ int coordinates_of(JointType type);
 /// joint 1. `first_odd` receives the first body (from 0) whose joint has no axis or one not parallel to those before; the size: the tip.
 bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd);
 
+/// Whether joint `body` (from 0) has a spring or a damper.
+bool resists(BodyArrays const& bodies, std::size_t body);
+/// Whether some joint has.
+bool resists(ChainSpec const& chain);
+
 /// The smallest kind of handle that holds all joints of the chain.
 enum class HandleKind : std::uint8_t { link, planar, spherical, universal, revolute, full };
 HandleKind handle_kind(ChainSpec const& chain);

@@ -9,10 +9,10 @@ namespace catena::scene {
 namespace {
 
 Node const& single_entry(Node const& node) {
-    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "polygon", "freely_jointed", "worm_like"});
+    Fields const kinds(node, {"random", "pendulum", "coil", "dill", "elastic_rod", "polygon", "freely_jointed", "worm_like"});
     if (node.items.size() != 1)
         fail(node, fmt::format("the chain has {} generators", node.items.size()),
-             "give one of `random`, `pendulum`, `coil`, `dill`, `polygon`, `freely_jointed`, `worm_like`");
+             "give one of `random`, `pendulum`, `coil`, `dill`, `elastic_rod`, `polygon`, `freely_jointed`, `worm_like`");
     return *kinds.find(node.items[0].key);
 }
 
@@ -47,6 +47,8 @@ GeneratorEntry::GeneratorEntry(ChainRequest const& request, Node const& node) : 
         read_walk();
     else if (entry_.key == "polygon")
         read_polygon();
+    else if (entry_.key == "elastic_rod")
+        read_elastic_rod();
     else
         read_rods();
 }
@@ -134,6 +136,22 @@ void GeneratorEntry::read_polygon() {
     request_.allow("generator `polygon`", {});
 }
 
+void GeneratorEntry::read_elastic_rod() {
+    Fields const fields(entry_, {"bodies", "mass", "length", "radius", "bend", "twist", "seed"});
+    ElasticRod& rod = elastic_.emplace();
+    size_ = rod.bodies = whole(fields.need("bodies", "bodies: 100"), 1);
+    rod.mass = positive(fields.need("mass", "mass: 6500"));
+    rod.length = positive(fields.need("length", "length: 3.4"));
+    rod.radius = positive(fields.need("radius", "radius: 1"));
+    rod.bend = positive(fields.need("bend", "bend: 50, the persistence length"));
+    rod.twist = positive(fields.need("twist", "twist: 100, the persistence length"));
+    rod.base = request_.base;
+    rod.kt = request_.scene.boltzmann() * request_.scene.dynamics.temperature;
+    if (!(rod.kt > 0)) fail(entry_, "an elastic rod without a temperature above 0", "add `dynamics: {temperature: 300}`");
+    request_.allow("generator `elastic_rod`", {});
+    velocities_ = true;
+}
+
 std::uint64_t GeneratorEntry::seed(std::int64_t copy) const {
     // A seed of its own makes the same chain wherever the entry stands in the scene.
     Node const* const own = entry_.find("seed");
@@ -145,6 +163,10 @@ void GeneratorEntry::make(ChainSpec& chain, std::int64_t copy) const {
         Rods rods = *rods_;
         rods.seed = seed(copy);
         chain.bodies = entry_.key == "pendulum" ? pendulum(rods) : entry_.key == "coil" ? coil(rods, winding_) : dill(rods, winding_);
+    } else if (elastic_) {
+        ElasticRod rod = *elastic_;
+        rod.seed = seed(copy);
+        chain.bodies = elastic_rod(rod);
     } else if (polygon_) {
         if (beads_)
             chain.beads = polygon_of_beads(*polygon_);

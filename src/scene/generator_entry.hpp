@@ -26,15 +26,17 @@ class GeneratorEntry {
     void read_rods();
     void read_walk();
     void read_polygon();
+    void read_elastic_rod();
     std::uint64_t seed(std::int64_t copy) const;
 
     ChainRequest const& request_;
     Node const& entry_;
     std::int64_t size_ = 0;
-    std::optional<RandomChain> random_;  // one of four
+    std::optional<RandomChain> random_;  // one of five
     std::optional<Rods> rods_;
     std::optional<Walk> walk_;
     std::optional<Polygon> polygon_;
+    std::optional<ElasticRod> elastic_;
     Winding winding_;
     double persistence_ = 0;  // of a worm-like walk
     bool beads_ = false, velocities_ = false, loads_ = true;

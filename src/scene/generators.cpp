@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "dca/philox.hpp"
 #include "scene/conformation.hpp"
+#include "scene/random.hpp"
 
 namespace catena::scene {
 
@@ -60,6 +62,16 @@ void wind(BodyArrays& bodies, Winding const& winding, double twist) {
     bodies.q[0] = {1, 0, 0, 0};
 }
 
+/// A rotation vector with the normal density of its springs, times what the rotation group makes of it: (sin(a / 2) / (a / 2))^2.
+Quat elastic_turn(ElasticRod const& rod, Vec3 const& stiffness, std::int64_t k) {
+    for (std::uint64_t attempt = 0;; ++attempt) {
+        Vec3 turn = normal3(rod.seed, attempt, static_cast<std::uint64_t>(k), NoiseStage::start);
+        for (int i = 0; i < 3; ++i) turn[i] *= std::sqrt(rod.kt / stiffness[i]);
+        double const half = 0.5 * norm(turn), weight = half > 0 ? std::sin(half) / half : 1;
+        if (2 * half < Draws::pi && Draws(rod.seed, k, attempt).uniform() < weight * weight) return from_rotation_vector(turn);
+    }
+}
+
 }  // namespace
 
 BodyArrays pendulum(Rods const& rods) {
@@ -82,6 +94,26 @@ BodyArrays dill(Rods const& rods, Winding const& winding) {
         draw_rod(bodies, rods, k, scale);
     }
     wind(bodies, winding, Draws::pi / 2);
+    return bodies;
+}
+
+BodyArrays elastic_rod(ElasticRod const& rod) {
+    BodyArrays bodies = revolute_chain(static_cast<std::size_t>(rod.bodies));
+    Vec3 const stiffness{{rod.kt * rod.twist / rod.length, rod.kt * rod.bend / rod.length, rod.kt * rod.bend / rod.length}};
+    bodies.axis.assign(bodies.size(), Vec3::zero());
+    bodies.stiffness.assign(bodies.size(), stiffness);
+    bodies.rest.assign(bodies.size(), {1, 0, 0, 0});
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        set_rod(bodies, k, rod.mass, rod.length, rod.radius);
+        bodies.joint[k] = JointType::spherical;
+        if (k == 0) continue;
+        Quat const turn = elastic_turn(rod, stiffness, static_cast<std::int64_t>(k));
+        bodies.q[k] = {turn.w, turn.x, turn.y, turn.z};
+    }
+    bool const free = rod.base == Base::free;
+    bodies.joint[0] = free ? JointType::free : JointType::weld;
+    bodies.q[0] = {free ? 1.0 : 0.0, 0, 0, 0};
+    bodies.stiffness[0] = Vec3::zero();
     return bodies;
 }
 

@@ -67,6 +67,17 @@ struct Winding {
 BodyArrays coil(Rods const& rods, Winding const& winding);
 BodyArrays dill(Rods const& rods, Winding const& winding);
 
+/// Equal rods as pendulum's on spherical joints whose springs, kt bend / length across and kt twist / length along the rods, make them an
+/// elastic rod with these persistence lengths where the rods are short. At rest, every joint drawn from its equilibrium, exp(-U / kt) over
+/// the rotations. The first rod lies along +x from the origin, free or welded to the ground.
+struct ElasticRod {
+    std::int64_t bodies = 0;
+    double mass = 1, length = 1, radius = 0.05, bend = 1, twist = 1, kt = 1;
+    Base base = Base::free;
+    std::uint64_t seed = 0;
+};
+BodyArrays elastic_rod(ElasticRod const& rod);
+
 /// A regular polygon of equal rods as pendulum's, in the plane of x and y with its first side along +x from the origin (a fixed base: on a
 /// joint there), left open for a tip to close. It turns with angular velocity `spin`, W, as if it were rigid: about its centre, or with a
 /// fixed base about the first corner.

@@ -96,6 +96,14 @@ int number_of(Integrator integrator) {
             return 1;
         case Integrator::g_baoab:
             return 2;
+        case Integrator::staggered:
+            return 4;
+        case Integrator::baoab:
+            return 5;
+        case Integrator::implicit_baoab:
+            return 6;
+        case Integrator::implicit_g_baoab:
+            return 7;
         case Integrator::velocity_verlet:
             break;
     }

@@ -42,7 +42,7 @@ Scene read_frame(Fields const& fields, std::string const& name) {
 std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     Node const* const dynamics = fields.find("dynamics");
     bool const warm =
-        dynamics && frame.dynamics.temperature > 0 && (dynamics->find("temperature") || frame.dynamics.integrator == Integrator::g_baoab);
+        dynamics && frame.dynamics.temperature > 0 && (dynamics->find("temperature") || frame.dynamics.integrator >= Integrator::g_baoab);
     if (!fields.find("chains") && frame.forces.openmm && !frame.forces.openmm->system.empty())
         return scene::import_chains(*fields.find("forces")->find("openmm"), frame, warm);
     Node const& chains = fields.need("chains", "chains: [{name: a, sequence: GGG, model: calvados2}]");
@@ -109,16 +109,31 @@ char const* name_of(JointType type) {
     return "?";
 }
 
+std::string DynamicsSpec::why_host_alone() const {
+    if (fixman) return "the Fixman force is computed on the host";
+    if (given && (is_implicit(integrator) || integrator == Integrator::baoab))
+        return std::string("integrator ") + name_of(integrator) + " works on the host";
+    return "";
+}
+
 char const* name_of(Integrator integrator) {
     switch (integrator) {
         case Integrator::rk4:
             return "rk4";
         case Integrator::velocity_verlet:
             return "velocity-verlet";
+        case Integrator::staggered:
+            return "staggered";
+        case Integrator::baoab:
+            return "baoab";
+        case Integrator::implicit_baoab:
+            return "implicit-baoab";
         case Integrator::rattle:
             return "rattle";
         case Integrator::g_baoab:
             return "g-baoab";
+        case Integrator::implicit_g_baoab:
+            return "implicit-g-baoab";
     }
     return "?";
 }

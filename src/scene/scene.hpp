@@ -167,9 +167,15 @@ struct ForceSpec {
     std::optional<OpenMmSpec> openmm;
 };
 
-enum class Integrator { rk4, velocity_verlet, rattle, g_baoab };
+enum class Integrator { rk4, velocity_verlet, staggered, baoab, implicit_baoab, rattle, g_baoab, implicit_g_baoab };
 /// Whether the state is in joint coordinates (else: absolute ones).
-inline bool uses_joint_coordinates(Integrator i) { return i == Integrator::rk4 || i == Integrator::velocity_verlet; }
+inline bool uses_joint_coordinates(Integrator i) { return i < Integrator::rattle; }
+/// Whether springs and dampers of joints are taken implicitly.
+inline bool is_implicit(Integrator i) {
+    return i == Integrator::staggered || i == Integrator::implicit_baoab || i == Integrator::implicit_g_baoab;
+}
+/// Whether it has a thermostat.
+inline bool is_langevin(Integrator i) { return i == Integrator::baoab || i == Integrator::implicit_baoab || i >= Integrator::g_baoab; }
 
 struct DynamicsSpec {
     bool given = false;  // the scene has a `dynamics` section
@@ -181,6 +187,9 @@ struct DynamicsSpec {
     std::uint64_t seed = 1;
     double constraint_tolerance = 1e-10;
     bool fixman = false;  // rigid links sample as stiff springs would
+
+    /// Why a GPU cannot do it; empty where it can.
+    std::string why_host_alone() const;
 };
 
 enum class Backend { automatic, serial, segments, openmp, cuda, cuda_levels };

@@ -122,9 +122,13 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
                                              {{"rk4", Integrator::rk4},
                                               {"velocity-verlet", Integrator::velocity_verlet},
+                                              {"staggered", Integrator::staggered},
+                                              {"baoab", Integrator::baoab},
+                                              {"implicit-baoab", Integrator::implicit_baoab},
                                               {"rattle", Integrator::rattle},
-                                              {"g-baoab", Integrator::g_baoab}},
-                                             {"implicit-midpoint", "staggered"});
+                                              {"g-baoab", Integrator::g_baoab},
+                                              {"implicit-g-baoab", Integrator::implicit_g_baoab}},
+                                             {"implicit-midpoint"});
     dynamics.step = positive(fields.need("step", "step: 0.01"));
     take(fields, "steps", dynamics.steps, [](Node const& n) { return whole(n, 0); });
     take(fields, "temperature", dynamics.temperature, non_negative);
@@ -132,7 +136,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     take(fields, "seed", dynamics.seed, seed64);
     take(fields, "constraint_tolerance", dynamics.constraint_tolerance, positive);
     take(fields, "fixman", dynamics.fixman, truth);
-    if (si && dynamics.integrator == Integrator::g_baoab) fields.need("friction", "friction: 1e10");
+    if (si && is_langevin(dynamics.integrator)) fields.need("friction", "friction: 1e10");
     return dynamics;
 }
 

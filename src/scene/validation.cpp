@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "force/calvados2.hpp"
@@ -29,30 +30,62 @@ void refuse_at_body(Draft const& draft, std::vector<Value> const& values, bool (
     if (found != values.end()) fail_at(*draft.node, "body", found - values.begin() + 1, what, remedy);
 }
 
-/// What acts through rates or prescribes coordinates, which integrators in absolute coordinates do not carry.
-void refuse_joint_forces(Node const& root, Scene const& scene, Draft const& draft) {
-    std::string const under = fmt::format(" under integrator {}", name_of(scene.dynamics.integrator));
+/// What takes energy away, which absolute coordinates do not carry and a thermostat does not give back.
+void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft) {
+    Integrator const integrator = scene.dynamics.integrator;
+    std::string const under = fmt::format(" under integrator {}", name_of(integrator));
+    std::string const thermostat = name_of(is_langevin(integrator) ? integrator : Integrator::g_baoab);
     BodyArrays const& bodies = draft.chain.bodies;
     refuse_at_body<Vec3>(
         draft, bodies.damping, [](Vec3 const& d) { return d[0] != 0 || d[1] != 0 || d[2] != 0; }, "joint damping" + under,
-        joint_integrators + ", or set `damping: 0` (g-baoab has `friction`)");
+        joint_integrators + ", or set `damping: 0` (" + thermostat + " has `friction`)");
     if (scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0)
-        fail(*root.find("forces")->find("drag"), "drag" + under, joint_integrators + ", or leave it out (g-baoab has `friction`)");
+        fail(*root.find("forces")->find("drag"), "drag" + under,
+             joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
     refuse_at_body<std::array<double, 2>>(
         draft, bodies.drag, [](std::array<double, 2> const& d) { return d[0] != 0 || d[1] != 0; }, "drag" + under,
-        joint_integrators + ", or leave it out (g-baoab has `friction`)");
-    if (!bodies.driven.empty())
-        fail_at(*draft.node, "body", bodies.driven[0].body + 1, "a prescribed motion" + under, joint_integrators + ", or leave it out");
+        joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
+}
+
+/// An implicit joint carries the inertia h C / 2 + h^2 K / 2 along each coordinate: somewhere none, elsewhere one, is no definite matrix
+/// in the joint's axes, and of very different ones the smaller would be rounding.
+void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
+    double constexpr widest = 1e10;
+    BodyArrays const& bodies = draft.chain.bodies;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+        if (!resists(bodies, k)) continue;
+        double least = HUGE_VAL, most = 0;
+        for (int i = 0; i < coordinates_of(bodies.joint[k]); ++i) {
+            double const stiffness = bodies.stiffness.empty() ? 0 : bodies.stiffness[k][i];
+            double const damping = bodies.damping.empty() ? 0 : bodies.damping[k][i];
+            double const inertia = 0.5 * dynamics.step * (damping + dynamics.step * stiffness);
+            least = std::min(least, inertia), most = std::max(most, inertia);
+        }
+        auto const body = static_cast<std::int64_t>(k) + 1;
+        std::string const under = fmt::format(" under integrator {}", name_of(dynamics.integrator));
+        if (!(least > 0))
+            fail_at(*draft.node, "body", body, "a joint with springs or dampers along some of its coordinates alone" + under,
+                    "give it some stiffness or damping along each, or none");
+        if (most > widest * least)
+            fail_at(*draft.node, "body", body,
+                    fmt::format("a joint {:.3g} times as stiff along one coordinate as along another{}", most / least, under),
+                    fmt::format("stay within {:g}", widest));
+    }
 }
 
 void check_integrator(Node const& root, Scene const& scene, Draft const& draft) {
     ChainSpec const& chain = draft.chain;
     Integrator const integrator = scene.dynamics.integrator;
     Node const& at = *root.find("dynamics")->find("integrator");
+    if (is_implicit(integrator) && scene.output.joint_forces)
+        fail(*root.find("output")->find("joint_forces"),
+             fmt::format("not in this version: joint forces under integrator {}", name_of(integrator)), "leave it out");
     if (uses_joint_coordinates(integrator)) {
         if (chain.is_beads() || chain.is_linked())
             fail(at, fmt::format("integrator {} works in joint coordinates, chain `{}` has links", name_of(integrator), shown(chain.name)),
                  "use `integrator: rattle` or `g-baoab`");
+        if (is_implicit(integrator)) check_implicit(scene.dynamics, draft);
+        if (is_langevin(integrator)) refuse_resistance(root, scene, draft);
         return;
     }
     if (auto const odd = joint_without_absolute_coordinates(chain)) {
@@ -62,7 +95,11 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
                          shown(chain.name), name_of(odd->second), place),
              joint_integrators);
     }
-    refuse_joint_forces(root, scene, draft);
+    refuse_resistance(root, scene, draft);
+    if (is_implicit(integrator)) check_implicit(scene.dynamics, draft);
+    if (!chain.bodies.driven.empty())
+        fail_at(*draft.node, "body", chain.bodies.driven[0].body + 1,
+                fmt::format("a prescribed motion under integrator {}", name_of(integrator)), joint_integrators + ", or leave it out");
 }
 
 void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
@@ -89,7 +126,10 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     Node const* const asked = draft.node->find("velocities");
     Node const& at = asked ? *asked : *draft.node;
     Node const* const section = root.find("dynamics");
-    bool const named = section && (section->find("temperature") || dynamics.integrator == Integrator::g_baoab);
+    if (dynamics.given && dynamics.integrator == Integrator::implicit_baoab)
+        fail(at, "thermal velocities under integrator implicit-baoab, whose stiff joints turn more slowly",
+             "write `velocities: zero`: its thermostat warms the chain");
+    bool const named = section && (section->find("temperature") || is_langevin(dynamics.integrator));
     if (!named || !(dynamics.temperature > 0))
         fail(at, "thermal velocities without a temperature above 0", "add `dynamics: {temperature: 300}`, or write `velocities: zero`");
     if (auto const odd = joint_without_absolute_coordinates(draft.chain))

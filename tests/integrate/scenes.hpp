@@ -99,6 +99,34 @@ inline RunScene const run_scenes[] = {
      "{name: d, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 20, joint: revolute, seed: 4}}}]\n"
      "forces: {gravity: [0, 0, -1]}\n"
      "dynamics: {integrator: velocity-verlet, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"staggered",
+     "chains: [{name: a, generator: {elastic_rod: {bodies: 60, mass: 650, length: 0.34, radius: 1, bend: 50, twist: 100, seed: 1}}}, "
+     "{name: "
+     "b, base: fixed, tip: {joint: {type: spherical}}, generator: {elastic_rod: {bodies: 20, mass: 650, length: 0.34, radius: 1, bend: 50, "
+     "twist: 100}}}, {name: c, base: fixed, bodies: ["
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], stiffness: 1e6, damping: 10, q: 0.01}},"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], motion: {amplitude: 0.5, frequency: 2}}},"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: universal, axes: [[1, 0, 0], [0.6, 0.8, 0]], stiffness: [1e3, 1e7]}},"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: helical, axis: [0, 0, 1], pitch: 0.1, damping: 1e3, qd: 1}},"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, 0, 0]}}]}]\n"
+     "forces: {gravity: [0, 0, -1]}\n"
+     "dynamics: {integrator: staggered, step: 0.05, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"implicit_langevin",
+     "chains: [{name: a, generator: {elastic_rod: {bodies: 60, mass: 650, length: 0.34, radius: 1, bend: 50, twist: 100, seed: 1}}}, "
+     "{name: "
+     "b, base: fixed, tip: {joint: {type: spherical}}, generator: {elastic_rod: {bodies: 20, mass: 650, length: 0.34, radius: 1, bend: 50, "
+     "twist: 100}}}]\n"
+     "dynamics: {integrator: implicit-baoab, step: 0.05, steps: 20, friction: 0.01, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"implicit_langevin_rods",
+     "chains: [{name: a, generator: {elastic_rod: {bodies: 60, mass: 650, length: 0.34, radius: 1, bend: 50, twist: 100, seed: 1}}}, "
+     "{name: "
+     "b, base: free, velocities: thermal, generator: {random: {bodies: 40, joint: spherical, seed: 1, mass: 100, loads: false}}}]\n"
+     "dynamics: {integrator: implicit-g-baoab, step: 0.5, steps: 20, friction: 0.02, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"langevin_every_joint",
+     "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: mixed, seed: 1}}}, {name: c, base: fixed, generator: {random: "
+     "{bodies: 33, joint: planar, seed: 2}}}, {name: d, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 20, "
+     "joint: revolute, seed: 4}}}]\n"
+     "dynamics: {integrator: baoab, step: 0.001, steps: 20, friction: 1, seed: 5}\noutput: {every: 5, checkpoint_every: 10}\n"},
 };
 
 }  // namespace catena::test

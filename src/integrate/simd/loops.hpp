@@ -13,7 +13,7 @@ struct LoopsOf {
         for (std::int64_t i = begin; i < end; ++i) chains.template set_relative<positions>(Bodies{first[i]});
     }
     [[gnu::flatten]] static void set_motion(JointChains const& chains, std::int64_t const* first, std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.template set_motion<positions>(Bodies{first[i]});
+        for (std::int64_t i = begin; i < end; ++i) chains.template set_motion<positions>(Bodies{first[i]}, false);
     }
     [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out, std::int64_t const* first, std::int64_t begin,
                                            std::int64_t end) {

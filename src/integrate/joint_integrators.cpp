@@ -1,0 +1,28 @@
+#include "integrate/joint_integrators.hpp"
+
+namespace catena {
+
+SweepsAStep sweeps_a_step(DynamicsSpec const& d) {
+    if (d.integrator == Integrator::rk4) return {4, 4};
+    if (d.integrator == Integrator::velocity_verlet) return {1, 1};
+    return is_langevin(d.integrator) && d.friction > 0 ? SweepsAStep{2, 3} : SweepsAStep{1, 2};
+}
+
+std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem& system, DynamicsSpec const& d) {
+    switch (d.integrator) {
+        case Integrator::rk4:
+            return make_runge_kutta4(system);
+        case Integrator::velocity_verlet:
+            return make_velocity_verlet(system);
+        case Integrator::staggered:
+            return make_kicks(system, {});
+        default:
+            return make_kicks(system, {d.friction, system.scene().boltzmann() * d.temperature, d.seed});
+    }
+}
+
+void make_ghosts(ChainSystem& system) {
+    if (system.openmm() && system.openmm()->ghosts_are_due()) system.evaluate();
+}
+
+}  // namespace catena
