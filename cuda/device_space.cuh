@@ -126,7 +126,7 @@ class DeviceSpace {
             };
             ask(shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin);
             ask(clusters, cudaDevAttrClusterLaunch);
-            return dca::stage_sizes(directions, shared_bytes, clusters ? kernels::most_in_cluster : 0);
+            return dca::stage_sizes(directions, shared_bytes, clusters && kernels_know_clusters() ? kernels::most_in_cluster : 0);
         }
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;

@@ -12,4 +12,9 @@ cudaError_t status_of_kernel_image() {
     return cudaFuncGetAttributes(&attributes, nothing);
 }
 
+bool kernels_know_clusters() {
+    cudaFuncAttributes attributes;
+    return cudaFuncGetAttributes(&attributes, nothing) == cudaSuccess && attributes.ptxVersion >= 90;
+}
+
 }  // namespace catena::cuda

@@ -96,17 +96,17 @@ struct JointsView {
 
     // Of one body, or of several next to each other whose joints are of one type and none of which begins a chain.
     CATENA_HD JointType type(std::int64_t k) const { return joint[k]; }
-    template <class Place>
+    template <dca::SeveralBodies Place>
     CATENA_HD JointType type(Place const& several) const {
         return joint[several.first];
     }
     CATENA_HD bool starts_chain(std::int64_t k) const { return is_first[k] != 0; }
     CATENA_HD bool ends_chain(std::int64_t k) const { return is_last[k] != 0; }
-    template <class Place>
+    template <dca::SeveralBodies Place>
     CATENA_HD bool starts_chain(Place const&) const {
         return false;
     }
-    template <class Place>
+    template <dca::SeveralBodies Place>
     CATENA_HD bool ends_chain(Place const&) const {
         return false;
     }

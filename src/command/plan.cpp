@@ -84,6 +84,8 @@ struct StepPlan {
 };
 StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
+    bool const tips = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+    int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
     std::string const chosen =
         fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
     switch (d.integrator) {
@@ -94,13 +96,12 @@ StepPlan step_of(Scene const& scene) {
             std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias sweeps (2 of the kick, thermostat)"
                                                     : "1 matrix sweep; 2 bias sweeps of the kick";
             if (is_implicit(d.integrator)) text += "; joints with springs or dampers are implicit: their chains have full handles";
-            return {sweeps.matrices, sweeps.biases, 0, text};
+            if (tips) text += fmt::format("; {} corrections that close jointed tips, a matrix sweep and a bias sweep each", corrections);
+            return {sweeps.matrices + corrections, sweeps.biases + corrections, 0, text};
         }
         case Integrator::rk4:
         case Integrator::velocity_verlet: {
-            bool const tips =
-                std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
-            int const evaluations = d.integrator == Integrator::rk4 ? 4 : 1, corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
+            int const evaluations = d.integrator == Integrator::rk4 ? 4 : 1;
             return {evaluations + corrections, evaluations + corrections, 0,
                     fmt::format("{}: a matrix sweep and a bias sweep each; {}", counted(evaluations, "evaluation", "evaluations"),
                                 tips ? fmt::format("{} corrections that close jointed tips, again a matrix sweep and a bias sweep each",
@@ -154,15 +155,19 @@ void add_memory(Text& text, Json& json, Scene const& scene, Predictions const& p
     json["memory_bytes_per_rank"] = {{"host", memory.sum()}, {"gpu", predictions.gpu_memory}};
 }
 
+double implicit_step_of(Scene const& scene) {
+    return scene.dynamics.given && is_implicit(scene.dynamics.integrator) ? scene.dynamics.step : 0.0;
+}
+
 /// Of the chains themselves: OpenMM is left out.
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
     scene.forces.openmm.reset();
-    ChainSystem system(scene, axes, communicator);
+    ChainSystem system(scene, axes, communicator, implicit_step_of(scene));
     return plan::measure_phases(system, {5, 200, 0.5});
 }
 
 Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communicator, PlanRequest const& request, Predictions predictions) {
-    ChainSystem const system(scene, axes, communicator);
+    ChainSystem const system(scene, axes, communicator, implicit_step_of(scene));
     predictions.choice.arrangement = {system.backend(), system.executor().threads()};
     std::vector<SolverReport> const reports = system.solver_reports();
     Outcome outcome;

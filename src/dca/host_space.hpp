@@ -14,7 +14,7 @@
 
 /// Of what a loop does with one item: all that it calls is inlined, small vectors and matrices then stay in registers. By itself gcc stops
 /// at a size that these functions are beyond, and they take two to three times as long.
-#if !defined(CATENA_WHOLE)  // the build leaves it out where it does not optimise
+#if !defined(CATENA_WHOLE)  // a build with sanitizers leaves it out
 #define CATENA_WHOLE __attribute__((flatten))
 #endif
 

@@ -19,7 +19,7 @@ struct LargePages {
 
     LargePages() = default;
     template <class Other>
-    LargePages(LargePages<Other> const&) {}
+    LargePages(LargePages<Other> const&) noexcept {}
     T* allocate(std::size_t count) {
         if (count * sizeof(T) < from_bytes) return std::allocator<T>().allocate(count);
         return static_cast<T*>(allocate_large(count * sizeof(T)));
@@ -29,7 +29,7 @@ struct LargePages {
         free_large(place);
     }
     template <class Other>
-    bool operator==(LargePages<Other> const&) const {
+    bool operator==(LargePages<Other> const&) const noexcept {
         return true;
     }
 };

@@ -27,7 +27,7 @@ CATENA_HD Philox4 philox(Philox4 counter, std::uint32_t key0, std::uint32_t key1
 }
 
 /// What a draw is for; streams of different stages are independent.
-enum class NoiseStage : std::uint32_t { start, start_angular, thermostat, thermostat_angular, thermostat_joint };
+enum class NoiseStage : std::uint32_t { start, start_angular, thermostat, thermostat_angular, thermostat_joint, start_joint, conformation };
 
 /// Three independent standard normal numbers for (seed, step, body, stage); body < 2^48 (Box-Muller on 53-bit uniforms).
 CATENA_HD Vector<double, 3> normal3(std::uint64_t seed, std::uint64_t step, std::uint64_t body, NoiseStage stage) {

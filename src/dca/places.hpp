@@ -28,6 +28,8 @@ using QuatAt = Quaternion<RealAt<Place>>;
 /// Whether it stands for one body.
 template <class Place>
 inline constexpr bool is_one_body = std::is_same_v<Place, std::int64_t>;
+template <class Place>
+concept SeveralBodies = requires { typename Place::Real; };
 
 template <class T, int D>
 CATENA_HD Vector<double, D> read(FieldView<T, D> const& view, std::int64_t k) {

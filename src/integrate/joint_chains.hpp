@@ -27,7 +27,7 @@ struct ImplicitJoints {
 
     CATENA_HD bool has(std::int64_t k) const { return joint && joint[k] != 0; }
     /// Several bodies next to each other have none.
-    template <class Place>
+    template <dca::SeveralBodies Place>
     CATENA_HD bool has(Place const&) const {
         return false;
     }
@@ -79,7 +79,7 @@ struct JointChains {
     }
     /// What drives joint k; null: nothing. Of several bodies none is driven.
     CATENA_HD LocalDrive const* drive_of(std::int64_t k) const { return joints().drives > 0 ? joints().drive_of(k) : nullptr; }
-    template <class Place>
+    template <dca::SeveralBodies Place>
     CATENA_HD LocalDrive const* drive_of(Place const&) const {
         return nullptr;
     }

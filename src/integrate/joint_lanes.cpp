@@ -3,6 +3,9 @@
 namespace catena {
 namespace {
 
+/// Whether the rest of the program rounds a product and a sum at once, as vectors do. If not, which bodies go side by side would show.
+bool rounds_as_vectors() { return fused(1 + 0x1p-30, 1 + 0x1p-30, -1 - 0x1p-29) != 0; }
+
 /// Whether bodies k to k + lanes - 1 go side by side: what they are asked for is the same of each, and found without a decision that
 /// depends on numbers. Their neighbours are of the same chain on this rank.
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
@@ -30,7 +33,8 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
 }  // namespace
 
 JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
-    if (level == SimdLevel::off || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty()) return;
+    if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty())
+        return;
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);
@@ -43,6 +47,7 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
             ++k;
         }
     }
+    if (first_.empty()) others_ = {};
 }
 
 }  // namespace catena

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dca/simd/level.hpp"
+#include "dca/host_space.hpp"
 #include "integrate/joint_steps.hpp"
 
 namespace catena {
@@ -33,7 +33,7 @@ class JointLanes {
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
         space.over_ranges(std::ssize(first_), [&](std::int64_t begin, std::int64_t end) { some(loops, first_.data(), begin, end); });
-        space.over(typename Space::template List<std::int64_t>(others_), one);
+        space.over(typename Space::template List<std::int64_t>(others_), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
 
   private:

@@ -82,12 +82,12 @@ struct JointRotors {
         Vec3 const opening{{bias.at(k, 3), bias.at(k, 4), bias.at(k, 5)}};
         rate.store(k, rate.load(k) + relative(alpha, k) + transposed_times(axes(k), opening));
     }
-    /// Harmonic springs sample exactly at any step (BAOAB). Where forces are, at whole steps, velocities u then have the covariance
-    /// kt (M + B)^-1 M (M + B)^-1, that of noise on bodies alone; in the middle of drifts kt (M + B)^-1.
-    CATENA_HD void add_noise(std::int64_t k, Thermostat const& t, std::uint64_t step, std::uint64_t body) const {
+    /// Harmonic springs sample exactly at any step (BAOAB). In the middle of drifts velocities u have the covariance kt (M + B)^-1; where
+    /// forces are, at whole steps, kt (M + B)^-1 (M + B / 2) (M + B)^-1: rotors have half the variance there.
+    CATENA_HD void add_noise(std::int64_t k, Thermostat const& t, std::uint64_t step, std::uint64_t body, bool between_drifts) const {
         if (!has(k)) return;
-        Vec3 noise = normal3(t.seed, step, body, NoiseStage::thermostat_joint);
-        for (int i = 0; i < 3; ++i) noise[i] /= std::sqrt(inertia(k, i));
+        Vec3 noise = normal3(t.seed, step, body, between_drifts ? NoiseStage::thermostat_joint : NoiseStage::start_joint);
+        for (int i = 0; i < 3; ++i) noise[i] /= std::sqrt((between_drifts ? 1 : 2) * inertia(k, i));
         rate.store(k, plus_scaled(t.keep * rate.load(k), t.spread, noise));
     }
 };

@@ -44,7 +44,7 @@ double radius_of_gyration(std::vector<double> const& mass, std::vector<Vec3> con
 Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
     : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)) {
     for (ChainSpec const& chain : scene.chains) has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
-    has_temperature_ = has_temperature_ && dof_ > 0;
+    has_temperature_ = has_temperature_ && dof_ > 0 && !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
     std::string const energy = scene.si ? " [J]" : " [kJ/mol]", length = scene.si ? " [m]" : " [nm]";
     if (wants("energy")) {
         for (EnergyTerm const& term : terms) columns_.push_back(term.name + "_energy" + energy);

@@ -27,7 +27,7 @@ struct RigidNoise {
     Thermostat thermostat;
     std::uint64_t step = 0;
     NoiseStage linear = NoiseStage::start, angular = NoiseStage::start_angular;
-    bool between_drifts = false;  // not where forces are: there velocities of a chain with rotors have another covariance
+    bool between_drifts = false;  // not where forces are: there rotors have half the variance (JointRotors::add_noise)
 };
 
 /// Of body k relative to the joint frame (`frame`, in the inboard body).
@@ -216,7 +216,7 @@ struct RigidChains {
         Thermostat const& t = n.thermostat;
         Vec3 const noise = normal3(t.seed, n.step, body, n.linear);
         velocity.store(k, plus_scaled(t.keep * velocity.load(k), t.spread * std::sqrt(inverse_mass.at(k, 0)), noise));
-        rotors.add_noise(k, {t.keep, n.between_drifts ? t.spread : 0.0, t.seed}, n.step, body);
+        rotors.add_noise(k, t, n.step, body, n.between_drifts);
         if (is_bead(k)) return;
         Vec3 const moments = principal_moment.load(k);
         Vec3 turning = normal3(t.seed, n.step, body, n.angular);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <stdexcept>
 
 #include "dca/host_space.hpp"
 #include "integrate/absolute_dynamics.hpp"
@@ -184,6 +185,7 @@ class RigidDynamics final : public AbsoluteDynamics {
     }
 
     void evaluate() override {
+        if (rotors() > 0) throw std::logic_error("forces of implicit joints are known within a step alone");
         set_loads();
         solver_->solve(loads(), found());
     }

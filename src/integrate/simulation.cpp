@@ -46,11 +46,10 @@ class Run {
           sites_(scene_),
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator,
                   is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0) {
-        bool const implicit = is_implicit(scene_.dynamics.integrator);
-        if (scene_.solver.refine > 0 && (system_.joint().empty() || implicit))
-            throw InputError(
-                std::string("solutions ") + (implicit ? "with implicit joints" : "in absolute coordinates") + " are not refined",
-                "solver.refine", "leave it out, or take rk4 or velocity-verlet where the chains allow it");
+        Integrator const integrator = scene_.dynamics.integrator;
+        if (scene_.solver.refine > 0 && integrator != Integrator::rk4 && integrator != Integrator::velocity_verlet)
+            throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
+                             "leave it out, or take rk4 or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }

@@ -145,6 +145,10 @@ void GeneratorEntry::read_elastic_rod() {
     rod.radius = positive(fields.need("radius", "radius: 1"));
     rod.bend = positive(fields.need("bend", "bend: 50, the persistence length"));
     rod.twist = positive(fields.need("twist", "twist: 100, the persistence length"));
+    for (char const* const key : {"bend", "twist"})
+        if (double const persistence = key == std::string("bend") ? rod.bend : rod.twist; persistence < 0.1 * rod.length)
+            fail(*fields.find(key), fmt::format("a persistence length of {:g} for rods of {:g}", persistence, rod.length),
+                 "take rods of at most ten times that, or a freely jointed chain");
     rod.base = request_.base;
     rod.kt = request_.scene.boltzmann() * request_.scene.dynamics.temperature;
     if (!(rod.kt > 0)) fail(entry_, "an elastic rod without a temperature above 0", "add `dynamics: {temperature: 300}`");

@@ -65,7 +65,7 @@ void wind(BodyArrays& bodies, Winding const& winding, double twist) {
 /// A rotation vector with the normal density of its springs, times what the rotation group makes of it: (sin(a / 2) / (a / 2))^2.
 Quat elastic_turn(ElasticRod const& rod, Vec3 const& stiffness, std::int64_t k) {
     for (std::uint64_t attempt = 0;; ++attempt) {
-        Vec3 turn = normal3(rod.seed, attempt, static_cast<std::uint64_t>(k), NoiseStage::start);
+        Vec3 turn = normal3(rod.seed, attempt, static_cast<std::uint64_t>(k), NoiseStage::conformation);
         for (int i = 0; i < 3; ++i) turn[i] *= std::sqrt(rod.kt / stiffness[i]);
         double const half = 0.5 * norm(turn), weight = half > 0 ? std::sin(half) / half : 1;
         if (2 * half < Draws::pi && Draws(rod.seed, k, attempt).uniform() < weight * weight) return from_rotation_vector(turn);

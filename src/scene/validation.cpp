@@ -126,9 +126,10 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
     Node const* const asked = draft.node->find("velocities");
     Node const& at = asked ? *asked : *draft.node;
     Node const* const section = root.find("dynamics");
-    if (dynamics.given && dynamics.integrator == Integrator::implicit_baoab)
-        fail(at, "thermal velocities under integrator implicit-baoab, whose stiff joints turn more slowly",
-             "write `velocities: zero`: its thermostat warms the chain");
+    if (dynamics.given && is_implicit(dynamics.integrator) && uses_joint_coordinates(dynamics.integrator))
+        fail(at, fmt::format("thermal velocities under integrator {}, whose stiff joints turn more slowly", name_of(dynamics.integrator)),
+             is_langevin(dynamics.integrator) ? "write `velocities: zero`: its thermostat warms the chain"
+                                              : "write `velocities: zero`, or give each joint its `qd`");
     bool const named = section && (section->find("temperature") || is_langevin(dynamics.integrator));
     if (!named || !(dynamics.temperature > 0))
         fail(at, "thermal velocities without a temperature above 0", "add `dynamics: {temperature: 300}`, or write `velocities: zero`");
@@ -171,7 +172,7 @@ void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft>
 }
 
 /// Left out of the default columns; asked for by name it would be missed.
-void check_temperature(Node const& root, OutputSpec const& output, std::vector<Draft> const& drafts) {
+void check_temperature(Node const& root, OutputSpec const& output, DynamicsSpec const& dynamics, std::vector<Draft> const& drafts) {
     auto const asked = std::find(output.observables.begin(), output.observables.end(), "temperature");
     if (asked == output.observables.end()) return;
     Node const& at = root.find("output")->find("observables")->items[static_cast<std::size_t>(asked - output.observables.begin())];
@@ -180,6 +181,9 @@ void check_temperature(Node const& root, OutputSpec const& output, std::vector<D
         fail(at, fmt::format("no temperature while a joint of chain `{}` is driven", shown(driven->chain.name)), "leave it out");
     if (std::all_of(drafts.begin(), drafts.end(), [](Draft const& d) { return degrees_of_freedom(d.chain) <= 0; }))
         fail(at, "no temperature where nothing is free to move", "leave it out");
+    if (dynamics.given && is_implicit(dynamics.integrator))
+        fail(at, fmt::format("no temperature under integrator {}, where stiff joints turn more slowly", name_of(dynamics.integrator)),
+             "leave it out");
 }
 
 }  // namespace
@@ -196,7 +200,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         check_fixman(root, scene.dynamics, draft);
         check_thermal(root, scene.dynamics, draft);
     }
-    check_temperature(root, scene.output, drafts);
+    check_temperature(root, scene.output, scene.dynamics, drafts);
     if (scene.forces.openmm) check_openmm(root, *scene.forces.openmm, drafts);
 }
 

@@ -263,6 +263,27 @@ dynamics: {integrator: implicit-baoab, step: 1})y",
 dynamics: {integrator: staggered, step: 1}
 output: {joint_forces: true})y",
      "not in this version: joint forces under integrator staggered (s.yaml: output.joint_forces, line 6): leave it out"},
+    {"thermal_under_staggered", R"y(chains:
+  - base: fixed
+    velocities: thermal
+    bodies:
+      - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: 1}}
+dynamics: {integrator: staggered, step: 1, temperature: 300})y",
+     "thermal velocities under integrator staggered, whose stiff joints turn more slowly (s.yaml: chains[0].velocities, line 3): write "
+     "`velocities: zero`, or give each joint its `qd`"},
+    {"temperature_of_implicit_joints", R"y(chains:
+  - base: fixed
+    bodies:
+      - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, stiffness: 1}}
+dynamics: {integrator: staggered, step: 1}
+output: {observables: [temperature]})y",
+     "no temperature under integrator staggered, where stiff joints turn more slowly (s.yaml: output.observables[0], line 6): leave it "
+     "out"},
+    {"elastic_rod_of_soft_joints",
+     "chains: [{generator: {elastic_rod: {bodies: 9, mass: 1, length: 3.4, radius: 1, bend: 0.1, twist: 100}}}]\n"
+     "dynamics: {integrator: implicit-g-baoab, step: 1, temperature: 300}",
+     "a persistence length of 0.1 for rods of 3.4 (s.yaml: chains[0].generator.elastic_rod.bend, line 1): take rods of at most ten times "
+     "that, or a freely jointed chain"},
     {"thermal_without_dynamics", "chains: [{sequence: GGG, model: calvados2, velocities: thermal}]",
      "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): add `dynamics: {temperature: 300}`, or "
      "write `velocities: zero`"},
@@ -307,6 +328,9 @@ solver: {balance: true})y",
     {"tolerance", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: rk4, step: 1, tolerance: 1e-6})y",
      "not in this version: key `tolerance` (s.yaml: dynamics.tolerance, line 2)"},
+    {"implicit_midpoint", R"y(chains: [{sequence: GGG, model: calvados2}]
+dynamics: {integrator: implicit-midpoint, step: 1})y",
+     "not in this version: `integrator: implicit-midpoint` (s.yaml: dynamics.integrator, line 2)"},
 };
 INSTANTIATE_TEST_SUITE_P(Later, Refused, testing::ValuesIn(later_cases), name_of_case);
 

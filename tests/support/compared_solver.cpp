@@ -107,8 +107,8 @@ void evaluate(ChainGroup const& group, Scene const& scene, Executor const& execu
         dynamics->solve();
         return;
     }
-    auto const make = group.beads ? make_bead_dynamics : make_rigid_dynamics;
-    auto const dynamics = make(group, scene, executor, communicator, std::move(solver));
+    auto const dynamics = group.beads ? make_bead_dynamics(group, scene, executor, communicator, std::move(solver))
+                                      : make_rigid_dynamics(group, scene, executor, communicator, std::move(solver));
     dynamics->update_configuration();
     dynamics->assemble_matrices();
     dynamics->set_simple_forces();
