@@ -7,6 +7,7 @@
 
 #include "cuda/device_blocks.cuh"
 #include "cuda/device_model.cuh"
+#include "cuda/kernel_image.hpp"
 #include "cuda/kernels.cuh"
 #include "dca/host_space.hpp"
 #include "dca/stages.hpp"

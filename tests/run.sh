@@ -13,7 +13,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests (1 to 3 ranks)
   no-mpi      build without MPI, all tests
   minimal     build without any optional package, all tests
-  tidy        clang-tidy on the library's own sources, for 4 minutes at most (what was left out is named)
+  tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
 
   --quick  format and release alone
   --long   also the long tests (statistics, drift; an hour or so)
@@ -85,7 +85,7 @@ format() {
 }
 
 tidy() {
-    local until=$(($(date +%s) + 240)) sources
+    local until=$(($(date +%s) + 120)) sources
     # Sources changed since the last commit come first.
     sources=$({ git diff --name-only HEAD 2>/dev/null | sed "s|^|$root/|"; sed -nE 's/^ *"file": "(.*)",?$/\1/p' build/release/compile_commands.json; } |
         grep -E "^$root/(src|mpi)/.*\.cpp$" | awk '!seen[$0]++' | while read -r f; do grep -qF "\"$f\"" build/release/compile_commands.json && echo "$f"; done)

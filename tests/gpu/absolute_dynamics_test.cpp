@@ -107,8 +107,9 @@ class GpuAbsolute : public ::testing::TestWithParam<AbsoluteScene> {
         groups_ = make_groups(scene_, Axes::world, GetParam().handles, false, *communicator_);
         ASSERT_EQ(groups_.size(), 1);
         bool const beads = groups_[0]->beads;
-        host_ = (beads ? make_bead_dynamics : make_rigid_dynamics)(*groups_[0], scene_, *executor_, *communicator_,
-                                                                   make_tree_solver(*groups_[0], *executor_, *communicator_));
+        auto solver = make_tree_solver(*groups_[0], *executor_, *communicator_);
+        host_ = beads ? make_bead_dynamics(*groups_[0], scene_, *executor_, *communicator_, std::move(solver))
+                      : make_rigid_dynamics(*groups_[0], scene_, *executor_, *communicator_, std::move(solver));
         device_ = (beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics)(*groups_[0], scene_, *communicator_);
     }
     template <class Operation>
