@@ -140,7 +140,7 @@ else
     printf '\n   LEFT OUT: no nvcc here, so nothing shows that the backend for GPUs still compiles\n'
     summary+=("cuda                   left out, no nvcc")
 fi
-if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast -E 'ranks_[56]$|force_ranks.Steps'; fi  # these are slow under it
+if build asan-ubsan; then ctests asan-ubsan-tests --preset asan-ubsan -L fast -E 'ranks_[56]$|force_ranks.Steps|stage_kernels.ranks_2'; fi  # slow under it
 if build no-mpi; then ctests no-mpi-tests --preset no-mpi; fi
 if build minimal; then ctests minimal-tests --preset minimal; fi
 
