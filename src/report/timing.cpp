@@ -94,7 +94,7 @@ Timing time_evaluations(ChainSystem& system, int repeat) {
         for (auto const& [name, part] : {std::pair{"levels on the GPU", &SplitSeconds::lower},
                                          {"levels on the host", &SplitSeconds::upper},
                                          {"transfers", &SplitSeconds::transfers}})
-            t.phases.emplace_back(name, median([part = part](Clocks const& c) { return (c.split.*part)(); }));
+            t.phases.emplace_back(name, median([seconds = part](Clocks const& c) { return (c.split.*seconds)(); }));
     if (system.openmm()) {
         t.phases.emplace_back("forces", median([](Clocks const& c) { return c.forces; }));
         t.phases.emplace_back("waiting for forces", median([](Clocks const& c) { return c.waiting; }));
