@@ -163,25 +163,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void kick(double h) override { kick(h, false); }
     void kick_by_carried(double h) override { kick(h, true); }
-    void thermalise(Thermostat const& thermostat, std::uint64_t step) override {
-        update(false);
-        assemble_matrices();
-        need_for_noise();
-        JointChains noisy = chains();
-        noisy.force = noise_force_.view();
-        space_.for_each(group_.size,
-                        [noisy, piece = pieces_in_scene_.data(), pieces = pieces(), seed = thermostat.seed,
-                         step] CATENA_LAMBDA(std::int64_t k) { noisy.set_noise(k, piece_of(piece, pieces, k).body_of(k), seed, step); });
-        if (group_.has_tips())
-            space_.for_each(tips(), [t = jointed_tips(), out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) { t.set_no_bias(i, out); });
-        solver_->solve({torque_.view(), noise_force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
-                       {alpha_.view(), acceleration_.view(), {}, {}});
-        JointSteps const still = at_rest();
-        exchange_ends(still.chains);
-        space_.for_each(group_.size, [still, state = state_.view(), keep = thermostat.keep,
-                                      spread = thermostat.spread] CATENA_LAMBDA(std::int64_t k) { still.mix(k, state, keep, spread); });
-        relative_ = false;
-    }
+    void thermalise(Thermostat const&, std::uint64_t step) override;
 
     BodyMotion motion() override {
         move();
@@ -293,43 +275,11 @@ class JointDynamicsIn final : public JointDynamics {
         if (group_.has_tips()) set_ends();
     }
     /// What jointed tips join, and where they meet: after the motion. Rings on two ranks show each other their ends.
-    void set_ends() {
-        space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.take_ends(i); });
-        for (std::int64_t i = 0; i < tips(); ++i) {
-            JointedTip const& t = tip_[static_cast<std::size_t>(i)];
-            if (t.neighbour < 0) continue;
-            bool const has_last = t.body >= 0;
-            Vector<double, 13> const send = space_.get(ConstView<13>((has_last ? last_end_ : other_end_).view()), i);
-            Vector<double, 13> receive = send;
-            communicator_.exchange(std::as_bytes(std::span(send.data)), t.neighbour, std::as_writable_bytes(std::span(receive.data)),
-                                   t.neighbour);
-            space_.put((has_last ? other_end_ : last_end_).view(), i, receive);
-        }
-        space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.set_meeting(i); });
-    }
+    void set_ends();
     /// One Newton step: the solver with openings in the place of accelerations.
-    void correct(bool velocities) {
-        move();
-        assemble_matrices();
-        space_.for_each(tips(), [t = jointed_tips(), velocities, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
-            t.set_opening(i, velocities, out);
-        });
-        solver_->solve({{}, {}, {}, {}, tip_bias_.view()}, {alpha_.view(), acceleration_.view(), {}, {}});
-        JointSteps const still = at_rest();
-        exchange_ends(still.chains);
-        space_.for_each(group_.size,
-                        [still, state = state_.view(), velocities] CATENA_LAMBDA(std::int64_t k) { still.correct(k, state, velocities); });
-    }
+    void correct(bool velocities);
     void exchange_ends() { exchange_ends(chains()); }
-    void exchange_ends(JointChains const& c) {
-        if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
-        space_.for_each(1, [c, last = group_.size - 1] CATENA_LAMBDA(std::int64_t) { c.outboard_end.store(0, c.outboard_end_of(last)); });
-        Vector<double, 4> const send = space_.get(ConstView<4>(outboard_end_.view()), 0);
-        Vector<double, 4> receive = send;
-        communicator_.exchange(std::as_bytes(std::span(send.data)), group_.neighbour_outboard,
-                               std::as_writable_bytes(std::span(receive.data)), group_.neighbour_inboard);
-        space_.put(outboard_end_.view(), -1, receive);
-    }
+    void exchange_ends(JointChains const&);
 
   private:
     ConfigurationView configuration() {
@@ -348,25 +298,7 @@ class JointDynamicsIn final : public JointDynamics {
         return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
     }
     AccelerationsView found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
-    void refine_on_host() {
-        if (!has_matrices_) assemble_matrices();
-        auto lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
-        std::int64_t const tips = group_.has_tips() ? group_.size : 0;
-        Field<3> alpha(group_.size), acceleration(group_.size);
-        DirectionsField force(group_.size + 1, group_.directions), tip_force(tips, group_.directions);
-        solver_->solve({lacking.torque.view(), lacking.force.view(), {}, lacking.bias.view(), of_tips(group_, lacking.tip_bias)},
-                       {alpha.view(), acceleration.view(), force.view(), of_tips(group_, tip_force)});
-        for (std::int64_t k = 0; k < group_.size; ++k) {
-            alpha_.set(k, alpha_[k] + alpha[k]);
-            acceleration_.set(k, acceleration_[k] + acceleration[k]);
-        }
-        for (int i = 0; i < group_.directions; ++i) {
-            for (std::int64_t k = 0; k <= group_.size; ++k) joint_force_.view().at(k, i) += force.view().at(k, i);
-            for (std::int64_t k = 0; k < tips; ++k)
-                if (group_.has_jointed_tip(k)) tip_force_.view().at(k, i) += tip_force.view().at(k, i);
-        }
-        exchange_ends();
-    }
+    void refine_on_host();
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
     JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }
@@ -463,3 +395,5 @@ class JointDynamicsIn final : public JointDynamics {
 };
 
 }  // namespace catena
+
+#include "integrate/joint_dynamics_solved_again.hpp"
