@@ -11,6 +11,7 @@
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 #include "tests/support/random_chain.hpp"
+#include "tests/support/variants.hpp"
 
 namespace catena::test {
 namespace {
@@ -94,10 +95,9 @@ DenseVector expected_rates(ChainSpec const& chain, std::vector<Coordinate> const
     return matrix.fullPivLu().solve(a).cwiseQuotient(rotor);
 }
 
-class Implicit : public testing::TestWithParam<Backend> {};
+class Implicit : public WithVariant {};
 
 TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
-    auto const communicator = serial_communicator();
     double worst = 0;
     for (std::uint64_t seed = 1; seed <= 90; ++seed) {
         RandomChainOptions options;
@@ -108,9 +108,8 @@ TEST_P(Implicit, AccelerationsAreThoseOfADenseSolve) {
         options.driven = seed % 5 == 0 ? 0.2 : 0;
         ChainSpec chain = random_chain(seed, options);
         double const h = std::pow(10.0, static_cast<double>(seed % 13) - 6);  // B from far below M to far above
-        Scene scene = scene_of(chain);
-        scene.solver.backend = GetParam();
-        ChainSystem system(scene, Axes::joint, *communicator, h);
+        Scene const scene = with_backend(scene_of(chain));
+        ChainSystem system(scene, Axes::joint, *communicator_, h);
         system.joint().front()->drift(0.0);  // whose velocities are those before a kick
         system.evaluate();
         auto const found = system.accelerations().joint_acceleration;
@@ -310,8 +309,10 @@ TEST(ImplicitLangevin, IsOfSecondOrderWithoutFriction) {
     EXPECT_NEAR(slope, 2.0, 0.1);
 }
 
-INSTANTIATE_TEST_SUITE_P(Backends, Implicit, testing::Values(Backend::serial, Backend::segments, Backend::openmp),
-                         [](auto const& backend) { return std::string(name_of(backend.param)); });
+INSTANTIATE_TEST_SUITE_P(Backends, Implicit,
+                         testing::Values(Variant{Backend::serial, Handles::projected}, Variant{Backend::segments, Handles::projected},
+                                         Variant{Backend::openmp, Handles::projected}, Variant{Backend::cuda, Handles::projected}),
+                         name_of_variant);
 
 }  // namespace
 }  // namespace catena::test
