@@ -48,7 +48,7 @@ struct Resting {
 
     template <class Place>
     CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body) const {
-        return {leaf.matrix(body), leaf.bias(loads, body)};
+        return leaf.segment(loads, body);
     }
     template <class Place>
     CATENA_HD void accelerate(Place kept, Vector<RealAt<Place>, Leaf::K> const& inboard, Vector<RealAt<Place>, Leaf::K> const& outboard,

@@ -13,15 +13,16 @@ class Executor {
   public:
     explicit Executor(SimdLevel simd) : simd_(simd) {}
     virtual ~Executor() = default;
-    /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side by side.
-    virtual void for_ranges(std::int64_t count, std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
+    /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side by side, where that pays: `each` of
+    /// these is worth so many bodies, runs or merges.
+    virtual void for_ranges(std::int64_t count, int each, std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
     virtual int threads() const = 0;
     /// Of each thread, where several items go side by side.
     SimdLevel simd() const { return simd_; }
 
     template <class Item>
     void for_each(std::int64_t count, Item const& item) const {
-        for_ranges(count, [&item](std::int64_t begin, std::int64_t end) {
+        for_ranges(count, 1, [&item](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i) item(i);
         });
     }

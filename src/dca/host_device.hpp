@@ -46,6 +46,12 @@ CATENA_HD Real fused(Real a, Real b, Real c) {
     return a * b + c;
 }
 
+/// c - a b in one rounding where `fused` is.
+template <class Real>
+CATENA_HD Real less_product(Real a, Real b, Real c) {
+    return fused(-a, b, c);
+}
+
 /// place = min(place, value), for any number of threads at once.
 CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
 #if defined(__CUDA_ARCH__)

@@ -10,10 +10,13 @@
 
 namespace catena::dca {
 
-/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which the caller keeps forces.
-template <class Real, int K>
+/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which the caller keeps forces. The first ones
+/// alone have forces, orthonormal, unless `any_forces`: then all may (screws).
+template <class Real, int K, bool any_forces = false>
 struct Handle {
-    Matrix<Real, 3, K> torque, force;
+    static constexpr int forces = any_forces || K < 3 ? K : 3;
+    Matrix<Real, 3, K> torque;
+    Matrix<Real, 3, forces> force;
 };
 /// Whose first three directions are forces along the very axes in which forces are kept, the others torques about them.
 template <class Real, int K>
@@ -27,10 +30,11 @@ struct GroundHandle {
 /// torques about the columns of `angular` (the same axes, `angular` in body axes, `linear` where forces are kept).
 /// The last column is the joint's axis, the free direction of a revolute joint. K < 3: the first K forces alone (a link's
 /// direction; the plane of a planar chain).
-template <int K, class Real>
-CATENA_HD Handle<Real, K> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular, Matrix<Real, 3, 3> const& linear) {
+template <int K, bool any_forces = false, class Real>
+CATENA_HD Handle<Real, K, any_forces> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular,
+                                                  Matrix<Real, 3, 3> const& linear) {
     static_assert(K >= 1 && K <= 6);
-    Handle<Real, K> h;
+    Handle<Real, K, any_forces> h;
     CATENA_UNROLL
     for (int j = 0; j < (K < 3 ? K : 3); ++j) {
         h.torque.set_column(j, cross(r, angular.column(j)));
@@ -39,7 +43,7 @@ CATENA_HD Handle<Real, K> make_handle(Vector<Real, 3> const& r, Matrix<Real, 3, 
     CATENA_UNROLL
     for (int j = 3; j < K; ++j) {
         h.torque.set_column(j, angular.column(j - 3));
-        h.force.set_column(j, Vector<Real, 3>::zero());
+        if constexpr (any_forces) h.force.set_column(j, Vector<Real, 3>::zero());
     }
     return h;
 }
@@ -60,7 +64,7 @@ struct Screw {
 /// Mixes places 2 and 5 of directions that were made for a revolute joint with the same axis: a force and a torque along it.
 template <int K, class Real>
 CATENA_HD void turn_to_screw(Screw<Real> const& screw, Vector<Real, 3> const& r, Matrix<Real, 3, 3> const& angular,
-                             Matrix<Real, 3, 3> const& linear, Handle<Real, K>& h) {
+                             Matrix<Real, 3, 3> const& linear, Handle<Real, K, true>& h) {
     static_assert(K >= 5);
     Vector<Real, 3> const arm = cross(r, angular.column(2)), axis = angular.column(2), along = linear.column(2);
     h.torque.set_column(2, screw.c * arm - screw.s * axis);
@@ -90,12 +94,11 @@ CATENA_HD SegmentMatrix<Real, K> turning_matrix(Symmetric<Real, 3> const& invers
         }
     return s;
 }
-/// Precondition: inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite. The forces' columns of both handles orthonormal,
-/// unless `any_forces`: then every direction may have a force (screws).
-template <bool any_forces = false, class Real, int K>
-CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, Handle<Real, K> const& h1,
-                                             Handle<Real, K> const& h2) {
-    constexpr int forces = any_forces ? K : K < 3 ? K : 3;
+/// Precondition: inverse_mass >= 0, inverse_inertia (body axes) positive semidefinite.
+template <class Real, int K, bool any_forces>
+CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia,
+                                             Handle<Real, K, any_forces> const& h1, Handle<Real, K, any_forces> const& h2) {
+    constexpr int forces = Handle<Real, K, any_forces>::forces;
     SegmentMatrix<Real, K> s = turning_matrix(inverse_inertia, h1.torque, h2.torque);
     CATENA_UNROLL
     for (int a = 0; a < forces; ++a) {
@@ -114,10 +117,10 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
     }
     return s;
 }
-template <bool any_forces = false, class Real, int K>
+template <class Real, int K>
 CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 3> const& inverse_inertia, GroundHandle<Real, K> const& h1,
                                              GroundHandle<Real, K> const& h2) {
-    static_assert(!any_forces && (K == 3 || K == 6));
+    static_assert(K == 3 || K == 6);
     SegmentMatrix<Real, K> s = turning_matrix(inverse_inertia, h1.torque, h2.torque);
     CATENA_UNROLL
     for (int a = 0; a < 3; ++a) {
@@ -130,9 +133,13 @@ CATENA_HD SegmentMatrix<Real, K> leaf_matrix(Real inverse_mass, Symmetric<Real, 
 
 /// Acceleration along the handle's directions of a body with angular acceleration `alpha` (body axes) and acceleration `a` of
 /// its centre of mass, velocity terms left out.
-template <class Real, int K>
-CATENA_HD Vector<Real, K> along(Handle<Real, K> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
-    return transposed_times(h.torque, alpha) + transposed_times(h.force, a);
+template <class Real, int K, bool any_forces>
+CATENA_HD Vector<Real, K> along(Handle<Real, K, any_forces> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
+    Vector<Real, K> v = transposed_times(h.torque, alpha);
+    auto const pushed = transposed_times(h.force, a);
+    CATENA_UNROLL
+    for (int i = 0; i < Handle<Real, K, any_forces>::forces; ++i) v[i] = v[i] + pushed[i];
+    return v;
 }
 template <class Real, int K>
 CATENA_HD Vector<Real, K> along(GroundHandle<Real, K> const& h, Vector<Real, 3> const& alpha, Vector<Real, 3> const& a) {
@@ -142,16 +149,19 @@ CATENA_HD Vector<Real, K> along(GroundHandle<Real, K> const& h, Vector<Real, 3> 
     return v;
 }
 /// Force and torque of unit wrenches, so many of each.
-template <class Real, int K>
-CATENA_HD Vector<Real, 3> push(Handle<Real, K> const& h, Vector<Real, K> const& f) {
-    return h.force * f;
+template <class Real, int K, bool any_forces>
+CATENA_HD Vector<Real, 3> push(Handle<Real, K, any_forces> const& h, Vector<Real, K> const& f) {
+    Vector<Real, Handle<Real, K, any_forces>::forces> pushing;
+    CATENA_UNROLL
+    for (int i = 0; i < Handle<Real, K, any_forces>::forces; ++i) pushing[i] = f[i];
+    return h.force * pushing;
 }
 template <class Real, int K>
 CATENA_HD Vector<Real, 3> push(GroundHandle<Real, K> const&, Vector<Real, K> const& f) {
     return {{f[0], f[1], f[2]}};
 }
-template <class Real, int K>
-CATENA_HD Vector<Real, 3> moment(Handle<Real, K> const& h, Vector<Real, K> const& f) {
+template <class Real, int K, bool any_forces>
+CATENA_HD Vector<Real, 3> moment(Handle<Real, K, any_forces> const& h, Vector<Real, K> const& f) {
     return h.torque * f;
 }
 template <class Real, int K>

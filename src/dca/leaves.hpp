@@ -85,11 +85,21 @@ class BeadLeaf {
     ConstView<3> direction_, tip_direction_;
 };
 
-/// The two handles of a body, and the rotation from B to the axes in which forces are kept.
-template <class Real, class Handle>
+/// The two handles of a body that keeps forces in its own axes.
+template <class Handle>
 struct HandlePair {
     Handle h1, h2;
+    template <class Real>
+    CATENA_HD static Vector<Real, 3> in_force_axes(Vector<Real, 3> const& v) {
+        return v;
+    }
+};
+/// Of one that keeps them elsewhere, and the rotation from B there.
+template <class Handle, class Real>
+struct TurnedHandlePair {
+    Handle h1, h2;
     Matrix<Real, 3, 3> to_force_axes;
+    CATENA_HD Vector<Real, 3> in_force_axes(Vector<Real, 3> const& v) const { return to_force_axes * v; }
 };
 
 /// What the joint on the inboard side yields is part of a body's handle (formulas, "the compliance form"): Z + P B^-1 P^T. The angular
@@ -129,12 +139,12 @@ class MeetingFrames {
         return {read(group_.r1, k), read(r2_, k), read(rotation_, k), read(group_.axes1, k), read(axes2_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<RealAt<Place>, Handle<RealAt<Place>, K>> handles(State<RealAt<Place>> const& state, Place k) const {
+    CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(State<RealAt<Place>> const& state, Place k) const {
         using Real = RealAt<Place>;
         using Axes = Matrix<Real, 3, 3>;
         Axes const turn = to_matrix(as_quaternion(state.rotation));
         Axes const e1 = transposed_times(turn, as_matrix(state.axes1)), e2 = as_matrix(state.axes2);
-        HandlePair<Real, Handle<Real, K>> pair{make_handle<K>(state.r1, e1, e1), make_handle<K>(state.r2, e2, e2), Axes::identity()};
+        HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1), make_handle<K, sliding>(state.r2, e2, e2)};
         if constexpr (sliding) {
             auto const s1 = read(group_.screw, k);
             turn_to_screw(Screw<Real>{s1[0], s1[1]}, state.r1, e1, e1, pair.h1);
@@ -182,7 +192,7 @@ class GroundFrames {
         return {read(r1_, k), read(r2_, k), read(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<RealAt<Place>, GroundHandle<RealAt<Place>, K>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
+    CATENA_HD TurnedHandlePair<GroundHandle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
         using Axes = Matrix<RealAt<Place>, 3, 3>;
         Axes const turn = to_matrix(as_quaternion(state.rotation));
         Axes const to_body = transpose(turn);
@@ -217,7 +227,7 @@ class LinkFrames {
                 read(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<RealAt<Place>, Handle<RealAt<Place>, K>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
+    CATENA_HD TurnedHandlePair<Handle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
         using Axes = Matrix<RealAt<Place>, 3, 3>;
         Axes const turn = to_matrix(as_quaternion(state.rotation)), e1 = axes(state.inboard), e2 = axes(state.outboard);
         return {make_handle<K>(state.r1, transposed_times(turn, e1), e1), make_handle<K>(state.r2, transposed_times(turn, e2), e2), turn};
@@ -272,29 +282,18 @@ class BodyLeaf {
                 read_or_zero(loads.omega, k)};
     }
     template <class Place>
-    CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body) const {
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads, Body<Place> const& body) const {
         auto const h = frames_.handles(body.state, body.k);
-        auto s = leaf_matrix<Frames::any_forces>(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);
-        if constexpr (!Frames::on_links) frames_.yield(body.k, s);
-        return s;
+        return {matrix(body, h), bias(loads, body, h)};
     }
-    template <class Place>
-    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body) const {
-        using Real = RealAt<Place>;
-        auto const h = frames_.handles(body.state, body.k);
-        Vector<Real, 3> a1 = body.inverse_mass * body.force, a2 = a1;
-        Vector<Real, 3> const alpha = loads.torque.origin ? body.inverse_inertia * applied_torque(loads, body) : Vector<Real, 3>::zero();
-        if (loads.omega.origin) {
-            Vector<Real, 3> const& w = body.omega;
-            a1 = a1 + h.to_force_axes * cross(w, cross(w, body.state.r1));
-            a2 = a2 + h.to_force_axes * cross(w, cross(w, body.state.r2));
-        }
-        SegmentBias<Real, K> b{along(h.h1, alpha, a1), along(h.h2, alpha, a2)};
-        add_joint_biases(group_, loads, body.k, b);
-        return b;
+    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
+        auto const at_k = body(LoadsView{}, k);
+        return matrix(at_k, frames_.handles(at_k.state, k));
     }
-    CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const { return matrix(body(LoadsView{}, k)); }
-    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const { return bias(loads, body(loads, k)); }
+    CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
+        auto const at_k = body(loads, k);
+        return bias(loads, at_k, frames_.handles(at_k.state, k));
+    }
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
@@ -308,6 +307,26 @@ class BodyLeaf {
     }
 
   private:
+    template <class Place, class Handles>
+    CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body, Handles const& h) const {
+        auto s = leaf_matrix(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);
+        if constexpr (!Frames::on_links) frames_.yield(body.k, s);
+        return s;
+    }
+    template <class Place, class Handles>
+    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body, Handles const& h) const {
+        using Real = RealAt<Place>;
+        Vector<Real, 3> a1 = body.inverse_mass * body.force, a2 = a1;
+        Vector<Real, 3> const alpha = loads.torque.origin ? body.inverse_inertia * applied_torque(loads, body) : Vector<Real, 3>::zero();
+        if (loads.omega.origin) {
+            Vector<Real, 3> const& w = body.omega;
+            a1 = a1 + h.in_force_axes(cross(w, cross(w, body.state.r1)));
+            a2 = a2 + h.in_force_axes(cross(w, cross(w, body.state.r2)));
+        }
+        SegmentBias<Real, K> b{along(h.h1, alpha, a1), along(h.h2, alpha, a2)};
+        add_joint_biases(group_, loads, body.k, b);
+        return b;
+    }
     template <class Place>
     CATENA_HD static Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body) {
         if (!loads.gyroscopic) return body.torque;

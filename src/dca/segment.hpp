@@ -46,12 +46,12 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
         for (int j = 0; j < i; ++j) {
             Real s = z(i, j);
             CATENA_UNROLL
-            for (int k = 0; k < j; ++k) s = fused(-(f(i, k) * pivot[k]), f(j, k), s);
+            for (int k = 0; k < j; ++k) s = less_product(f(i, k) * pivot[k], f(j, k), s);
             f(i, j) = active ? s * f(j, j) : Real(0);
         }
         Real s = z(i, i);
         CATENA_UNROLL
-        for (int k = 0; k < i; ++k) s = fused(-(f(i, k) * pivot[k]), f(i, k), s);
+        for (int k = 0; k < i; ++k) s = less_product(f(i, k) * pivot[k], f(i, k), s);
         pivot[i] = active ? s : Real(0);
         f(i, i) = active ? Real(1) / s : Real(0);
     }
@@ -64,7 +64,7 @@ CATENA_HD Vector<Real, K> solve_lower(Symmetric<Real, K> const& f, Vector<Real, 
     CATENA_UNROLL
     for (int i = 1; i < K; ++i)
         CATENA_UNROLL
-        for (int j = 0; j < i; ++j) b[i] = fused(-f(i, j), b[j], b[i]);
+        for (int j = 0; j < i; ++j) b[i] = less_product(f(i, j), b[j], b[i]);
     return b;
 }
 
@@ -76,7 +76,7 @@ CATENA_HD Matrix<Real, K, K> solve_lower(Symmetric<Real, K> const& f, Matrix<Rea
         CATENA_UNROLL
         for (int j = 0; j < i; ++j)
             CATENA_UNROLL
-            for (int c = 0; c < K; ++c) b(i, c) = fused(-f(i, j), b(j, c), b(i, c));
+            for (int c = 0; c < K; ++c) b(i, c) = less_product(f(i, j), b(j, c), b(i, c));
     return b;
 }
 
@@ -88,57 +88,80 @@ CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, 
     CATENA_UNROLL
     for (int i = K - 1; i > 0; --i)
         CATENA_UNROLL
-        for (int j = 0; j < i; ++j) y[j] = fused(-f(i, j), y[i], y[j]);
+        for (int j = 0; j < i; ++j) y[j] = less_product(f(i, j), y[i], y[j]);
     return y;
 }
 
-/// Joins `inboard` and `outboard` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
-/// W = D (D^T Z D)^-1 D^T). Precondition: z22 of `inboard` + z11 of `outboard` is positive definite on these.
+/// z - m^T S^-1 m
 template <class Real, int K>
-CATENA_HD SegmentMatrix<Real, K> assemble(SegmentMatrix<Real, K> const& inboard, SegmentMatrix<Real, K> const& outboard, int restricted,
-                                          JointMatrix<Real, K>& joint) {
-    Symmetric<Real, K> z;
+CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Real, K, K> const& m, Symmetric<Real, K> const& factor) {
+    Symmetric<Real, K> s;
     CATENA_UNROLL
-    for (int i = 0; i < Symmetric<Real, K>::size; ++i) z.data[i] = inboard.z22.data[i] + outboard.z11.data[i];
-    joint.factor = factorize(z, restricted);
-    joint.inboard = solve_lower(joint.factor, transpose(inboard.z12));
-    joint.outboard = solve_lower(joint.factor, outboard.z12);
-
-    SegmentMatrix<Real, K> s;
-    Matrix<Real, K, K> scaled_in, scaled_out;   // S^-1 times inboard, outboard
-    CATENA_UNROLL
-    for (int i = 0; i < K; ++i)
+    for (int j = 0; j < K; ++j) {  // column by column: what each needs fits a processor's registers
+        Vector<Real, K> scaled;
         CATENA_UNROLL
-        for (int j = 0; j < K; ++j) {
-            scaled_in(i, j) = joint.factor(i, i) * joint.inboard(i, j);
-            scaled_out(i, j) = joint.factor(i, i) * joint.outboard(i, j);
-        }
-    CATENA_UNROLL
-    for (int i = 0; i < K; ++i)
+        for (int k = 0; k < K; ++k) scaled[k] = factor(k, k) * m(k, j);
         CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) {
-            Real a = inboard.z11(i, j), b = outboard.z22(i, j);
+        for (int i = j; i < K; ++i) {
+            s(i, j) = z(i, j);
             CATENA_UNROLL
-            for (int k = 0; k < K; ++k) {
-                a = fused(-joint.inboard(k, i), scaled_in(k, j), a);
-                b = fused(-joint.outboard(k, i), scaled_out(k, j), b);
-            }
-            s.z11(i, j) = a;
-            s.z22(i, j) = b;
+            for (int k = 0; k < K; ++k) s(i, j) = less_product(m(k, i), scaled[k], s(i, j));
         }
-    s.z12 = transposed_times(joint.inboard, scaled_out);
+    }
     return s;
 }
-
-/// The biases of the joined segment; `offset` keeps L^-1 (b2^A - b1^B) for the disassembly (Y of the chapter).
+/// a^T S^-1 b
 template <class Real, int K>
-CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> const& inboard, SegmentBias<Real, K> const& outboard,
-                                        JointMatrix<Real, K> const& joint, Vector<Real, K>& offset) {
-    offset = solve_lower(joint.factor, inboard.b2 - outboard.b1);
+CATENA_HD Matrix<Real, K, K> weighted_product(Matrix<Real, K, K> const& a, Symmetric<Real, K> const& factor, Matrix<Real, K, K> const& b) {
+    Matrix<Real, K, K> p;
+    CATENA_UNROLL
+    for (int j = 0; j < K; ++j) {
+        Vector<Real, K> scaled;
+        CATENA_UNROLL
+        for (int k = 0; k < K; ++k) scaled[k] = factor(k, k) * b(k, j);
+        p.set_column(j, transposed_times(a, scaled));
+    }
+    return p;
+}
+
+/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
+/// W = D (D^T Z D)^-1 D^T). Not `with_first`: z11 stays as it was, for those who ask only for the forces at joints to come.
+/// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
+template <bool with_first = true, class Real, int K>
+CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint) {
+    Symmetric<Real, K> z;
+    CATENA_UNROLL
+    for (int i = 0; i < Symmetric<Real, K>::size; ++i) z.data[i] = segment.z22.data[i] + outboard.z11.data[i];
+    joint.factor = factorize(z, restricted);
+    joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
+    joint.outboard = solve_lower(joint.factor, outboard.z12);
+    segment.z22 = less_square(outboard.z22, joint.outboard, joint.factor);
+    segment.z12 = weighted_product(joint.inboard, joint.factor, joint.outboard);
+    if constexpr (with_first) segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
+}
+/// Their biases; `offset` keeps L^-1 (b2 - b1 of `outboard`) for the disassembly (Y of the chapter). Not `with_first`: b1 stays.
+template <bool with_first = true, class Real, int K>
+CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const& outboard, JointMatrix<Real, K> const& joint,
+                      Vector<Real, K>& offset) {
+    offset = solve_lower(joint.factor, segment.b2 - outboard.b1);
     Vector<Real, K> y;
     CATENA_UNROLL
     for (int i = 0; i < K; ++i) y[i] = joint.factor(i, i) * offset[i];
-    return {inboard.b1 - transposed_times(joint.inboard, y), outboard.b2 + transposed_times(joint.outboard, y)};
+    if constexpr (with_first) segment.b1 = segment.b1 - transposed_times(joint.inboard, y);
+    segment.b2 = outboard.b2 + transposed_times(joint.outboard, y);
+}
+/// The joined segment, and its biases.
+template <class Real, int K>
+CATENA_HD SegmentMatrix<Real, K> assemble(SegmentMatrix<Real, K> inboard, SegmentMatrix<Real, K> const& outboard, int restricted,
+                                          JointMatrix<Real, K>& joint) {
+    append(inboard, outboard, restricted, joint);
+    return inboard;
+}
+template <class Real, int K>
+CATENA_HD SegmentBias<Real, K> assemble(SegmentBias<Real, K> inboard, SegmentBias<Real, K> const& outboard,
+                                        JointMatrix<Real, K> const& joint, Vector<Real, K>& offset) {
+    append(inboard, outboard, joint, offset);
+    return inboard;
 }
 
 /// The joint force on the outboard body (chapter, eq 2.12) from those at the joined segment's own two joints: `first` acts on
@@ -177,7 +200,7 @@ CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K
         for (int j = 0; j <= i; ++j) {
             Real z = outboard.z22(i, j);
             CATENA_UNROLL
-            for (int k = 0; k < K; ++k) z = fused(-e.gain(k, i), factor(k, k) * e.gain(k, j), z);
+            for (int k = 0; k < K; ++k) z = less_product(e.gain(k, i), factor(k, k) * e.gain(k, j), z);
             z22(i, j) = z;
         }
     }

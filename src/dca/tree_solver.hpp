@@ -42,9 +42,9 @@ class TreeSolver final : public ChainSolver {
                   joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
         space_.put(lost_.data(), none_lost);
         if constexpr (has_lanes) {
-            aside_.emplace(group, space.simd());
+            aside_.emplace(group, model_.view(), space.simd());
             if (aside_->items() > 0)
-                rest_.emplace(aside_->others(), schedule_.levels, schedule_.roots, schedule_.slots, K);
+                lay_out_rest();
             else
                 aside_.reset();
         }
@@ -153,6 +153,15 @@ class TreeSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
 
+    /// What does not go side by side: runs, one level after the other, and all that is above these.
+    void lay_out_rest() {
+        auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
+            rest_.emplace_back(runs, levels, roots, schedule_.slots, K);
+        };
+        add(aside_->other_runs(), no_levels_, no_roots_);
+        for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
+        add(no_runs_, aside_->upper_levels(), schedule_.roots);
+    }
     typename Space::Blocks const& blocks() {
         if (!blocks_) blocks_.emplace(group_);
         return *blocks_;
@@ -193,7 +202,17 @@ class TreeSolver final : public ChainSolver {
             if (aside_) {
                 RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
                 aside_->climb(space_, work);
-                up_and_down(*rest_, sweep, gather, out);
+                space_.climb(rest_.front(), sweep);
+                for (std::size_t l = 0; l < aside_->levels().size(); ++l) {
+                    aside_->climb_level(space_, sweeps_, l);
+                    space_.climb(rest_[1 + l], sweep);
+                }
+                up_and_down(rest_.back(), sweep, gather, out);
+                for (std::size_t l = aside_->levels().size(); l-- > 0;) {
+                    aside_->descend_level(space_, sweeps_, l);
+                    space_.descend(rest_[1 + l], sweep);
+                }
+                space_.descend(rest_.front(), sweep);
                 return aside_->descend(space_, work);
             }
         up_and_down(tree_, sweep, gather, out);
@@ -254,6 +273,8 @@ class TreeSolver final : public ChainSolver {
     Communicator const& communicator_;
     typename Space::Model model_;
     std::vector<Run> no_runs_;
+    std::vector<std::vector<Merge>> no_levels_;
+    std::vector<Root> no_roots_;
     typename Space::Tree tree_, top_;
     typename Space::template List<TopCopy> top_copies_;
     Records<SegmentMatrix<double, K>, Order::plain> matrices_;
@@ -263,8 +284,8 @@ class TreeSolver final : public ChainSolver {
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;
-    std::optional<SideBySide<Leaf>> aside_;  // whose runs are not in `rest_`
-    std::optional<typename Space::Tree> rest_;
+    std::optional<SideBySide<Leaf>> aside_;
+    std::vector<typename Space::Tree> rest_;
     /// Of invert(), where it is asked for.
     struct Inverse {
         explicit Inverse(Schedule const& schedule) : own(schedule.joints), across(schedule.slots) {}

@@ -37,11 +37,11 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
         return;
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
-    int const lanes = lanes_of(level);
+    lanes_ = lanes_of(level);
     for (std::int64_t k = 0; k < group.size;) {
-        if (go_side_by_side(group, springs, k, lanes)) {
+        if (go_side_by_side(group, springs, k, lanes_)) {
             first_.push_back(k);
-            k += lanes;
+            k += lanes_;
         } else {
             others_.push_back(k);
             ++k;

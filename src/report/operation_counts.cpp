@@ -46,11 +46,11 @@ HandleOperations count_bodies() {
     Matrix3 const axes = Matrix3::identity();
     Vector3 const r{{one, one, one}}, w = r;
     Symmetric<Counted, 3> inertia = Symmetric<Counted, 3>::zero();
-    Handle<Counted, K> h1, h2;
+    Handle<Counted, K, sliding> h1, h2;
     auto const handles = [&] {
         Matrix3 const e1 = transposed_times(to_matrix(rotation), axes);
-        h1 = make_handle<K>(r, e1, e1);
-        h2 = make_handle<K>(r, axes, axes);
+        h1 = make_handle<K, sliding>(r, e1, e1);
+        h2 = make_handle<K, sliding>(r, axes, axes);
         if constexpr (sliding) {
             turn_to_screw(Screw<Counted>{one, one}, r, e1, e1, h1);
             turn_to_screw(Screw<Counted>{one, one}, r, axes, axes, h2);
@@ -58,19 +58,19 @@ HandleOperations count_bodies() {
     };
     h.leaf_matrices = count([&] {
         handles();
-        keep(leaf_matrix<sliding>(one, inertia, h1, h2));
+        keep(leaf_matrix(one, inertia, h1, h2));
     });
     h.leaf_biases = count([&] {
         handles();
         Vector3 const a = one * r, alpha = inertia * r;
-        keep(along(h1, alpha, a + axes * cross(w, cross(w, r))));
-        keep(along(h2, alpha, a + axes * cross(w, cross(w, r))));
+        keep(along(h1, alpha, a + cross(w, cross(w, r))));
+        keep(along(h2, alpha, a + cross(w, cross(w, r))));
     });
     Vector<Counted, K> const force = Vector<Counted, K>::zero();
     h.leaf_accelerations = count([&] {
         handles();
-        keep(inertia * (r + (h1.torque * force - h2.torque * force)));
-        keep(one * (r + (h1.force * force - h2.force * force)));
+        keep(inertia * (r + (moment(h1, force) - moment(h2, force))));
+        keep(one * (r + (push(h1, force) - push(h2, force))));
     });
     return h;
 }

@@ -29,6 +29,7 @@ class Real {
     friend Real operator/(Real a, Real b) { return Real(a.v_ / b.v_); }
     friend Real operator-(Real a) { return Real(-a.v_); }
     friend Real fused(Real a, Real b, Real c) { return Real(_mm256_fmadd_pd(a.v_, b.v_, c.v_)); }
+    friend Real less_product(Real a, Real b, Real c) { return Real(_mm256_fnmadd_pd(a.v_, b.v_, c.v_)); }
     friend Real sqrt(Real a) { return Real(_mm256_sqrt_pd(a.v_)); }
     friend Real floor(Real a) { return Real(_mm256_floor_pd(a.v_)); }
     friend Real truncated(Real a) { return Real(_mm256_round_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }

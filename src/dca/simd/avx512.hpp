@@ -28,6 +28,7 @@ class Real {
     friend Real operator/(Real a, Real b) { return Real(a.v_ / b.v_); }
     friend Real operator-(Real a) { return Real(-a.v_); }
     friend Real fused(Real a, Real b, Real c) { return Real(_mm512_fmadd_pd(a.v_, b.v_, c.v_)); }
+    friend Real less_product(Real a, Real b, Real c) { return Real(_mm512_fnmadd_pd(a.v_, b.v_, c.v_)); }
     friend Real sqrt(Real a) { return Real(_mm512_sqrt_pd(a.v_)); }
     friend Real floor(Real a) { return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC)); }
     friend Real truncated(Real a) { return Real(_mm512_roundscale_pd(a.v_, _MM_FROUND_TO_ZERO | _MM_FROUND_NO_EXC)); }

@@ -1,69 +1,97 @@
 // What the lanes of a vector do with their runs: the operations of evaluation.hpp and tree_sweeps.hpp, in the same order, on vectors.
 #pragma once
 
+#include <new>
 #include <utility>
 
 #include "dca/evaluation.hpp"
+#include "dca/simd/records.hpp"
 #include "dca/simd/runs.hpp"
 #include "dca/simd/tile.hpp"
 
 namespace catena::dca {
 
-/// Bodies side by side as Evaluation takes them, their arrays in a tile.
+/// Bodies side by side as Evaluation takes them: their constants in the order of lanes, the rest in a tile.
 template <class Real, class Leaf>
-struct BodiesInTile {
+class BodiesInTile {
     static constexpr int K = Leaf::K;
-    static auto make(Tile<Real>& tile, RunWork<Leaf> const& work) {
-        GroupView group{};
-        group.inverse_mass = tile.in(work.group.inverse_mass);
-        ConfigurationView at{};
-        LoadsView loads{};
-        loads.force = tile.in(work.loads.force);
+
+  public:
+    BodiesInTile(Tile<Real>& tile, RunWork<Leaf> const& work) {
+        loads_.force = tile.in(work.loads.force);
         if constexpr (Leaf::beads) {
-            at.position = tile.in(work.configuration.position, true);
-            loads.velocity = tile.in(work.loads.velocity, true);
-            return typename Leaf::Moving{group, nullptr, at, loads};
+            group_.inverse_mass = tile.in(work.group.inverse_mass);
+            at_.position = tile.in(work.configuration.position, true);
+            loads_.velocity = tile.in(work.loads.velocity, true);
         } else {
             using Frames = typename Leaf::Frames;
-            group.inverse_inertia = tile.in(work.group.inverse_inertia);
-            group.r1 = tile.in(work.group.r1);
-            group.r2 = tile.in(work.configuration.r2.origin ? work.configuration.r2 : work.group.r2);
-            at.rotation = tile.in(work.configuration.rotation);
-            if constexpr (Frames::in_joints) {
-                group.axes1 = tile.in(work.group.axes1);
-                group.axes2 = tile.in(work.configuration.axes2.origin ? work.configuration.axes2 : work.group.axes2);
-            }
-            if constexpr (Frames::on_links) at.direction = tile.in(work.configuration.direction, true);
-            if constexpr (Frames::any_forces) group.screw = tile.in(work.group.screw, true);
-            loads.torque = tile.in(work.loads.torque);
-            loads.omega = tile.in(work.loads.omega);
-            loads.bias = tile.template in_directions<K>(work.loads.bias);
-            loads.gyroscopic = work.loads.gyroscopic;
-            Leaf leaf(group);
-            leaf.set(at);
-            return Resting<Leaf>{leaf, nullptr, loads};
+            at_.rotation = tile.in(work.configuration.rotation);
+            at_.r2 = tile.in(work.configuration.r2);
+            if constexpr (Frames::in_joints) at_.axes2 = tile.in(work.configuration.axes2);
+            if constexpr (Frames::on_links) at_.direction = tile.in(work.configuration.direction, true);
+            if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
+            loads_.torque = tile.in(work.loads.torque);
+            loads_.omega = tile.in(work.loads.omega);
+            loads_.bias = tile.template in_directions<K>(work.loads.bias);
+            loads_.gyroscopic = work.loads.gyroscopic;
         }
     }
-    using type = decltype(make(std::declval<Tile<Real>&>(), std::declval<RunWork<Leaf> const&>()));
+    /// Those of a part.
+    auto with(Constants<Real> constants) const {
+        GroupView group = group_;
+        each_constant<Leaf>(group, [&constants]<int D>(ConstView<D>& view) { view = constants.template next<D>(); });
+        if constexpr (Leaf::beads) {
+            return typename Leaf::Moving{group, nullptr, at_, loads_};
+        } else {
+            Leaf leaf(group);
+            leaf.set(at_);
+            return Resting<Leaf>{leaf, nullptr, loads_};
+        }
+    }
+
+  private:
+    GroupView group_{};
+    ConfigurationView at_{};
+    LoadsView loads_{};
 };
+
+/// The joints between segments, one a lane, as the way down needs them.
+template <class Real, int K>
+struct NodeInLanes {
+    JointMatrix<Real, K> joint;
+    Vector<Real, K> offset;
+
+    template <bool with_first = true>
+    void append(BiasedSegment<Real, K>& segment, BiasedSegment<Real, K> const& outboard) {
+        dca::append<with_first>(segment.matrix, outboard.matrix, K, joint);
+        dca::append<with_first>(segment.bias, outboard.bias, joint, offset);
+    }
+    Vector<Real, K> force(Vector<Real, K> const& first, Vector<Real, K> const& next) const {
+        return disassemble(joint, offset, first, next);
+    }
+};
+/// Of joints number[j] + further.
+template <class Leaf, class Real, int K>
+void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, Symmetric<Real, K> const& factor) {
+    unsigned bad = 0;
+    for (int i = 0; i < K; ++i) bad |= factor(i, i).not_positive();
+    for (int j = 0; bad != 0 && j < Real::lanes; ++j)
+        if ((bad >> j & 1U) != 0) sweeps.note({static_cast<unsigned long long>(number[j] + further)});
+}
 
 template <class Real, class Leaf>
 class RunsSideBySide {
     static constexpr int K = Leaf::K, lanes = Real::lanes;
-    using Bodies = typename BodiesInTile<Real, Leaf>::type;
+    using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
     using Body = typename Bodies::template Body<Column<Real>>;
     using Kept = decltype(Bodies::keep(std::declval<Body const&>()));
     using Segment = BiasedSegment<Real, K>;
     using Directions = Vector<Real, K>;
-    struct Node {
-        JointMatrix<Real, K> joint;
-        Directions offset;
-    };
-    static constexpr int numbers = static_cast<int>(sizeof(Node) / sizeof(Real));
-    static_assert(numbers * (parts_of_run - 1) == node_numbers<K>);
+    using Node = NodeInLanes<Real, K>;
+    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
 
   public:
-    explicit RunsSideBySide(RunWork<Leaf> const& work) : work_(work), bodies_(BodiesInTile<Real, Leaf>::make(tile_, work)) {
+    explicit RunsSideBySide(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
         out_.acceleration = tile_.out(work.out.acceleration);
         out_.alpha = tile_.out(work.out.alpha);
         out_.joint_force = tile_.template out_directions<K>(work.out.joint_force);
@@ -71,61 +99,65 @@ class RunsSideBySide {
 
     void climb(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
-        Segment whole;
+        Segment whole, part;
         CATENA_NO_UNROLL
         for (int p = 0; p < parts_of_run; ++p) {
-            Node const node = add(whole, part(runs, p), runs, p, p * part_length);
-            if (p > 0) store(place(item, p), node);
+            make_part(runs, p, p == 0 ? whole : part);
+            if (p == 0) continue;
+            Node node;
+            append(whole, part, node, runs, p * part_length);
+            store_vectors<Real>(place(item, p), node);
         }
-        scatter(whole.matrix, work_.sweeps.matrices, runs.slot);
-        scatter(whole.bias, work_.sweeps.biases, runs.slot);
+        scatter<Real>(whole.matrix, work_.sweeps.matrices, runs.slot);
+        scatter<Real>(whole.bias, work_.sweeps.biases, runs.slot);
     }
     void descend(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
-        Directions const first = gather(work_.sweeps.forces, runs.body);
-        Directions next = gather(work_.sweeps.forces, runs.next);
+        Directions first, next;
+        gather<Real>(work_.sweeps.forces, runs.body, first);
+        gather<Real>(work_.sweeps.forces, runs.next, next);
         CATENA_NO_UNROLL
         for (int p = parts_of_run - 1; p >= 0; --p) {
-            Directions const at_begin = p == 0 ? first : force(load(place(item, p)), first, next);
+            Directions at_begin = first;
+            if (p > 0) {
+                Node node;
+                load_vectors<Real>(place(item, p), node);
+                at_begin = node.force(first, next);
+            }
             down(runs, p, at_begin, next);
             next = at_begin;
         }
     }
 
   private:
-    double* place(std::int64_t item, int p) const { return work_.nodes + (item * node_numbers<K> + (p - 1) * numbers) * lanes; }
+    double* place(std::int64_t item, int p) const { return work_.nodes + (item * (parts_of_run - 1) + p - 1) * node_numbers<K> * lanes; }
     /// The next item's bodies usually follow, or come before where the way is back.
-    void fill(RunsInLanes const& runs, int p, int ahead) { tile_.fill(columns(runs, p), ahead * lanes * longest_run); }
+    void fill(RunsInLanes const& runs, int p, int ahead) {
+        tile_.fill(columns(runs, p), ahead * bodies_of_item);
+        if constexpr (constants_of<Leaf> > 0) {
+            constexpr int block = constants_of<Leaf> * part_length * lanes;
+            double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
+            for (int n = 0; n < block; n += 8) Tile<Real>::ask_for(here + 2 * ahead * block + n);
+            bodies_ = in_tile_.with({here});
+        }
+    }
     std::int64_t const* columns(RunsInLanes const& runs, int p) {
         for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
         return first_;
     }
-    Segment part(RunsInLanes const& runs, int p) {
+    void make_part(RunsInLanes const& runs, int p, Segment& segment) {
         fill(runs, p, 1);
         auto bodies = bodies_.walk(Column<Real>{0});
-        Segment segment;
-        each_body<K>(0, part_length, [&](int i) { add(segment, bodies_.segment(bodies.body(i)), runs, i, p * part_length + i); });
-        return segment;
-    }
-    /// Number i of those that a segment is joined of, in a loop: what makes them is long, and should stand there once.
-    Node add(Segment& segment, Segment const& outboard, RunsInLanes const& runs, int i, int body) const {
+        Segment body;
         Node node;
-        if (i == 0) {
-            segment = outboard;
-        } else {
-            segment = joined(segment, outboard, node);
-            watch(runs, body, node.joint.factor);
-        }
-        return node;
+        each_body<K>(0, part_length, [&](int i) {
+            ::new (i == 0 ? &segment : &body) Segment(bodies_.segment(bodies.body(i)));
+            if (i > 0) append(segment, body, node, runs, p * part_length + i);
+        });
     }
-    Segment joined(Segment const& inboard, Segment const& outboard, Node& node) const {
-        Segment segment;
-        segment.matrix = assemble(inboard.matrix, outboard.matrix, K, node.joint);
-        segment.bias = assemble(inboard.bias, outboard.bias, node.joint, node.offset);
-        return segment;
-    }
-    Directions force(Node const& node, Directions const& first, Directions const& next) const {
-        return disassemble(node.joint, node.offset, first, next);
+    void append(Segment& segment, Segment const& outboard, Node& node, RunsInLanes const& runs, int body) const {
+        node.append(segment, outboard);
+        watch(work_.sweeps, runs.body, body, node.joint.factor);
     }
     void down(RunsInLanes const& runs, int p, Directions const& first, Directions next) {
         fill(runs, p, -1);
@@ -133,7 +165,7 @@ class RunsSideBySide {
             eliminate_again(first, next);
         else
             assemble_again(first, next);
-        tile_.empty(columns(runs, p));
+        tile_.empty(columns(runs, p), -bodies_of_item);
     }
     /// As Evaluation::down.
     void eliminate_again(Directions const& first, Directions next) {
@@ -158,12 +190,13 @@ class RunsSideBySide {
         Node node[part_length];
         Kept kept[part_length];
         auto bodies = bodies_.walk(Column<Real>{0});
-        Segment segment;
+        Segment segment, outboard;
         each_body<K>(0, part_length, [&](int i) {
-            Segment const outboard = take(bodies, i, kept);
-            segment = i == 0 ? outboard : joined(segment, outboard, node[i]);
+            ::new (i == 0 ? &segment : &outboard) Segment(take(bodies, i, kept));
+            if (i == 0) return;
+            node[i].template append<false>(segment, outboard);
         });
-        back(kept, first, next, [&](int i) { return force(node[i], first, next); });
+        back(kept, first, next, [&](int i) { return node[i].force(first, next); });
     }
     template <class Bodies>
     Segment take(Bodies& bodies, int i, Kept* kept) const {
@@ -185,42 +218,9 @@ class RunsSideBySide {
         bodies_.accelerate(kept, inboard, outboard, out_);
         store_forces(GroupView{}, out_, Column<Real>{i}, inboard, outboard);
     }
-    void watch(RunsInLanes const& runs, int body, Symmetric<Real, K> const& factor) const {
-        unsigned bad = 0;
-        for (int i = 0; i < K; ++i) bad |= factor(i, i).not_positive();
-        for (int j = 0; bad != 0 && j < lanes; ++j)
-            if ((bad >> j & 1U) != 0) work_.sweeps.note({static_cast<unsigned long long>(runs.body[j] + body)});
-    }
-
-    template <class Record>
-    static void store(double* to, Record const& record) {
-        auto const* const values = reinterpret_cast<Real const*>(&record);
-        for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n].store(to + n * lanes);
-    }
-    static Node load(double const* from) {
-        Node node;
-        auto* const values = reinterpret_cast<Real*>(&node);
-        for (int n = 0; n < numbers; ++n) values[n] = Real::load(from + n * lanes);
-        return node;
-    }
-    template <class Record, class OfOne>
-    static void scatter(Record const& record, RecordsView<OfOne, Order::plain> to, std::int64_t const* index) {
-        constexpr int count = static_cast<int>(sizeof(OfOne) / sizeof(double));
-        alignas(64) double values[count * lanes];
-        store(values, record);
-        for (int j = 0; j < lanes; ++j)
-            for (int n = 0; n < count; ++n) to.origin[index[j] * count + n] = values[n * lanes + j];
-    }
-    static Directions gather(RecordsView<Vector<double, K>, Order::by_body> from, std::int64_t const* index) {
-        std::int64_t at[lanes];
-        for (int j = 0; j < lanes; ++j) at[j] = index[j] * K;
-        Directions v;
-        for (int n = 0; n < K; ++n) v[n] = Real::pick(from.origin + n, at);
-        return v;
-    }
-
     RunWork<Leaf> const& work_;
     Tile<Real> tile_;
+    BodiesInTile<Real, Leaf> in_tile_;
     Bodies bodies_;
     AccelerationsView out_{};
     std::int64_t first_[lanes];
@@ -237,8 +237,41 @@ template <class Real, class Leaf>
     for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>
+[[gnu::flatten]] void climb_merges(MergeWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
+    constexpr int K = Leaf::K;
+    auto const& [sweeps, merges, nodes] = work;
+    for (std::int64_t item = begin; item < end; ++item) {
+        MergesInLanes const& m = merges[item];
+        BiasedSegment<Real, K> segment, outboard;
+        gather<Real>(sweeps.matrices, m.inboard, segment.matrix);
+        gather<Real>(sweeps.biases, m.inboard, segment.bias);
+        gather<Real>(sweeps.matrices, m.outboard, outboard.matrix);
+        gather<Real>(sweeps.biases, m.outboard, outboard.bias);
+        NodeInLanes<Real, K> node;
+        node.append(segment, outboard);
+        watch(sweeps, m.joint, 0, node.joint.factor);
+        store_vectors<Real>(nodes + item * node_numbers<K> * Real::lanes, node);
+        scatter<Real>(segment.matrix, sweeps.matrices, m.slot);
+        scatter<Real>(segment.bias, sweeps.biases, m.slot);
+    }
+}
+template <class Real, class Leaf>
+[[gnu::flatten]] void descend_merges(MergeWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
+    constexpr int K = Leaf::K;
+    auto const& [sweeps, merges, nodes] = work;
+    for (std::int64_t item = begin; item < end; ++item) {
+        MergesInLanes const& m = merges[item];
+        NodeInLanes<Real, K> node;
+        load_vectors<Real>(nodes + item * node_numbers<K> * Real::lanes, node);
+        Vector<Real, K> first, next;
+        gather<Real>(sweeps.forces, m.first, first);
+        gather<Real>(sweeps.forces, m.next, next);
+        scatter<Real>(node.force(first, next), sweeps.forces, m.joint);
+    }
+}
+template <class Real, class Leaf>
 RunKernels<Leaf> kernels() {
-    return {climb_runs<Real, Leaf>, descend_runs<Real, Leaf>};
+    return {climb_runs<Real, Leaf>, descend_runs<Real, Leaf>, climb_merges<Real, Leaf>, descend_merges<Real, Leaf>};
 }
 
 }  // namespace catena::dca

@@ -1,6 +1,6 @@
-// Runs of bodies side by side, one in each lane of a vector: what the sources of the instruction sets offer. These sources must not share
-// a function with the rest of the program, or the linker may keep the one that not every processor runs: nothing of the standard library
-// passes this door, and all that is behind it is a template over their own vectors.
+// Runs of bodies side by side, one in each lane of a vector, and merges of the tree above them: what the sources of the instruction sets
+// offer. These sources must not share a function with the rest of the program, or the linker may keep the one that not every processor
+// runs: nothing of the standard library passes this door, and all that is behind it is a template over their own vectors.
 #pragma once
 
 #include "dca/simd/level.hpp"
@@ -15,6 +15,31 @@ struct RunsInLanes {
     std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
 };
 
+/// action(view) for all of a group that bodies side by side do not turn over again in every sweep. A bead has too little of it.
+template <class Leaf, class Action>
+constexpr void each_constant(GroupView& group, Action const& action) {
+    if constexpr (!Leaf::beads) {
+        action(group.inverse_mass);
+        action(group.inverse_inertia);
+        action(group.r1);
+        action(group.r2);
+        if constexpr (Leaf::Frames::in_joints) {
+            action(group.axes1);
+            action(group.axes2);
+        }
+    }
+}
+template <class Leaf>
+consteval int count_constants() {
+    GroupView group;
+    int count = 0;
+    each_constant<Leaf>(group, [&count]<int D>(ConstView<D> const&) { count += D; });
+    return count;
+}
+/// Numbers a body.
+template <class Leaf>
+inline constexpr int constants_of = count_constants<Leaf>();
+
 template <class Leaf>
 struct RunWork {
     TreeSweeps<Leaf> sweeps;
@@ -23,18 +48,32 @@ struct RunWork {
     LoadsView loads;
     AccelerationsView out;
     RunsInLanes const* runs = nullptr;
-    double* nodes = nullptr;  // node_numbers<K> vectors for every item of `runs`: the joints between parts, from climb to descend
+    double const* constants = nullptr;  // [part of an item of `runs`][number][body][lane]
+    double* nodes = nullptr;            // node_numbers<K> vectors for every joint between parts, from climb to descend
 };
 template <int K>
-inline constexpr int node_numbers =
-    (parts_of_run - 1) * static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
+inline constexpr int node_numbers = static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
+
+/// Merges of one level of the tree.
+struct MergesInLanes {
+    std::int64_t inboard[most_lanes], outboard[most_lanes], slot[most_lanes];
+    std::int64_t first[most_lanes], joint[most_lanes], next[most_lanes];
+};
+template <class Leaf>
+struct MergeWork {
+    TreeSweeps<Leaf> const& sweeps;
+    MergesInLanes const* merges;
+    double* nodes;  // node_numbers<K> vectors an item, from climb to descend
+};
 
 /// For items [begin, end) of RunWork::runs. climb: from the bodies to the runs' slots, matrices and biases at once; descend: from the
-/// forces at the runs' ends to the bodies' accelerations.
+/// forces at the runs' ends to the bodies' accelerations. climb_merges, descend_merges: the same of MergeWork::merges.
 template <class Leaf>
 struct RunKernels {
     void (*climb)(RunWork<Leaf> const&, std::int64_t begin, std::int64_t end);
     void (*descend)(RunWork<Leaf> const&, std::int64_t begin, std::int64_t end);
+    void (*climb_merges)(MergeWork<Leaf> const&, std::int64_t begin, std::int64_t end);
+    void (*descend_merges)(MergeWork<Leaf> const&, std::int64_t begin, std::int64_t end);
 };
 
 /// Precondition: simd_levels() has them.

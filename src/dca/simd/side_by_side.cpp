@@ -34,4 +34,31 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes) {
     return dealt;
 }
 
+std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
+    std::vector<LevelDealtOut> all;
+    for (std::vector<Merge> const& level : group.schedule.levels) {
+        LevelDealtOut dealt{{}, {{}}};
+        int lane = 0;
+        MergesInLanes item{};
+        std::vector<Merge> waiting;
+        for (Merge const& m : level) {
+            if (group.restricted_of_joint[static_cast<std::size_t>(m.joint)] != group.directions) {
+                dealt.others.front().push_back(m);
+                continue;
+            }
+            item.inboard[lane] = m.inboard, item.outboard[lane] = m.outboard, item.slot[lane] = m.slot;
+            item.first[lane] = m.first, item.joint[lane] = m.joint, item.next[lane] = m.next;
+            waiting.push_back(m);
+            if (++lane < lanes) continue;
+            dealt.items.push_back(item);
+            waiting.clear();
+            lane = 0;
+        }
+        dealt.others.front().insert(dealt.others.front().end(), waiting.begin(), waiting.end());
+        if (dealt.items.empty()) break;
+        all.push_back(std::move(dealt));
+    }
+    return all;
+}
+
 }  // namespace catena::dca

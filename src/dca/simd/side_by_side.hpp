@@ -1,6 +1,7 @@
 // A group's runs that go side by side: which ones, in what order, and the kernels of an instruction set for them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <vector>
@@ -40,34 +41,96 @@ class AlignedNumbers {
     LongArray<double> storage_;
 };
 
+/// As RunWork has it, of every body's `numbers` by body(k, place).
+template <class Body>
+AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lanes, int numbers, Body const& body) {
+    AlignedNumbers all(std::ssize(items) * longest_run * numbers * lanes);
+    std::vector<double> of_one(static_cast<std::size_t>(numbers));
+    double* part = all.data();
+    for (RunsInLanes const& item : items)
+        for (int p = 0; p < parts_of_run; ++p, part += part_length * numbers * lanes)
+            for (int i = 0; i < part_length; ++i)
+                for (int lane = 0; lane < lanes; ++lane) {
+                    body(item.body[lane] + p * part_length + i, of_one.data());
+                    for (int n = 0; n < numbers; ++n) part[(n * part_length + i) * lanes + lane] = of_one[static_cast<std::size_t>(n)];
+                }
+    return all;
+}
+
+/// Merges of one level in whole vectors, and those that are left over, as a list of one level.
+struct LevelDealtOut {
+    std::vector<MergesInLanes> items;
+    std::vector<std::vector<Merge>> others;
+};
+/// The lowest levels, as far as they fill vectors with merges at joints that carry what handles do.
+std::vector<LevelDealtOut> deal_out_levels(ChainGroup const&, int lanes);
+
+/// Runs, and the levels above them, that go side by side; with what is left to others of each.
 template <class Leaf>
 class SideBySide {
   public:
-    SideBySide(ChainGroup const& group, SimdLevel level) {
+    /// `view`: of the group.
+    SideBySide(ChainGroup const& group, GroupView view, SimdLevel level) {
         if (level == SimdLevel::off) return;
+        lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
-        runs_ = deal_out_runs(group, lanes_of(level));
-        nodes_ = AlignedNumbers(items() * node_numbers<Leaf::K> * lanes_of(level));
+        runs_ = deal_out_runs(group, lanes_);
+        nodes_ = AlignedNumbers(items() * (parts_of_run - 1) * node_numbers<Leaf::K> * lanes_);
+        constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {
+            each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
+                auto const numbers = field.load(k);
+                place = std::copy_n(numbers.data, D, place);
+            });
+        });
+        if (items() == 0) return;
+        levels_ = deal_out_levels(group, lanes_);
+        for (LevelDealtOut const& l : levels_) merge_nodes_.emplace_back(std::ssize(l.items) * node_numbers<Leaf::K> * lanes_);
+        upper_.assign(group.schedule.levels.begin() + std::ssize(levels_), group.schedule.levels.end());
     }
     std::int64_t items() const { return std::ssize(runs_.items); }
-    std::vector<Run> const& others() const { return runs_.others; }
-    std::int64_t bytes() const { return nodes_.bytes() + items() * static_cast<std::int64_t>(sizeof(RunsInLanes)); }
+    std::vector<Run> const& other_runs() const { return runs_.others; }
+    std::vector<LevelDealtOut> const& levels() const { return levels_; }
+    std::vector<std::vector<Merge>> const& upper_levels() const { return upper_; }
+    std::int64_t bytes() const {
+        std::int64_t all = nodes_.bytes() + constants_.bytes() + items() * static_cast<std::int64_t>(sizeof(RunsInLanes));
+        for (std::size_t l = 0; l < levels_.size(); ++l)
+            all += merge_nodes_[l].bytes() + std::ssize(levels_[l].items) * static_cast<std::int64_t>(sizeof(MergesInLanes));
+        return all;
+    }
 
     template <class Space>
     void climb(Space const& space, RunWork<Leaf>& work) {
         work.runs = runs_.items.data();
+        work.constants = constants_.data();
         work.nodes = nodes_.data();
-        space.over_ranges(items(), [&](std::int64_t begin, std::int64_t end) { kernels_.climb(work, begin, end); });
+        space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) { kernels_.climb(work, begin, end); });
     }
     template <class Space>
     void descend(Space const& space, RunWork<Leaf> const& work) {
-        space.over_ranges(items(), [&](std::int64_t begin, std::int64_t end) { kernels_.descend(work, begin, end); });
+        space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) { kernels_.descend(work, begin, end); });
+    }
+    template <class Space>
+    void climb_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l) {
+        over_level(space, sweeps, l, kernels_.climb_merges);
+    }
+    template <class Space>
+    void descend_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l) {
+        over_level(space, sweeps, l, kernels_.descend_merges);
     }
 
   private:
+    template <class Space, class Kernel>
+    void over_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l, Kernel const& kernel) {
+        MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data()};
+        space.over_ranges(std::ssize(levels_[l].items), lanes_, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
+    }
     RunKernels<Leaf> kernels_{};
+    int lanes_ = 1;
     RunsDealtOut runs_;
-    AlignedNumbers nodes_;
+    std::vector<LevelDealtOut> levels_;
+    std::vector<std::vector<Merge>> upper_;
+    AlignedNumbers nodes_, constants_;
+    std::vector<AlignedNumbers> merge_nodes_;
 };
 
 }  // namespace catena::dca

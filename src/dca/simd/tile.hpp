@@ -53,11 +53,26 @@ CATENA_HD Vector<Real, 3> outboard_screw(GroupView const& group, Column<Real> co
     return read(group.screw, c + 1);
 }
 
+/// A part's constants as they lie in RunWork::constants: number after number.
+template <class Real>
+struct Constants {
+    double const* place;
+    template <int D>
+    ConstView<D> next() {
+        constexpr std::int64_t pitch = part_length * Real::lanes;
+        ConstView<D> const here{place, pitch, part_length};
+        place += D * pitch;
+        return here;
+    }
+};
+
 template <class Real>
 class Tile {
     static constexpr int lanes = Real::lanes, columns = part_length + 2, most = 64;
 
   public:
+    /// Brings what lies there near, but not into the nearest cache, which a part's own work fills.
+    static void ask_for(double const* place) { __builtin_prefetch(place, 0, 2); }
     /// The same view of the tile; none of none. `neighbours`: columns -1 and part_length too.
     template <int D>
     ConstView<D> in(ConstView<D> view, bool neighbours = false) {
@@ -91,14 +106,18 @@ class Tile {
         for (int n = 0; n < count_; ++n) {
             double* const to = place(n);
             Real::read_four(source_[n].origin, first, to);
-            for (int j = 0; j < lanes; ++j) __builtin_prefetch(source_[n].origin + first[j] + ahead);
+            for (int j = 0; j < lanes; ++j) ask_for(source_[n].origin + first[j] + ahead);
             if (!source_[n].neighbours) continue;
             Real::pick(source_[n].origin - 1, first).store(to - lanes);
             Real::pick(source_[n].origin + part_length, first).store(to + part_length * lanes);
         }
     }
-    void empty(std::int64_t const* first) {
-        for (int n = 0; n < written_; ++n) Real::write_four(place(most - 1 - n), target_[n], first);
+    /// As fill.
+    void empty(std::int64_t const* first, std::int64_t ahead) {
+        for (int n = 0; n < written_; ++n) {
+            Real::write_four(place(most - 1 - n), target_[n], first);
+            for (int j = 0; j < lanes; ++j) __builtin_prefetch(target_[n] + first[j] + ahead, 1, 2);
+        }
     }
 
   private:

@@ -1,0 +1,54 @@
+// Records (dca/records.hpp) of as many places as a vector has lanes, a number of all of them in each vector.
+#pragma once
+
+#include "dca/records.hpp"
+
+namespace catena::dca {
+
+/// Vectors one after the other.
+template <class Real, class Record>
+void store_vectors(double* to, Record const& record) {
+    auto const* const values = reinterpret_cast<Real const*>(&record);
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n].store(to + n * Real::lanes);
+}
+template <class Real, class Record>
+void load_vectors(double const* from, Record& record) {
+    auto* const values = reinterpret_cast<Real*>(&record);
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n] = Real::load(from + n * Real::lanes);
+}
+
+/// action(n) for numbers n to n + 3, which together are all of `count`; some twice where they are not a multiple of four.
+template <int count, class Action>
+void by_four(Action const& action) {
+    static_assert(count >= 4);
+    for (int n = 0; n + 4 <= count; n += 4) action(n);
+    if constexpr (count % 4 != 0) action(count - 4);
+}
+template <class Real, class Record, class OfOne, Order order>
+void scatter(Record const& record, RecordsView<OfOne, order> to, std::int64_t const* index) {
+    constexpr int count = RecordsView<OfOne, order>::numbers, lanes = Real::lanes;
+    alignas(64) double values[count * lanes];
+    store_vectors<Real>(values, record);
+    std::int64_t at[lanes];
+    for (int j = 0; j < lanes; ++j) at[j] = index[j] * count;
+    if constexpr (count >= 4)
+        by_four<count>([&](int n) { Real::write_four(values + n * lanes, to.origin + n, at); });
+    else
+        for (int j = 0; j < lanes; ++j)
+            for (int n = 0; n < count; ++n) to.origin[at[j] + n] = values[n * lanes + j];
+}
+template <class Real, class Record, class OfOne, Order order>
+void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& record) {
+    constexpr int count = RecordsView<OfOne, order>::numbers, lanes = Real::lanes;
+    static_assert(sizeof(Record) == count * sizeof(Real));
+    std::int64_t at[lanes];
+    for (int j = 0; j < lanes; ++j) at[j] = index[j] * count;
+    alignas(64) double values[count * lanes];
+    if constexpr (count >= 4)
+        by_four<count>([&](int n) { Real::read_four(from.origin + n, at, values + n * lanes); });
+    else
+        for (int n = 0; n < count; ++n) Real::pick(from.origin + n, at).store(values + n * lanes);
+    load_vectors<Real>(values, record);
+}
+
+}  // namespace catena::dca
