@@ -17,7 +17,8 @@ class BodiesInTile {
     static constexpr int K = Leaf::K;
 
   public:
-    BodiesInTile(Tile<Real>& tile, RunWork<Leaf> const& work) {
+    template <class Tile>
+    BodiesInTile(Tile& tile, RunWork<Leaf> const& work) {
         loads_.force = tile.in(work.loads.force);
         if constexpr (Leaf::beads) {
             group_.inverse_mass = tile.in(work.group.inverse_mass);
@@ -82,6 +83,10 @@ void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int furth
 template <class Real, class Leaf>
 class RunsSideBySide {
     static constexpr int K = Leaf::K, lanes = Real::lanes;
+    // Beads' neighbours are of the same run for the most part.
+    static constexpr bool by_runs = Leaf::beads;
+    using InTile = Tile<Real, by_runs ? longest_run : part_length>;
+    static_assert(!by_runs || constants_of<Leaf> == 0);
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
     using Body = typename Bodies::template Body<Column<Real>>;
     using Kept = decltype(Bodies::keep(std::declval<Body const&>()));
@@ -133,11 +138,15 @@ class RunsSideBySide {
     double* place(std::int64_t item, int p) const { return work_.nodes + (item * (parts_of_run - 1) + p - 1) * node_numbers<K> * lanes; }
     /// The next item's bodies usually follow, or come before where the way is back.
     void fill(RunsInLanes const& runs, int p, int ahead) {
-        tile_.fill(columns(runs, p), ahead * bodies_of_item);
+        begin_ = {by_runs ? p * part_length : 0};
+        if (!by_runs)
+            tile_.fill(columns(runs, p), ahead * bodies_of_item);
+        else if (p == (ahead > 0 ? 0 : parts_of_run - 1))
+            tile_.fill(runs.body, ahead * bodies_of_item);
         if constexpr (constants_of<Leaf> > 0) {
             constexpr int block = constants_of<Leaf> * part_length * lanes;
             double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            for (int n = 0; n < block; n += 8) Tile<Real>::ask_for(here + 2 * ahead * block + n);
+            for (int n = 0; n < block; n += 8) InTile::ask_for(here + 2 * ahead * block + n);
             bodies_ = in_tile_.with({here});
         }
     }
@@ -147,7 +156,7 @@ class RunsSideBySide {
     }
     void make_part(RunsInLanes const& runs, int p, Segment& segment) {
         fill(runs, p, 1);
-        auto bodies = bodies_.walk(Column<Real>{0});
+        auto bodies = bodies_.walk(begin_);
         Segment body;
         Node node;
         each_body<K>(0, part_length, [&](int i) {
@@ -165,13 +174,16 @@ class RunsSideBySide {
             eliminate_again(first, next);
         else
             assemble_again(first, next);
-        tile_.empty(columns(runs, p), -bodies_of_item);
+        if (!by_runs)
+            tile_.empty(columns(runs, p), -bodies_of_item);
+        else if (p == 0)
+            tile_.empty(runs.body, -bodies_of_item);
     }
     /// As Evaluation::down.
     void eliminate_again(Directions const& first, Directions next) {
         Elimination<Real, K> passed[part_length];
         Kept kept[part_length];
-        auto bodies = bodies_.walk(Column<Real>{0});
+        auto bodies = bodies_.walk(begin_);
         Symmetric<Real, K> z22;
         Directions b2;
         each_body<K>(0, part_length, [&](int i) {
@@ -189,7 +201,7 @@ class RunsSideBySide {
     void assemble_again(Directions const& first, Directions next) {
         Node node[part_length];
         Kept kept[part_length];
-        auto bodies = bodies_.walk(Column<Real>{0});
+        auto bodies = bodies_.walk(begin_);
         Segment segment, outboard;
         each_body<K>(0, part_length, [&](int i) {
             ::new (i == 0 ? &segment : &outboard) Segment(take(bodies, i, kept));
@@ -216,10 +228,11 @@ class RunsSideBySide {
     }
     void give(Kept const& kept, int i, Directions const& inboard, Directions const& outboard) {
         bodies_.accelerate(kept, inboard, outboard, out_);
-        store_forces(GroupView{}, out_, Column<Real>{i}, inboard, outboard);
+        store_forces(GroupView{}, out_, begin_ + i, inboard, outboard);
     }
     RunWork<Leaf> const& work_;
-    Tile<Real> tile_;
+    InTile tile_;
+    Column<Real> begin_;  // of the part in the tile
     BodiesInTile<Real, Leaf> in_tile_;
     Bodies bodies_;
     AccelerationsView out_{};

@@ -66,18 +66,19 @@ struct Constants {
     }
 };
 
-template <class Real>
+/// Of `length` bodies of each run.
+template <class Real, int length>
 class Tile {
-    static constexpr int lanes = Real::lanes, columns = part_length + 2, most = 64;
+    static constexpr int lanes = Real::lanes, columns = length + 2, most = 64;
 
   public:
     /// Brings what lies there near, but not into the nearest cache, which a part's own work fills.
     static void ask_for(double const* place) { __builtin_prefetch(place, 0, 2); }
-    /// The same view of the tile; none of none. `neighbours`: columns -1 and part_length too.
+    /// The same view of the tile; none of none. `neighbours`: columns -1 and `length` too.
     template <int D>
     ConstView<D> in(ConstView<D> view, bool neighbours = false) {
         if (!view.origin) return {};
-        ConstView<D> const here{place(count_), pitch, part_length};
+        ConstView<D> const here{place(count_), pitch, length};
         if (count_ + D + written_ > most) __builtin_trap();
         for (int i = 0; i < D; ++i) source_[count_++] = {view.origin + i * view.pitch, neighbours};
         return here;
@@ -85,7 +86,7 @@ class Tile {
     template <int D>
     View<D> out(View<D> view) {
         if (!view.origin) return {};
-        View<D> const here{place(most - written_ - D), pitch, part_length};
+        View<D> const here{place(most - written_ - D), pitch, length};
         if (count_ + written_ + D > most) __builtin_trap();
         for (int i = 0; i < D; ++i) target_[written_ + D - 1 - i] = view.origin + i * view.pitch;
         written_ += D;
@@ -104,24 +105,28 @@ class Tile {
     /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time.
     void fill(std::int64_t const* first, std::int64_t ahead) {
         for (int n = 0; n < count_; ++n) {
+            double const* const from = source_[n].origin;
             double* const to = place(n);
-            Real::read_four(source_[n].origin, first, to);
-            for (int j = 0; j < lanes; ++j) ask_for(source_[n].origin + first[j] + ahead);
+            for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
+            for (int i = 0; i < length; i += numbers_of_line)
+                for (int j = 0; j < lanes; ++j) ask_for(from + i + first[j] + ahead);
             if (!source_[n].neighbours) continue;
-            Real::pick(source_[n].origin - 1, first).store(to - lanes);
-            Real::pick(source_[n].origin + part_length, first).store(to + part_length * lanes);
+            Real::pick(from - 1, first).store(to - lanes);
+            Real::pick(from + length, first).store(to + length * lanes);
         }
     }
     /// As fill.
     void empty(std::int64_t const* first, std::int64_t ahead) {
         for (int n = 0; n < written_; ++n) {
-            Real::write_four(place(most - 1 - n), target_[n], first);
-            for (int j = 0; j < lanes; ++j) __builtin_prefetch(target_[n] + first[j] + ahead, 1, 2);
+            for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
+            for (int i = 0; i < length; i += numbers_of_line)
+                for (int j = 0; j < lanes; ++j) __builtin_prefetch(target_[n] + i + first[j] + ahead, 1, 2);
         }
     }
 
   private:
     static constexpr std::int64_t pitch = columns * lanes;
+    static constexpr int numbers_of_line = 8;  // of a cache
     double* place(int n) { return numbers_ + n * pitch + lanes; }
     struct Source {
         double const* origin;
