@@ -82,7 +82,7 @@ struct Evaluation {
             Body const body = part.body(i);
             Joint joint;
             Directions offset;
-            segment = joined(segment, bodies.segment(body), begin + i, body.restricted, joint, offset, found);
+            append(segment, bodies.segment(body), begin + i, body.restricted, joint, offset, found);
         });
         s.note(found);
         return segment;
@@ -95,7 +95,8 @@ struct Evaluation {
     }
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k, Node& node) const {
         Lost found;
-        Segment const segment = joined(inboard, outboard, k, s.restricted[k], node.joint, node.offset, found);
+        Segment segment = inboard;
+        append(segment, outboard, k, s.restricted[k], node.joint, node.offset, found);
         s.note(found);
         return segment;
     }
@@ -144,13 +145,11 @@ struct Evaluation {
     }
 
   private:
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k, int restricted, Joint& joint,
-                             Directions& offset, Lost& found) const {
-        Segment segment;
-        segment.matrix = assemble(inboard.matrix, outboard.matrix, restricted, joint);
+    CATENA_HD void append(Segment& segment, Segment const& outboard, std::int64_t k, int restricted, Joint& joint, Directions& offset,
+                          Lost& found) const {
+        dca::append(segment.matrix, outboard.matrix, restricted, joint);
         s.watch(k, restricted, joint.factor, found);
-        segment.bias = assemble(inboard.bias, outboard.bias, joint, offset);
-        return segment;
+        dca::append(segment.bias, outboard.bias, joint, offset);
     }
     CATENA_HD void give(Kept const& body, std::int64_t k, Directions const& inboard, Directions const& outboard) const {
         bodies.accelerate(body, inboard, outboard, out);

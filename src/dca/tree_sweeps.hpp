@@ -116,14 +116,15 @@ struct MatrixSweep {
         Segment segment = s.leaf.matrix(begin);
         each_body<Leaf::K>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
             std::int64_t const k = begin + i;
-            segment = joined(segment, s.leaf.matrix(k), k, found);
+            append(segment, s.leaf.matrix(k), k, found);
         });
         s.note(found);
         return segment;
     }
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
         Lost found;
-        Segment const segment = joined(inboard, outboard, k, found);
+        Segment segment = inboard;
+        append(segment, outboard, k, found);
         s.note(found);
         return segment;
     }
@@ -134,12 +135,11 @@ struct MatrixSweep {
     }
 
   private:
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k, Lost& found) const {
+    CATENA_HD void append(Segment& segment, Segment const& outboard, std::int64_t k, Lost& found) const {
         Joint joint;
-        Segment const segment = assemble(inboard, outboard, s.restricted[k], joint);
+        dca::append(segment, outboard, s.restricted[k], joint);
         s.joints.store(k, joint);
         s.watch(k, joint.factor, found);
-        return segment;
     }
 };
 
@@ -160,14 +160,13 @@ struct BiasSweep {
         Segment segment = s.leaf.bias(loads, begin);
         each_body<Leaf::K>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
             std::int64_t const k = begin + i;
-            segment = joined(segment, s.leaf.bias(loads, k), k);
+            append(segment, s.leaf.bias(loads, k), k);
         });
         return segment;
     }
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
-        Directions offset;
-        Segment const segment = assemble(inboard, outboard, s.joints.load(k), offset);
-        s.offsets.store(k, offset);
+        Segment segment = inboard;
+        append(segment, outboard, k);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
@@ -192,6 +191,13 @@ struct BiasSweep {
             store_forces(s.leaf.group(), out, k, at_k, next);
             next = at_k;
         });
+    }
+
+  private:
+    CATENA_HD void append(Segment& segment, Segment const& outboard, std::int64_t k) const {
+        Directions offset;
+        dca::append(segment, outboard, s.joints.load(k), offset);
+        s.offsets.store(k, offset);
     }
 };
 
