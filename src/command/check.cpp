@@ -30,7 +30,8 @@ Json dynamics_json(Scene const& scene) {
             {"temperature", d.temperature},
             {"friction", d.friction},
             {"seed", d.seed},
-            {"constraint_tolerance", d.constraint_tolerance}};
+            {"constraint_tolerance", d.constraint_tolerance},
+            {"tolerance", d.tolerance > 0 ? Json(d.tolerance) : Json()}};
 }
 
 Json handles_json(Scene const& scene) {

@@ -109,6 +109,7 @@ std::string dynamics_text(Scene const& scene) {
                                    static_cast<double>(d.steps) * d.step, time_unit(scene));
     if (is_langevin(d.integrator))
         text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
+    if (d.tolerance > 0) text += fmt::format(", inner steps to tolerance {:g}", d.tolerance);
     if (d.fixman) text += fmt::format(", Fixman potential at {} K", d.temperature);
     return text;
 }

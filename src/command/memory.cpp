@@ -43,6 +43,7 @@ SolverSizes sizes_for(int directions) {
 
 // Doubles a body in the model's and the dynamics' arrays (chain/chain_group.hpp and integrate/), apart from those of the directions.
 constexpr double bead_numbers = 3 + 7 * 3, body_numbers = 45 + 3 * 4 + 16 * 3;
+constexpr double embedded_numbers = 6 * 7;            // rates of stages
 constexpr double joint_numbers = 13 + 2 * 7 + 2 * 3;  // the scan; where a step starts and its sum; rates
 
 double scene_bytes(ChainSpec const& chain) {
@@ -71,8 +72,9 @@ Memory memory_of(Scene const& scene, int ranks) {
         auto const n = static_cast<double>(chain.size());
         SolverSizes const size = sizes_for(k);
         dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()), dca::run_length_for(pairwise));
-        double const numbers =
-            chain.is_beads() ? bead_numbers : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? joint_numbers : 0);
+        double const numbers = chain.is_beads() ? bead_numbers
+                                                : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? joint_numbers : 0) +
+                                                      (scene.dynamics.integrator == Integrator::dormand_prince ? embedded_numbers : 0);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

@@ -92,7 +92,7 @@ StepPlan step_of(Scene const& scene) {
         case Integrator::staggered:
         case Integrator::baoab:
         case Integrator::implicit_baoab: {
-            SweepsAStep const sweeps = sweeps_a_step(d);
+            SweepsAStep const sweeps = sweeps_a_step(d, tips);
             std::string text = sweeps.matrices == 2 ? "2 matrix sweeps (kick, thermostat); 3 bias sweeps (2 of the kick, thermostat)"
                                                     : "1 matrix sweep; 2 bias sweeps of the kick";
             if (is_implicit(d.integrator)) text += "; joints with springs or dampers are implicit: their chains have full handles";
@@ -100,10 +100,14 @@ StepPlan step_of(Scene const& scene) {
             return {sweeps.matrices + corrections, sweeps.biases + corrections, 0, text};
         }
         case Integrator::rk4:
+        case Integrator::dormand_prince:
         case Integrator::velocity_verlet: {
-            int const evaluations = d.integrator == Integrator::rk4 ? 4 : 1;
+            int const evaluations = sweeps_a_step(d, tips).matrices;
+            std::string const inner =
+                d.tolerance > 0 ? fmt::format(" for each inner step, of which there are as many as tolerance {:g} asks for", d.tolerance)
+                                : "";
             return {evaluations + corrections, evaluations + corrections, 0,
-                    fmt::format("{}: a matrix sweep and a bias sweep each; {}", counted(evaluations, "evaluation", "evaluations"),
+                    fmt::format("{}{}: a matrix sweep and a bias sweep each; {}", counted(evaluations, "evaluation", "evaluations"), inner,
                                 tips ? fmt::format("{} corrections that close jointed tips, again a matrix sweep and a bias sweep each",
                                                    corrections)
                                      : "joint coordinates need no projection")};

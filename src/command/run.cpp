@@ -47,6 +47,11 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
     std::string rate = fmt::format("{}: {:.4g} steps/s", duration_text(number(speed, "seconds")), number(speed, "steps_per_second"));
     if (speed.contains("ns_per_day")) rate += fmt::format(", {:.4g} ns/day", number(speed, "ns_per_day"));
     text.entry("time", rate);
+    if (auto const inner = s.find("inner_steps"); inner != s.end())
+        text.entry("inner steps",
+                   fmt::format("{}, {} rejected, of {:.3g} to {:.3g} {}; {}", inner->at("taken").get<std::int64_t>(),
+                               inner->at("rejected").get<std::int64_t>(), number(*inner, "shortest"), number(*inner, "longest"),
+                               time_unit(scene), counted(inner->at("evaluations").get<std::int64_t>(), "evaluation", "evaluations")));
     text.entry("solver", fmt::format("{}, {}, {} each", s.at("solver").at("backend").get<std::string>(),
                                      counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"),
                                      counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));

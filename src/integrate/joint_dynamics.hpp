@@ -16,6 +16,21 @@ struct JointRates {
     Field<3> qdd, base_acceleration;
 };
 
+/// A step within one whose length is given.
+struct InnerStep {
+    double length = 0, end = 0;  // end: the time there
+    bool again = false;          // from where the one before began, which was rejected
+};
+/// The largest of each kind. Bases' and sliding joints' are linear.
+struct Speeds {
+    double angular = 0, linear = 0;
+};
+/// Of a step.
+struct AllowedErrors {
+    double angle = 0, length = 0;
+    Speeds speed;
+};
+
 class JointDynamics : public BeadHost {
   public:
     /// Of bodies and free bases, on the host.
@@ -45,7 +60,18 @@ class JointDynamics : public BeadHost {
     // Steps, stage by stage: each but the first half of Verlet's follows a solve().
     /// Stage 0, 1, 2 or 3 of a Runge-Kutta step of length h.
     virtual void runge_kutta(int stage, double h) = 0;
-    /// The accelerations that velocity Verlet carries from step to step: those solved for last; others.
+    /// Stage 0 to 5 of a step of the Dormand-Prince pair (embedded_steps.hpp), from the carried accelerations on; what the stages began
+    /// with is kept until the next step that is not taken `again`.
+    virtual void embedded_stage(int stage, InnerStep const&) = 0;
+    /// Of the stage that comes next: below 1 where it is worth a solution. On this rank.
+    virtual double wildness(double length) = 0;
+    /// At the ends of that step, and after another solve() its largest error over what is allowed; NaN where something is not finite. On
+    /// this rank.
+    virtual Speeds fastest() = 0;
+    virtual double embedded_error(double length, AllowedErrors const&) = 0;
+    /// A length that lengths are measured by, the same on every rank: of the longest chain.
+    virtual double reach() const = 0;
+    /// The accelerations that velocity Verlet and the Dormand-Prince pair carry from step to step: those solved for last; others.
     virtual void carry_rates() = 0;
     virtual void carry_rates(JointRates const&) = 0;
     virtual JointRates carried_rates() const = 0;

@@ -7,6 +7,7 @@
 
 #include "dca/host_space.hpp"
 #include "error.hpp"
+#include "integrate/embedded_steps.hpp"
 #include "integrate/joint_dynamics.hpp"
 #include "integrate/joint_lanes.hpp"
 #include "integrate/joint_solution.hpp"
@@ -41,7 +42,7 @@ class JointDynamicsIn final : public JointDynamics {
           pieces_list_(local_pieces(group, scene)),
           pieces_in_scene_(pieces_list_),
           tip_(tips_at_start(group, scene, communicator)),
-          reach_(group.has_tips() ? reach_of(group, scene) : 1.0),
+          reach_(reach_of(group, scene)),
           has_wrenches_(given_.wrenches || group.carried_beads() > 0),
           has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
           needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
@@ -78,6 +79,7 @@ class JointDynamicsIn final : public JointDynamics {
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         if constexpr (has_lanes)
             if (JointLanes lanes(group, given_.springs, space.simd()); lanes.any()) lanes_ = std::move(lanes);
+        if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince) pair_.emplace(group);
         set_state(make_joint_state(group, scene));
         if (tips() > 0)
             space_.edit(other_end_, [&](View<13> view) {
@@ -142,6 +144,11 @@ class JointDynamicsIn final : public JointDynamics {
         needs_positions_ ? runge_kutta<true>(s) : runge_kutta<false>(s);
         time_ = s.time;
     }
+    void embedded_stage(int stage, InnerStep const&) override;
+    double wildness(double length) override;
+    Speeds fastest() override;
+    double embedded_error(double length, AllowedErrors const&) override;
+    double reach() const override { return reach_; }
     void carry_rates() override { set_rates(carried()); }
     void carry_rates(JointRates const& rates) override {
         fill(space_, carried_qdd_, rates.qdd);
@@ -165,18 +172,7 @@ class JointDynamicsIn final : public JointDynamics {
     void kick_by_carried(double h) override { kick(h, true); }
     void thermalise(Thermostat const&, std::uint64_t step) override;
 
-    BodyMotion motion() override {
-        move();
-        BodyMotion m;
-        m.joint_turn = space_.read(motion_.joint_turn);
-        m.orientation = space_.read(motion_.orientation);
-        m.omega = space_.read(motion_.omega);
-        m.origin = space_.read(motion_.origin);
-        m.velocity = space_.read(motion_.velocity);
-        m.r2 = space_.read(motion_.r2);
-        m.axes2 = space_.read(motion_.axes2);
-        return m;
-    }
+    BodyMotion motion() override;
     BodyResults results() override {
         solver_->check();
         return with_solution([&](JointSolution const& s) { return s.results(communicator_); });
@@ -246,6 +242,8 @@ class JointDynamicsIn final : public JointDynamics {
                              [s, stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
         relative_ = true;
     }
+    template <bool positions>
+    void embedded_stage(EmbeddedStage const&);
     template <bool positions>
     void verlet_move(double h) {
         space_.for_each(group_.size, [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
@@ -340,6 +338,7 @@ class JointDynamicsIn final : public JointDynamics {
         still.chains.given.gravity = Vec3::zero();
         return still;
     }
+    EmbeddedSteps embedded() { return {steps(), pair_->kept.view(), pair_->kept_base.view()}; }
     JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
     template <class Use>
     auto with_solution(Use const& use) const {
@@ -391,9 +390,11 @@ class JointDynamicsIn final : public JointDynamics {
     FieldOf<3> zero_;
     FieldOf<13> last_end_, other_end_;  // by tip
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    std::optional<EmbeddedRates<Space>> pair_;
     std::optional<JointLanes> lanes_;
 };
 
 }  // namespace catena
 
+#include "integrate/joint_dynamics_embedded.hpp"
 #include "integrate/joint_dynamics_solved_again.hpp"

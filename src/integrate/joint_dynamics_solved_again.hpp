@@ -1,10 +1,25 @@
-// Members of JointDynamicsIn that go beyond a step's own solution: noise, refinement, tips that are closed, and what chains' ends tell each
+// Members of JointDynamicsIn that go beyond a step's own solution: the motion as the host sees it, noise, refinement, tips that
+// are closed, and what chains' ends tell each
 // other for these. Included by joint_dynamics_in.hpp.
 #pragma once
 
 #include "integrate/joint_dynamics_in.hpp"
 
 namespace catena {
+
+template <class Space>
+BodyMotion JointDynamicsIn<Space>::motion() {
+    move();
+    BodyMotion m;
+    m.joint_turn = space_.read(motion_.joint_turn);
+    m.orientation = space_.read(motion_.orientation);
+    m.omega = space_.read(motion_.omega);
+    m.origin = space_.read(motion_.origin);
+    m.velocity = space_.read(motion_.velocity);
+    m.r2 = space_.read(motion_.r2);
+    m.axes2 = space_.read(motion_.axes2);
+    return m;
+}
 
 template <class Space>
 void JointDynamicsIn<Space>::thermalise(Thermostat const& thermostat, std::uint64_t step) {

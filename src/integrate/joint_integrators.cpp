@@ -2,8 +2,9 @@
 
 namespace catena {
 
-SweepsAStep sweeps_a_step(DynamicsSpec const& d) {
+SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {
     if (d.integrator == Integrator::rk4) return {4, 4};
+    if (d.integrator == Integrator::dormand_prince) return tips ? SweepsAStep{7, 7} : SweepsAStep{6, 6};
     if (d.integrator == Integrator::velocity_verlet) return {1, 1};
     return is_langevin(d.integrator) && d.friction > 0 ? SweepsAStep{2, 3} : SweepsAStep{1, 2};
 }
@@ -12,6 +13,8 @@ std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem& system, Dyna
     switch (d.integrator) {
         case Integrator::rk4:
             return make_runge_kutta4(system);
+        case Integrator::dormand_prince:
+            return make_dormand_prince(system, d.tolerance, d.step);
         case Integrator::velocity_verlet:
             return make_velocity_verlet(system);
         case Integrator::staggered:

@@ -2,10 +2,20 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "integrate/chain_system.hpp"
+#include "io/output.hpp"
 
 namespace catena {
+
+class StepControl;
+
+/// Of an integrator in joint coordinates. As many bias sweeps, so many passes of the kinematics.
+struct SweepsAStep {
+    int matrices = 1, biases = 1;
+    int closings = 1;  // of jointed tips, whose own sweeps are not among those
+};
 
 class JointIntegrator {
   public:
@@ -16,21 +26,29 @@ class JointIntegrator {
     virtual void prepare() {}
     /// Whether that is the groups' carried rates.
     virtual bool carries_rates() const { return false; }
-    /// These were set from outside.
-    virtual void restored() {}
+    /// Corrections of jointed tips within a step, where these are closed between inner steps.
+    virtual void close_with(int /*corrections*/) {}
+    /// Of the last step, where not all are alike.
+    virtual std::optional<SweepsAStep> last_step() const { return std::nullopt; }
+    /// Of inner steps; null where there are none.
+    virtual StepControl const* control() const { return nullptr; }
+    /// What it needs beside states and rates; these were set from outside, to those of this checkpoint.
+    virtual void save(Checkpoint&) const {}
+    virtual void restored(Checkpoint const&) {}
 };
 
-/// Of an integrator in joint coordinates, jointed tips left out. As many bias sweeps, so many passes of the kinematics.
-struct SweepsAStep {
-    int matrices = 1, biases = 1;
-};
-SweepsAStep sweeps_a_step(DynamicsSpec const&);
+/// `tips`: whether the scene has jointed ones. Of an adaptive step: of one inner step.
+SweepsAStep sweeps_a_step(DynamicsSpec const&, bool tips);
 /// The one that the scene's dynamics names.
 std::unique_ptr<JointIntegrator> make_joint_integrator(ChainSystem&, DynamicsSpec const&);
 
 /// The classical fourth-order Runge-Kutta step (the chapter's integrator). Quaternions follow q' = 1/2 q (0, omega) and are normalised
 /// at the end of the step.
 std::unique_ptr<JointIntegrator> make_runge_kutta4(ChainSystem&);
+
+/// The Dormand-Prince pair (embedded_steps.hpp), quaternions as under Runge-Kutta. With a tolerance a step is made of inner steps whose
+/// lengths StepControl chooses; the last one ends where the step does. Without it (0) a step is one of fifth order.
+std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem&, double tolerance, double step);
 
 /// Velocity Verlet for accelerations that depend on velocities, one evaluation a step, second order (Groot & Warren, J. Chem. Phys. 107,
 /// 4423, 1997, with lambda = 1): q moves by h q' + h^2/2 q'', the acceleration is taken there with q' + h q'', and q' gets the

@@ -1,12 +1,12 @@
 // Loops over the bodies of chains in joint coordinates, as many at a time as a vector has lanes: which bodies, and the loops of an
-// instruction set. What these do is in joint_chains.hpp and joint_steps.hpp.
+// instruction set. What these do is in joint_chains.hpp, joint_steps.hpp and embedded_steps.hpp.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 #include "dca/host_space.hpp"
-#include "integrate/joint_steps.hpp"
+#include "integrate/embedded_steps.hpp"
 
 namespace catena {
 
@@ -16,6 +16,7 @@ struct JointLoops {
     void (*set_motion)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*set_rates)(JointChains const&, RatesView const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
+    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
 };
 /// Precondition: simd_levels() has them.
 JointLoops avx2_joint_loops(bool positions);

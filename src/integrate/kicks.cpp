@@ -9,7 +9,7 @@ class Kicks final : public JointIntegrator {
   public:
     Kicks(ChainSystem& system, JointThermostat const& thermostat) : system_(system), thermostat_(thermostat) { system.keep_matrices(); }
     bool carries_rates() const override { return true; }
-    void restored() override { ready_ = true; }
+    void restored(Checkpoint const&) override { ready_ = true; }
     void prepare() override {
         if (ready_) return make_ghosts(system_);
         for (JointDynamics* const group : system_.joint()) group->drift(0.0);

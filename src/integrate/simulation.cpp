@@ -47,9 +47,9 @@ class Run {
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator,
                   is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0) {
         Integrator const integrator = scene_.dynamics.integrator;
-        if (scene_.solver.refine > 0 && integrator != Integrator::rk4 && integrator != Integrator::velocity_verlet)
+        if (scene_.solver.refine > 0 && integrator > Integrator::velocity_verlet)
             throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
-                             "leave it out, or take rk4 or velocity-verlet where the chains allow it");
+                             "leave it out, or take rk4, dormand-prince or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
@@ -167,7 +167,7 @@ class Run {
         ++counted_steps_;
         counted_ += of_step;
         for (std::size_t i = 0; i < messages_.size(); ++i)
-            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]), stepper_->parts());
+            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]), stepper_->parts(), stepper_->solved());
     }
 
     /// What fails within a step says at which.
@@ -247,6 +247,7 @@ class Run {
                     {"step", scene_.dynamics.step},
                     {"bodies", scene_.bodies()},
                     {"dof", degrees_of_freedom(scene_)}};
+        if (json const inner = stepper_->inner_steps(); !inner.is_null()) s["inner_steps"] = inner;
         if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
         if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;

@@ -40,6 +40,10 @@ class Sum {
     Traffic traffic_;
 };
 
+bool has_tips(Scene const& scene) {
+    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+}
+
 }  // namespace
 
 Cut cut_of(ChainGroup const& group) {
@@ -49,7 +53,7 @@ Cut cut_of(ChainGroup const& group) {
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     : integrator_(scene.dynamics.integrator),
-      sweeps_(sweeps_a_step(scene.dynamics)),
+      sweeps_(sweeps_a_step(scene.dynamics, has_tips(scene))),
       directions_(group.directions),
       absolute_(group.beads || group.linked || group.axes == Axes::world),
       beads_(group.beads),
@@ -64,8 +68,8 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     springs_ = loads.springs;
 }
 
-Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts) const {
-    return absolute_ ? absolute(sweeps, parts, cut) : joint(sweeps, cut);
+Traffic StepMessages::a_step(int sweeps, Cut const& cut, int parts, SweepsAStep const& solved) const {
+    return absolute_ ? absolute(sweeps, parts, cut) : joint(sweeps, cut, solved);
 }
 
 /// ConstrainedIntegrator::step: so many drifts, each with its sweeps, its configuration and its matrices; a projection beside each.
@@ -93,9 +97,9 @@ Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
 }
 
 /// JointDynamics: evaluations, and the corrections of jointed tips, which are evaluations without loads.
-Traffic StepMessages::joint(int corrections, Cut const& cut) const {
-    auto const [matrices, biases] = sweeps_;
-    std::int64_t const more = tips_ ? corrections + 1 : 0, motions = biases + more, refinements = matrices * refinements_;
+Traffic StepMessages::joint(int corrections, Cut const& cut, SweepsAStep const& solved) const {
+    auto const [matrices, biases, closings] = solved;
+    std::int64_t const more = tips_ ? closings * (corrections + 1) : 0, motions = biases + more, refinements = matrices * refinements_;
     Sum sum(cut);
     sum.gathers(motions, 13);
     sum.from_ring_ends(motions, 13);

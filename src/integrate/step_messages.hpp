@@ -17,12 +17,14 @@ Cut cut_of(ChainGroup const&);
 class StepMessages {
   public:
     StepMessages(ChainGroup const&, Scene const&);
-    /// `sweeps`, `parts`: Stepper's.
-    Traffic a_step(int sweeps, Cut const&, int parts = 1) const;
+    /// As far as the scene tells.
+    Traffic a_step(int sweeps, Cut const& cut) const { return a_step(sweeps, cut, 1, sweeps_); }
+    /// `sweeps`, `parts`, `solved`: Stepper's.
+    Traffic a_step(int sweeps, Cut const&, int parts, SweepsAStep const& solved) const;
 
   private:
     Traffic absolute(int sweeps, int parts, Cut const&) const;
-    Traffic joint(int corrections, Cut const&) const;
+    Traffic joint(int corrections, Cut const&, SweepsAStep const&) const;
 
     Integrator integrator_;
     SweepsAStep sweeps_;

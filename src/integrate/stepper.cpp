@@ -5,6 +5,7 @@
 
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
+#include "integrate/step_control.hpp"
 
 namespace catena {
 namespace {
@@ -14,7 +15,8 @@ using nlohmann::json;
 class JointStepper final : public Stepper {
   public:
     JointStepper(ChainSystem& system, DynamicsSpec const& d)
-        : system_(system), h_(d.step), sweeps_(sweeps_a_step(d)), integrator_(make_joint_integrator(system, d)) {
+        : system_(system), h_(d.step), tolerance_(d.tolerance), integrator_(make_joint_integrator(system, d)) {
+        sweeps_ = sweeps_a_step(d, has_tips());
         system.close_tips();
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
@@ -27,8 +29,10 @@ class JointStepper final : public Stepper {
     void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();
         for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(n) * h_);
+        integrator_->close_with(corrections_);
         integrator_->step(h_);
         system_.close_tips(corrections_);
+        sum_.add(solved(), has_tips() ? corrections_ + 1 : 0);
         if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
     }
     /// Joint coordinates cannot come apart: how far jointed tips are open, and whether the state is finite.
@@ -44,8 +48,10 @@ class JointStepper final : public Stepper {
         return true;
     }
     int sweeps() const override { return corrections_; }
+    SweepsAStep solved() const override { return integrator_->last_step().value_or(sweeps_); }
     void save(Checkpoint& c) const override {
         c.integers["corrections_of_tips"] = corrections_;
+        integrator_->save(c);
         if (!integrator_->carries_rates()) return;
         for (JointDynamics const* const group : system_.joint()) system_.collect_rates(group->group(), group->carried_rates(), c.arrays);
     }
@@ -53,15 +59,24 @@ class JointStepper final : public Stepper {
         for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(c.step) * h_);
         if (auto const kept = c.integers.find("corrections_of_tips"); kept != c.integers.end())
             corrections_ = static_cast<int>(kept->second);
-        if (!integrator_->carries_rates()) return;
-        for (JointDynamics* const group : system_.joint()) group->carry_rates(system_.own_rates(group->group(), c.arrays));
-        integrator_->restored();
+        if (integrator_->carries_rates())
+            for (JointDynamics* const group : system_.joint()) group->carry_rates(system_.own_rates(group->group(), c.arrays));
+        integrator_->restored(c);
     }
     json describe() const override {
         int const more = has_tips() ? corrections_ + 1 : 0;
         json found = {{"matrix_sweeps_a_step", sweeps_.matrices + more}, {"bias_sweeps_a_step", sweeps_.biases + more}};
+        if (integrator_->control() && sum_.steps > 0)
+            found = {{"matrix_sweeps_a_step", sum_.a_step(sum_.matrices)}, {"bias_sweeps_a_step", sum_.a_step(sum_.biases)}};
         if (has_tips()) found["corrections_of_tips"] = corrections_;
         return found;
+    }
+    json inner_steps() const override {
+        StepControl const* const control = integrator_->control();
+        if (!control) return nullptr;
+        StepControl::Counts const& n = control->counts();
+        return {{"tolerance", tolerance_}, {"taken", n.taken},     {"rejected", n.rejected},
+                {"shortest", n.shortest},  {"longest", n.longest}, {"evaluations", sum_.evaluations}};
     }
 
   private:
@@ -70,10 +85,23 @@ class JointStepper final : public Stepper {
         return std::any_of(groups.begin(), groups.end(), [](JointDynamics const* g) { return g->group().has_tips(); });
     }
 
+    /// Of all steps so far.
+    struct Sum {
+        std::int64_t steps = 0, evaluations = 0, matrices = 0, biases = 0;
+        void add(SweepsAStep const& s, int a_closing) {
+            ++steps;
+            evaluations += s.matrices;
+            matrices += s.matrices + s.closings * a_closing;
+            biases += s.biases + s.closings * a_closing;
+        }
+        double a_step(std::int64_t n) const { return static_cast<double>(n) / static_cast<double>(steps); }
+    };
+
     static constexpr int most_corrections = 10;
     ChainSystem& system_;
-    double h_;
+    double h_, tolerance_;
     SweepsAStep sweeps_;
+    Sum sum_;
     int corrections_ = JointDynamics::usual_corrections;  // of tips' positions after a step
     std::unique_ptr<JointIntegrator> integrator_;
 };
@@ -153,6 +181,8 @@ class ConstrainedStepper final : public Stepper {
 };
 
 }  // namespace
+
+json Stepper::inner_steps() const { return nullptr; }
 
 std::unique_ptr<Stepper> make_stepper(ChainSystem& system, DynamicsSpec const& dynamics) {
     if (uses_joint_coordinates(dynamics.integrator)) return std::make_unique<JointStepper>(system, dynamics);

@@ -4,7 +4,7 @@
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 
-#include "integrate/chain_system.hpp"
+#include "integrate/joint_integrators.hpp"
 #include "io/output.hpp"
 
 namespace catena {
@@ -25,6 +25,10 @@ class Stepper {
     virtual int sweeps() const = 0;
     /// That every drift is taken in.
     virtual int parts() const { return 1; }
+    /// Of the last step, in joint coordinates.
+    virtual SweepsAStep solved() const { return {}; }
+    /// How many there were of an adaptive run; null of others.
+    virtual nlohmann::json inner_steps() const;
     virtual void save(Checkpoint&) const = 0;
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;

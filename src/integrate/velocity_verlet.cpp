@@ -7,7 +7,7 @@ class VelocityVerlet final : public JointIntegrator {
   public:
     explicit VelocityVerlet(ChainSystem& system) : system_(system) {}
     bool carries_rates() const override { return true; }
-    void restored() override { ready_ = true; }
+    void restored(Checkpoint const&) override { ready_ = true; }
     void prepare() override {
         if (ready_) {
             make_ghosts(system_);

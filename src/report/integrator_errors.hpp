@@ -39,8 +39,9 @@ struct IntegratorStudy {
 /// Empty where the study can be made; else why not: OpenMM, a thermal start, dampers, drag, driven joints, or no integrator for all chains.
 std::string why_integrators_cannot_be_compared(Scene const&);
 
-/// Every deterministic integrator that the scene's chains have, g-baoab at zero friction included, over `time`: steps of time / 2^k, finest
-/// for those of second order `finest`. The reference is rk4 where the chains have it, else rattle, at far smaller steps.
+/// Every deterministic integrator of second or fourth order that the scene's chains have, g-baoab at zero friction included, over `time`:
+/// steps of time / 2^k, finest for those of second order `finest`. The reference is rk4 where the chains have it, else rattle, at far
+/// smaller steps.
 IntegratorStudy study_integrator_errors(Scene const&, Communicator const&, double time, int finest, int repeat);
 
 /// Of a scene whose energy is kept. The energy's trend over many steps: the slope of a straight line through means over blocks of them, and

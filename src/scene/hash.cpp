@@ -104,6 +104,8 @@ int number_of(Integrator integrator) {
             return 6;
         case Integrator::implicit_g_baoab:
             return 7;
+        case Integrator::dormand_prince:
+            return 8;
         case Integrator::velocity_verlet:
             break;
     }
@@ -177,6 +179,7 @@ std::string fingerprint(Scene const& scene) {
     add_named(print, "scene drag", f.linear_drag != 0 || f.angular_drag != 0, f.linear_drag, f.angular_drag);
     print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
     add_named(print, "fixman", d.fixman);
+    add_named(print, "tolerance", d.tolerance > 0, d.tolerance);
     return print.text();
 }
 

@@ -120,6 +120,8 @@ char const* name_of(Integrator integrator) {
     switch (integrator) {
         case Integrator::rk4:
             return "rk4";
+        case Integrator::dormand_prince:
+            return "dormand-prince";
         case Integrator::velocity_verlet:
             return "velocity-verlet";
         case Integrator::staggered:

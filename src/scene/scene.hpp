@@ -167,7 +167,7 @@ struct ForceSpec {
     std::optional<OpenMmSpec> openmm;
 };
 
-enum class Integrator { rk4, velocity_verlet, staggered, baoab, implicit_baoab, rattle, g_baoab, implicit_g_baoab };
+enum class Integrator { rk4, dormand_prince, velocity_verlet, staggered, baoab, implicit_baoab, rattle, g_baoab, implicit_g_baoab };
 /// Whether the state is in joint coordinates (else: absolute ones).
 inline bool uses_joint_coordinates(Integrator i) { return i < Integrator::rattle; }
 /// Whether springs and dampers of joints are taken implicitly.
@@ -186,7 +186,8 @@ struct DynamicsSpec {
     double friction = 0.01;
     std::uint64_t seed = 1;
     double constraint_tolerance = 1e-10;
-    bool fixman = false;  // rigid links sample as stiff springs would
+    double tolerance = 0;  // of an adaptive step; 0: steps are as long as `step` says
+    bool fixman = false;   // rigid links sample as stiff springs would
 
     /// Why a GPU cannot do it; empty where it can.
     std::string why_host_alone() const;

@@ -114,13 +114,31 @@ std::optional<Vec3> read_box(Node const& box) {
     return lengths;
 }
 
+namespace {
+
+/// A solution rounds at 16 eps times the depth of its tree (ChainSystem::residual_bound): of the order of 1e-13, which no shorter step
+/// makes smaller.
+double read_tolerance(Node const& node, Integrator integrator) {
+    double constexpr least = 1e-13, most = 0.1;
+    double const tolerance = positive(node);
+    if (integrator != Integrator::dormand_prince)
+        fail(node, fmt::format("integrator {} has no error estimate: its steps are as long as `step` says", name_of(integrator)),
+             "leave it out, or use `integrator: dormand-prince` (joint coordinates)");
+    if (tolerance < least) fail(node, fmt::format("tolerance {} is below what doubles resolve", tolerance), "give 1e-13 or more");
+    if (tolerance > most) fail(node, fmt::format("tolerance {} bounds nothing", tolerance), "give 0.1 or less, such as 1e-8");
+    return tolerance;
+}
+
+}  // namespace
+
 DynamicsSpec read_dynamics(Node const& node, bool si) {
-    Fields const fields(node, {"integrator", "step", "steps", "temperature", "friction", "seed", "constraint_tolerance", "fixman"},
-                        {"tolerance"});
+    Fields const fields(node,
+                        {"integrator", "step", "steps", "temperature", "friction", "seed", "constraint_tolerance", "tolerance", "fixman"});
     DynamicsSpec dynamics;
     dynamics.given = true;
     dynamics.integrator = choice<Integrator>(fields.need("integrator", "integrator: g-baoab"),
                                              {{"rk4", Integrator::rk4},
+                                              {"dormand-prince", Integrator::dormand_prince},
                                               {"velocity-verlet", Integrator::velocity_verlet},
                                               {"staggered", Integrator::staggered},
                                               {"baoab", Integrator::baoab},
@@ -135,6 +153,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
     take(fields, "friction", dynamics.friction, non_negative);
     take(fields, "seed", dynamics.seed, seed64);
     take(fields, "constraint_tolerance", dynamics.constraint_tolerance, positive);
+    if (Node const* const tolerance = fields.find("tolerance")) dynamics.tolerance = read_tolerance(*tolerance, dynamics.integrator);
     take(fields, "fixman", dynamics.fixman, truth);
     if (si && is_langevin(dynamics.integrator)) fields.need("friction", "friction: 1e10");
     return dynamics;

@@ -44,6 +44,33 @@ TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
     EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 2);
 }
 
+/// As many frames as steps, whatever the inner steps.
+TEST(Run, TellsItsInnerSteps) {
+    TemporaryFolder const folder;
+    Ended const e = catena({"run", input("whip.yaml"), "--output", "a"}, folder.path());
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_NE(e.out.find("inner steps          "), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find(" rejected, of 0.000"), std::string::npos) << e.out;
+    auto const summary = nlohmann::json::parse(std::ifstream(folder / "a/summary.json"));
+    auto const& inner = summary.at("inner_steps");
+    EXPECT_EQ(inner.at("tolerance"), 1e-8);
+    auto const taken = inner.at("taken").get<int>(), tried = taken + inner.at("rejected").get<int>();
+    EXPECT_GT(taken, 500);
+    EXPECT_LE(inner.at("evaluations").get<int>(), 1 + 6 * tried);
+    EXPECT_GE(inner.at("evaluations").get<int>(), 1 + 6 * taken);
+    EXPECT_LT(10 * inner.at("shortest").get<double>(), inner.at("longest").get<double>());
+    auto const rows = lines_of(folder / "a/observables.csv");
+    ASSERT_EQ(rows.size(), 102U);
+    EXPECT_TRUE(rows.back().starts_with("100,1,")) << rows.back();
+    Ended const fixed = catena({"run", input("arm.yaml"), "--steps", "2", "--output", "b"}, folder.path());
+    EXPECT_EQ(fixed.status, 0) << fixed.err;
+    EXPECT_EQ(fixed.out.find("inner steps"), std::string::npos);
+    expect_refused(catena({"run", input("whip.yaml"), "--set", "dynamics.tolerance=1e-15", "--quiet"}, folder.path()), 2,
+                   "give 1e-13 or more");
+    expect_refused(catena({"run", input("whip.yaml"), "--set", "chains[0].bodies[3].joint.stiffness=1e40", "--quiet"}, folder.path()), 1,
+                   "at step 0: no shorter step is a step for dynamics.tolerance 1e-08 at time 0 (");
+}
+
 TEST(Run, SummaryOnTheTerminal) {
     TemporaryFolder const folder;
     Ended const e = catena({"run", input("arm.yaml"), "--steps", "20", "--output", "a/b"}, folder.path());

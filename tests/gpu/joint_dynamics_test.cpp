@@ -21,8 +21,9 @@ class GpuJoints : public ::testing::Test {
         scene.solver.backend = backend;
         ChainSystem system(scene, Axes::joint, *communicator_);
         EXPECT_EQ(system.backend(), backend);
-        auto const stepper = integrator == Integrator::rk4 ? make_runge_kutta4(system) : make_velocity_verlet(system);
         double constexpr h = 0.0005;
+        DynamicsSpec const dynamics{.given = true, .integrator = integrator, .step = h, .tolerance = 1e-9};
+        auto const stepper = make_joint_integrator(system, dynamics);
         system.close_tips();
         for (int i = 0; i < steps; ++i) {
             for (JointDynamics* const group : system.joint()) group->set_time(i * h);
@@ -42,7 +43,7 @@ class GpuJoints : public ::testing::Test {
         return arrays;
     }
     void expect_same(Scene const& scene) const {
-        for (Integrator const integrator : {Integrator::rk4, Integrator::velocity_verlet}) {
+        for (Integrator const integrator : {Integrator::rk4, Integrator::dormand_prince, Integrator::velocity_verlet}) {
             auto const device = after_steps(scene, Backend::cuda, integrator), host = after_steps(scene, Backend::segments, integrator);
             for (auto const& [name, values] : host) {
                 EXPECT_EQ(device.at(name), values) << name << ", " << name_of(integrator);

@@ -91,6 +91,22 @@ inline RunScene const run_scenes[] = {
      "generator: {random: {bodies: 33, joint: planar, seed: 2}}}]\n"
      "forces: {gravity: [0, 0, -1], drag: {linear: 0.1, angular: 0.1}}\n"
      "dynamics: {integrator: rk4, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10, joint_forces: true}\n"},
+    {"adaptive_every_joint",
+     "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: mixed, seed: 1}}}, {name: b, base: fixed, generator: "
+     "{random: {bodies: 40, joint: spherical, seed: 2}}}, {name: c, base: fixed, bodies: ["
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 1, 0], motion: {amplitude: 0.5, frequency: 2}}},"
+     "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, 0, 0], stiffness: [30, 40, 50]}}]}]\n"
+     "forces: {gravity: [0, 0, -1], drag: {linear: 0.1, angular: 0.1}}\n"
+     "dynamics: {integrator: dormand-prince, step: 0.03, steps: 20, tolerance: 1e-8}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"adaptive_rings",
+     "chains: [{name: a, base: free, generator: {polygon: {bodies: 60, joint: spherical, spin: [1, 2, 3]}}, tip: {ring: {type: spherical, "
+     "translation: [1, 0, 0]}}}, {name: b, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 20, joint: revolute, "
+     "seed: 4}}}]\n"
+     "dynamics: {integrator: dormand-prince, step: 0.01, steps: 20, tolerance: 1e-7}\noutput: {every: 5, checkpoint_every: 10, "
+     "joint_forces: true}\n"},
+    {"dormand_prince",
+     "chains: [{name: a, base: free, generator: {random: {bodies: 60, joint: mixed, seed: 1}}}]\n"
+     "dynamics: {integrator: dormand-prince, step: 0.001, steps: 20}\noutput: {every: 5, checkpoint_every: 10}\n"},
     {"verlet_every_joint",
      "chains: [{name: a, base: fixed, generator: {random: {bodies: 50, joint: helical, seed: 1}}}, {name: b, base: free, generator: "
      "{random: {bodies: 40, joint: mixed, seed: 2}}}, {name: c, base: fixed, bodies: ["

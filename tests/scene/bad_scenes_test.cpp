@@ -201,6 +201,32 @@ forces: {openmm: {builder: calvados2}})y",
     {"force_group", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, force_groups: [32]}})y",
      "key `force_groups` means nothing for a builder (s.yaml: forces.openmm.force_groups, line 2): leave it out or give `system`"},
+    {"tolerance_without_an_estimate", R"y(chains: [{generator: {pendulum: {links: 3}}}]
+dynamics: {integrator: rk4, step: 1, tolerance: 1e-6})y",
+     "integrator rk4 has no error estimate: its steps are as long as `step` says (s.yaml: dynamics.tolerance, line 2): leave it out, or "
+     "use "
+     "`integrator: dormand-prince` (joint coordinates)"},
+    {"tolerance_under_rattle", R"y(chains: [{sequence: GGG, model: calvados2}]
+dynamics: {integrator: rattle, step: 1, tolerance: 1e-6})y",
+     "integrator rattle has no error estimate: its steps are as long as `step` says (s.yaml: dynamics.tolerance, line 2): leave it out, or "
+     "use `integrator: dormand-prince` (joint coordinates)"},
+    {"tolerance_of_noise", R"y(chains: [{generator: {pendulum: {links: 3}}}]
+dynamics: {integrator: baoab, step: 1, tolerance: 1e-6})y",
+     "integrator baoab has no error estimate: its steps are as long as `step` says (s.yaml: dynamics.tolerance, line 2): leave it out, or "
+     "use `integrator: dormand-prince` (joint coordinates)"},
+    {"negative_tolerance", R"y(chains: [{generator: {pendulum: {links: 3}}}]
+dynamics: {integrator: dormand-prince, step: 1, tolerance: -1e-6})y",
+     "tolerance -1e-06 is not positive (s.yaml: dynamics.tolerance, line 2): give a number above 0"},
+    {"tolerance_below_rounding", R"y(chains: [{generator: {pendulum: {links: 3}}}]
+dynamics: {integrator: dormand-prince, step: 1, tolerance: 1e-14})y",
+     "tolerance 1e-14 is below what doubles resolve (s.yaml: dynamics.tolerance, line 2): give 1e-13 or more"},
+    {"tolerance_above_all", R"y(chains: [{generator: {pendulum: {links: 3}}}]
+dynamics: {integrator: dormand-prince, step: 1, tolerance: 1})y",
+     "tolerance 1 bounds nothing (s.yaml: dynamics.tolerance, line 2): give 0.1 or less, such as 1e-8"},
+    {"adaptive_links", R"y(chains: [{sequence: GGG, model: calvados2, name: asyn}]
+dynamics: {integrator: dormand-prince, step: 1, tolerance: 1e-6})y",
+     "integrator dormand-prince works in joint coordinates, chain `asyn` has links (s.yaml: dynamics.integrator, line 2): use `integrator: "
+     "rattle` or `g-baoab`"},
 };
 INSTANTIATE_TEST_SUITE_P(Sections, Refused, testing::ValuesIn(sections_cases), name_of_case);
 
@@ -325,9 +351,6 @@ solver: {precision: mixed})y",
     {"balance", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {balance: true})y",
      "not in this version: key `balance` (s.yaml: solver.balance, line 2)"},
-    {"tolerance", R"y(chains: [{sequence: GGG, model: calvados2}]
-dynamics: {integrator: rk4, step: 1, tolerance: 1e-6})y",
-     "not in this version: key `tolerance` (s.yaml: dynamics.tolerance, line 2)"},
     {"implicit_midpoint", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: implicit-midpoint, step: 1})y",
      "not in this version: `integrator: implicit-midpoint` (s.yaml: dynamics.integrator, line 2)"},

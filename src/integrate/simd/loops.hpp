@@ -23,7 +23,11 @@ struct LoopsOf {
                                              std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) steps.template runge_kutta<positions>(Bodies{first[i]}, stage);
     }
-    static constexpr JointLoops loops() { return {set_relative, set_motion, set_rates, runge_kutta}; }
+    [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps, EmbeddedStage const& stage, std::int64_t const* first,
+                                                std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) steps.template advance<positions>(Bodies{first[i]}, stage);
+    }
+    static constexpr JointLoops loops() { return {set_relative, set_motion, set_rates, runge_kutta, embedded_stage}; }
 };
 
 template <class Real>

@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "integrate/embedded_steps.hpp"
+#include "integrate/joint_integrators.hpp"
+#include "integrate/step_control.hpp"
+#include "mpi/first_rank.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr std::int64_t most_inner_steps = 100000;  // of one step; rejected ones count
+constexpr char const* name_of_state = "inner_step";
+
+class DormandPrinceSteps final : public JointIntegrator {
+  public:
+    DormandPrinceSteps(ChainSystem& system, double tolerance, double step)
+        : system_(system), groups_(system.joint()), tolerance_(tolerance), control_(step) {
+        has_tips_ = std::any_of(groups_.begin(), groups_.end(), [](JointDynamics const* g) { return g->group().has_tips(); });
+    }
+    /// Tips that are closed leave the rates at the step's end behind.
+    bool carries_rates() const override { return !has_tips_; }
+    void close_with(int corrections) override { corrections_ = corrections; }
+    std::optional<SweepsAStep> last_step() const override { return last_; }
+    StepControl const* control() const override { return tolerance_ > 0 ? &control_ : nullptr; }
+    void save(Checkpoint& c) const override {
+        if (tolerance_ > 0) c.arrays[name_of_state] = {control_.state().length, control_.state().previous};
+    }
+    void restored(Checkpoint const& c) override {
+        if (auto const kept = c.arrays.find(name_of_state); kept != c.arrays.end())
+            control_.restore({kept->second.at(0), kept->second.at(1)});
+        ready_ = carries_rates();
+    }
+    void prepare() override {
+        if (ready_) return make_ghosts(system_);
+        solve();
+        for (JointDynamics* const group : groups_) group->carry_rates();
+        ready_ = true;
+    }
+
+    void step(double h) override {
+        prepare();
+        double const start = groups_.empty() ? 0.0 : groups_.front()->time();
+        std::int64_t tries = 0;
+        for (double done = 0; done < h;) {
+            if (done > 0) begin_at(start + done);
+            double const left = h - done;
+            for (InnerStep inner;; inner.again = true) {
+                if (tries++ == most_inner_steps) refuse(start + done, control_.state().length, "100,000 inner steps are not enough");
+                inner.length = tolerance_ > 0 ? control_.length(left) : h;
+                bool const reaches = inner.length == left;
+                inner.end = start + (reaches ? h : done + inner.length);
+                if (inner.length <= 16 * eps * std::max(inner.end, h)) refuse(start + done, inner.length, "no shorter step is a step");
+                bool const there = advance(inner);
+                if (tolerance_ > 0 && !control_.accepts(inner.length, there ? error(inner.length) : HUGE_VAL)) continue;
+                done = reaches ? h : done + inner.length;
+                break;
+            }
+            for (JointDynamics* const group : groups_) group->carry_rates();
+            ready_ = !has_tips_;
+            ++now_.closings;
+        }
+        last_ = now_;
+        now_ = {0, 0, 0};
+    }
+
+  private:
+    void solve() {
+        system_.solve_joint_groups();
+        ++now_.matrices;
+        ++now_.biases;
+    }
+    /// The next inner step.
+    void begin_at(double time) {
+        if (has_tips_) system_.close_tips(corrections_);
+        for (JointDynamics* const group : groups_) group->set_time(time);
+        prepare();
+    }
+    /// False where the step is far too long.
+    bool advance(InnerStep const& inner) {
+        for (int stage = 0; stage < DormandPrince::stages; ++stage) {
+            for (JointDynamics* const group : groups_) group->embedded_stage(stage, inner);
+            if (tolerance_ > 0 && is_wild(inner.length)) return false;
+            solve();
+        }
+        return true;
+    }
+    /// Asked before equations are solved whose failure one rank alone would see.
+    bool is_wild(double length) {
+        double worst = 0;
+        for (JointDynamics* const group : groups_) worst = larger(worst, group->wildness(length));
+        return !(system_.communicator().max(worst) < 1);
+    }
+    /// Over what is allowed, the largest of all coordinates: maxima are exact in any order. Angles count by a radian, lengths by the reach
+    /// of the longest chain, velocities by the largest of their kind; what is below the rounding of coordinates within the step is no
+    /// error.
+    double error(double length) {
+        Speeds fastest;
+        double reach = 0;
+        for (JointDynamics* const group : groups_) {
+            Speeds const s = group->fastest();
+            fastest = {larger(fastest.angular, s.angular), larger(fastest.linear, s.linear)};
+            reach = std::max(reach, group->reach());
+        }
+        Communicator const& all = system_.communicator();
+        fastest = {all.max(fastest.angular), all.max(fastest.linear)};
+        double const turning = std::max(tolerance_ * fastest.angular, 16 * eps / length);
+        double const sliding = std::max(tolerance_ * std::max(fastest.linear, reach * fastest.angular), 16 * eps * reach / length);
+        AllowedErrors const allowed{tolerance_, tolerance_ * reach, {turning, sliding}};
+        double worst = 0;
+        for (JointDynamics* const group : groups_) worst = larger(worst, group->embedded_error(length, allowed));
+        return all.max(worst);
+    }
+    /// Every rank knows.
+    [[noreturn]] void refuse(double time, double length, char const* why) const {
+        std::ostringstream line;
+        line << why << " for dynamics.tolerance " << tolerance_ << " at time " << time << " (the last asked for is " << length
+             << " long): raise the tolerance, or look at the forces and joints there";
+        throw SharedError(line.str());
+    }
+
+    ChainSystem& system_;
+    std::vector<JointDynamics*> groups_;
+    double tolerance_;
+    StepControl control_;
+    bool has_tips_ = false, ready_ = false;
+    int corrections_ = JointDynamics::usual_corrections;
+    SweepsAStep now_{0, 0, 0}, last_;  // now_: of the step that is under way, from what it is prepared by on
+};
+
+}  // namespace
+
+std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem& system, double tolerance, double step) {
+    return std::make_unique<DormandPrinceSteps>(system, tolerance, step);
+}
+
+}  // namespace catena
