@@ -37,7 +37,8 @@ class JointDynamicsIn final : public JointDynamics {
           communicator_(communicator),
           solver_(std::move(solver)),
           given_(make_body_loads(group, scene)),
-          implicit_step_(implicit_step),
+          of_stiffness_(rotor_of_spring(scene.dynamics.integrator) * implicit_step * implicit_step),
+          of_damping_(0.5 * implicit_step),
           implicit_list_(group.implicit_joint),
           pieces_list_(local_pieces(group, scene)),
           pieces_in_scene_(pieces_list_),
@@ -305,12 +306,7 @@ class JointDynamicsIn final : public JointDynamics {
         JointChains c;
         c.scan = kinematics_.scan(state_.view(), motion_.view());
         if (has_implicit())
-            c.implicit = {0.5 * implicit_step_ * implicit_step_,
-                          0.5 * implicit_step_,
-                          implicit_list_.data(),
-                          compliance_.view(),
-                          yielding_.view(),
-                          start_.view().qd};
+            c.implicit = {of_stiffness_, of_damping_, implicit_list_.data(), compliance_.view(), yielding_.view(), start_.view().qd};
         c.given = loads_.view();
         c.time = time_;
         c.directions = group_.directions;
@@ -361,7 +357,7 @@ class JointDynamicsIn final : public JointDynamics {
     Communicator const& communicator_;
     std::unique_ptr<ChainSolver> solver_;
     BodyLoads given_;
-    double implicit_step_;
+    double of_stiffness_, of_damping_;
     List<std::uint8_t> implicit_list_;
     std::vector<LocalPiece> pieces_list_;
     List<LocalPiece> pieces_in_scene_;

@@ -9,8 +9,7 @@
 
 namespace catena {
 
-/// Springs K and dampers C within a step of length h: B = h^2 K / 2 + h C / 2 in P^T phi = tau - B u' (formulas, "Implicit joint springs",
-/// have h^2 K / 4, the least that is stable where K is constant; twice that leaves room for what bending and turning add to K).
+/// Springs K and dampers C within a step of length h: B = c h^2 K + h C / 2 in P^T phi = tau - B u', c by rotor_of_spring().
 /// The joint's force then is unknown along every direction, and its sides part by u' = B^-1 (tau - P^T phi).
 struct ImplicitJoints {
     double of_stiffness = 0, of_damping = 0;  // what of K and of C is in B

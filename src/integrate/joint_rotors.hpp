@@ -1,5 +1,5 @@
 // Implicit springs of spherical joints in absolute coordinates, for every Space: within a step of length h a spring K acts on a chain with
-// a rotor in every joint, of inertia B = h^2 K / 2 along the body's axes, that turns as the joint does (ImplicitJoints: why not less). A
+// a rotor in every joint, of inertia B = c h^2 K along the body's axes, that turns as the joint does (c: rotor_of_spring()). A
 // rotor has a velocity of its own, as bodies have theirs, and the sweeps that close joints make both agree: kicks so that it is the
 // joint's, drifts so that it is the joint's mean one.
 #pragma once

@@ -49,7 +49,7 @@ class RigidDynamics final : public AbsoluteDynamics {
           principal_(principal_frames(group)),
           piece_(local_pieces(group, scene)),
           reach_(group.linked ? 1.0 : reach_of_joints(group, communicator)),
-          of_stiffness_(0.5 * implicit_step * implicit_step),
+          of_stiffness_(rotor_of_spring(scene.dynamics.integrator) * implicit_step * implicit_step),
           implicit_(group.implicit_joint),
           loads_(given_),
           beads_(group, space),

@@ -47,8 +47,8 @@ void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft)
         joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
 }
 
-/// An implicit joint carries the inertia h C / 2 + h^2 K / 2 along each coordinate: somewhere none, elsewhere one, is no definite matrix
-/// in the joint's axes, and of very different ones the smaller would be rounding.
+/// An implicit joint carries an inertia along each coordinate (rotor_of_spring()): somewhere none, elsewhere one, is no definite matrix in
+/// the joint's axes, and of very different ones the smaller would be rounding.
 void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
     double constexpr widest = 1e10;
     BodyArrays const& bodies = draft.chain.bodies;
@@ -58,7 +58,7 @@ void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
         for (int i = 0; i < coordinates_of(bodies.joint[k]); ++i) {
             double const stiffness = bodies.stiffness.empty() ? 0 : bodies.stiffness[k][i];
             double const damping = bodies.damping.empty() ? 0 : bodies.damping[k][i];
-            double const inertia = 0.5 * dynamics.step * (damping + dynamics.step * stiffness);
+            double const inertia = dynamics.step * (0.5 * damping + rotor_of_spring(dynamics.integrator) * dynamics.step * stiffness);
             least = std::min(least, inertia), most = std::max(most, inertia);
         }
         auto const body = static_cast<std::int64_t>(k) + 1;
