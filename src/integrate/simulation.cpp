@@ -28,11 +28,9 @@ constexpr std::int64_t check_every = 100;
 constexpr double early = 0.1, rounding_of_joints = 1e-13;
 
 json as_json(Traffic const& sum, std::int64_t steps) {
-    auto const a_step = [&](std::int64_t n) { return static_cast<double>(n) / static_cast<double>(steps); };
-    return {{"gathers", a_step(sum.gathers)},
-            {"gathered_bytes", a_step(sum.gathered_bytes)},
-            {"exchanges", a_step(sum.exchanges)},
-            {"sent_bytes", a_step(sum.sent_bytes)}};
+    json a_step;
+    sum.for_each([&](char const* name, std::int64_t count) { a_step[name] = static_cast<double>(count) / static_cast<double>(steps); });
+    return a_step;
 }
 
 class Run {
@@ -167,7 +165,8 @@ class Run {
         ++counted_steps_;
         counted_ += of_step;
         for (std::size_t i = 0; i < messages_.size(); ++i)
-            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]), stepper_->parts());
+            predicted_ +=
+                messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i], communicator_.gather_way()), stepper_->parts());
     }
 
     /// What fails within a step says at which.
@@ -253,6 +252,7 @@ class Run {
         s["parallel"] = {{"ranks", communicator_.size()},
                          {"threads", system_.executor().threads()},
                          {"message_passing", message_passing_library()},
+                         {"gathers", communicator_.gather_way().text()},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
         if (counted_steps_ > 0)
