@@ -1,6 +1,7 @@
 // A scene made ready to compute: executor, groups, solvers and forces, on this rank.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -52,6 +53,13 @@ class ChainSystem {
         std::vector<Quat> orientation;                // identity for beads
     };
     Snapshot snapshot();
+    /// The same in parts of bounded size, in scene order, each as it comes: bodies from `first` on. Collective.
+    struct Bodies {
+        std::int64_t first = 0;
+        Snapshot motion;
+        std::vector<Vector<double, 6>> joint_force;  // where they are asked for
+    };
+    void pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take);
     /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, fixman, then
     /// OpenMM's. Collective.
     std::vector<EnergyTerm> potential_energy();
@@ -68,12 +76,8 @@ class ChainSystem {
     Accelerations accelerations();
     /// OpenMM's forces of the last evaluation alone. Collective.
     std::vector<Vec3> bead_forces() const;
-    struct JointForces {
-        std::vector<Vector<double, 6>> of_bodies;
-        std::vector<TipForce> of_tips;
-    };
-    /// The joint forces alone. Collective.
-    JointForces joint_forces();
+    /// At the chains' tips, in scene order on rank 0. Collective.
+    std::vector<TipForce> tip_forces() const { return tip_forces(results()); }
 
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;
@@ -131,6 +135,8 @@ class ChainSystem {
     void describe_beads();
     void order_beads_by_rank();
     std::vector<BodyResults> results() const;
+    std::vector<std::vector<double>> own_bodies(bool turning, bool joint_forces);
+    std::size_t index_of(ChainGroup const&) const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
     std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;
     ConstView<3> own_bead_positions();
