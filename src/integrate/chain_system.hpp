@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -116,11 +117,21 @@ class ChainSystem {
     /// Messages of this rank that brought positions to OpenMM.
     Traffic openmm_traffic() const { return openmm_traffic_; }
 
-    /// Everything a checkpoint needs, in scene order on rank 0; and back, on every rank.
-    std::map<std::string, std::vector<double>> state();
+    /// Everything a checkpoint needs by name, where it is: numbers of this rank's bodies, group by group, zeros where a group has none.
+    struct OwnArray {
+        int width = 0;
+        std::vector<std::vector<double>> of_group;
+    };
+    using OwnState = std::map<std::string, OwnArray>;
+    OwnState own_state() const;
+    /// Accelerations of a joint group that an integrator carries from step to step belong to it.
+    void add_rates(ChainGroup const&, JointRates const&, OwnState&) const;
+    /// One of these to rank 0, in scene order, part by part as they come. Collective.
+    void pass_array(OwnArray const&, std::function<void(std::span<double const>)> const& take) const;
+    /// All of them at once, in scene order on rank 0; and back, on every rank.
+    std::map<std::string, std::vector<double>> gathered(OwnState const&) const;
+    std::map<std::string, std::vector<double>> state() const { return gathered(own_state()); }
     void set_state(std::map<std::string, std::vector<double>> const&);
-    /// The same for accelerations of a joint group that an integrator carries from step to step.
-    void collect_rates(ChainGroup const&, JointRates const&, std::map<std::string, std::vector<double>>& arrays) const;
     JointRates own_rates(ChainGroup const&, std::map<std::string, std::vector<double>> const& arrays) const;
 
   private:
@@ -149,9 +160,8 @@ class ChainSystem {
     /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
     std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
                                  int width) const;
-    /// This rank's part into an array of a checkpoint. Collective.
-    void add_part(ChainGroup const&, std::vector<double> const& own, int width, std::string const& name,
-                  std::map<std::string, std::vector<double>>& arrays) const;
+    /// Into an array of a checkpoint.
+    void add_part(ChainGroup const&, std::vector<double> own, int width, std::string const& name, OwnState&) const;
     Scene const& scene_;
     Communicator const& communicator_;
     Axes axes_;

@@ -239,32 +239,47 @@ std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std:
     return take_from_scene(group, width, found->second);
 }
 
-void ChainSystem::add_part(ChainGroup const& group, std::vector<double> const& own, int width, std::string const& name,
-                           std::map<std::string, std::vector<double>>& arrays) const {
-    auto& array = arrays[name];
-    array.resize(communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies() * width) : 0);
-    gather_to_scene(communicator_, group, width, own, array);
+void ChainSystem::add_part(ChainGroup const& group, std::vector<double> own, int width, std::string const& name, OwnState& state) const {
+    OwnArray& array = state[name];
+    array.width = width;
+    array.of_group.resize(groups_.size());
+    array.of_group[index_of(group)] = std::move(own);
+    for (std::size_t g = 0; g < groups_.size(); ++g) array.of_group[g].resize(static_cast<std::size_t>(groups_[g]->size * width));
 }
 
-std::map<std::string, std::vector<double>> ChainSystem::state() {
-    std::map<std::string, std::vector<double>> arrays;
+ChainSystem::OwnState ChainSystem::own_state() const {
+    OwnState own;
     for (auto const& group : absolute_)
-        for (StateArray const& a : group->state()) add_part(group->group(), a.values, a.width, a.name, arrays);
+        for (StateArray& a : group->state()) add_part(group->group(), std::move(a.values), a.width, a.name, own);
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         JointState const s = dynamics->state();
-        add_part(group, to_array<4>("", s.q.view()).values, 4, "q", arrays);
-        add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", arrays);
-        add_part(group, at_starts(group, s.base_position), 3, "base_position", arrays);
-        add_part(group, at_starts(group, s.base_velocity), 3, "base_velocity", arrays);
+        add_part(group, to_array<4>("", s.q.view()).values, 4, "q", own);
+        add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", own);
+        add_part(group, at_starts(group, s.base_position), 3, "base_position", own);
+        add_part(group, at_starts(group, s.base_velocity), 3, "base_velocity", own);
     }
-    return arrays;
+    return own;
 }
 
-void ChainSystem::collect_rates(ChainGroup const& group, JointRates const& rates,
-                                std::map<std::string, std::vector<double>>& arrays) const {
-    add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", arrays);
-    add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", arrays);
+void ChainSystem::add_rates(ChainGroup const& group, JointRates const& rates, OwnState& own) const {
+    add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", own);
+    add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", own);
+}
+
+void ChainSystem::pass_array(OwnArray const& array, std::function<void(std::span<double const>)> const& take) const {
+    SceneWindows(communicator_, groups_).pass(array.width, array.of_group, [&](std::int64_t, std::span<double const> values) {
+        take(values);
+    });
+}
+
+std::map<std::string, std::vector<double>> ChainSystem::gathered(OwnState const& own) const {
+    std::map<std::string, std::vector<double>> arrays;
+    for (auto const& [name, array] : own) {
+        std::vector<double>& whole = arrays[name];
+        pass_array(array, [&](std::span<double const> values) { whole.insert(whole.end(), values.begin(), values.end()); });
+    }
+    return arrays;
 }
 
 JointRates ChainSystem::own_rates(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays) const {

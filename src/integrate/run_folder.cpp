@@ -1,6 +1,7 @@
 #include "integrate/run_folder.hpp"
 
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "error.hpp"
@@ -117,11 +118,33 @@ void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces, std::vecto
     });
 }
 
-void RunFolder::write_checkpoint(Checkpoint const& checkpoint) {
-    on_disk([&] {
+void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system, ChainSystem::OwnState const& own) {
+    std::unique_ptr<CheckpointWriter> writer;
+    auto const on_root = [&](auto const& action) {
+        if (communicator_.rank() == 0) keeping_failure(action);
+    };
+    on_root([&] {
         trajectory_->flush();  // a restart finds every frame up to the checkpoint's step
         observables_->flush();
-        catena::write_checkpoint(path("checkpoint.h5"), checkpoint);
+        writer = std::make_unique<CheckpointWriter>(path("checkpoint.h5"), checkpoint);
+    });
+    std::set<std::string> names;
+    for (auto const& [name, values] : checkpoint.arrays) names.insert(name);
+    for (auto const& [name, array] : own) names.insert(name);
+    for (std::string const& name : names) {
+        auto const small = checkpoint.arrays.find(name);
+        if (small != checkpoint.arrays.end()) {
+            on_root([&] { writer->begin_array(name, std::ssize(small->second)); });
+            on_root([&] { writer->put(small->second); });
+            continue;
+        }
+        ChainSystem::OwnArray const& array = own.at(name);
+        on_root([&] { writer->begin_array(name, scene_.bodies() * array.width); });
+        system.pass_array(array, [&](std::span<double const> values) { keeping_failure([&] { writer->put(values); }); });
+    }
+    on_disk([&] {
+        throw_kept();
+        writer->finish();
     });
 }
 

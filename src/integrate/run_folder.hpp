@@ -27,7 +27,8 @@ class RunFolder {
     void begin(std::int64_t step, double time);
     void put(Frame const& part);
     void end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables);
-    void write_checkpoint(Checkpoint const&);
+    /// With the arrays of bodies that ranks have of the system.
+    void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
     /// Closes the tables, writes summary, timeline and report.
     void finish(std::string const& summary, std::string const& timeline);
 

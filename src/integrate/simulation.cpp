@@ -184,10 +184,11 @@ class Run {
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
         if (system_.openmm()) c.notes[note_of_platform] = platform();
-        c.arrays = system_.state();
-        stepper_->save(c);
         c.arrays["largest_constraint_error"] = {worst_error_};
-        folder_->write_checkpoint(c);
+        stepper_->save(c);
+        ChainSystem::OwnState own = system_.own_state();
+        stepper_->save(own);
+        folder_->write_checkpoint(c, system_, own);
     }
 
     static constexpr char const* note_of_platform = "openmm_platform";

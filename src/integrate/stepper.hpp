@@ -26,6 +26,8 @@ class Stepper {
     /// That every drift is taken in.
     virtual int parts() const { return 1; }
     virtual void save(Checkpoint&) const = 0;
+    /// What is carried from step to step beside the system's own state.
+    virtual void save(ChainSystem::OwnState&) const {}
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;
 };

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,22 @@ struct Checkpoint {
 };
 /// Writes to a temporary name, fsyncs, reopens and verifies a checksum, then renames; the checkpoint before is kept as
 /// `<name>.previous.h5`.
+class CheckpointWriter {
+  public:
+    /// Writes all but the arrays.
+    CheckpointWriter(std::string const& file, Checkpoint const&);
+    ~CheckpointWriter();
+    /// The next array, in the order of their names, and its numbers as they come.
+    void begin_array(std::string const& name, std::int64_t size);
+    void put(std::span<double const> values);
+    /// Without it nothing is left.
+    void finish();
+
+  private:
+    struct Draft;
+    std::unique_ptr<Draft> draft_;
+};
+/// All of it at once.
 void write_checkpoint(std::string const& file, Checkpoint const&);
 /// InputError for a file that is missing, not a checkpoint, cut short or altered (checksum).
 Checkpoint read_checkpoint(std::string const& file);
