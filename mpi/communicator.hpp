@@ -9,24 +9,10 @@
 #include <string>
 #include <vector>
 
-namespace catena {
+#include "mpi/gather_way.hpp"
+#include "mpi/traffic.hpp"
 
-/// Messages between bodies of neighbouring ranks and units of the tree, as one rank counts them.
-struct Traffic {
-    std::int64_t gathers = 0, gathered_bytes = 0;  // all_gather; the bytes of all ranks
-    std::int64_t exchanges = 0, sent_bytes = 0;    // exchange; what this rank sent
-    Traffic& operator+=(Traffic const& other) {
-        gathers += other.gathers;
-        gathered_bytes += other.gathered_bytes;
-        exchanges += other.exchanges;
-        sent_bytes += other.sent_bytes;
-        return *this;
-    }
-    Traffic operator-(Traffic const& other) const {
-        return {gathers - other.gathers, gathered_bytes - other.gathered_bytes, exchanges - other.exchanges, sent_bytes - other.sent_bytes};
-    }
-    bool operator==(Traffic const&) const = default;
-};
+namespace catena {
 
 /// Messages between two ranks, both of which know the length.
 struct Outgoing {
@@ -67,6 +53,8 @@ class Communicator {
     virtual std::int64_t rounds() const = 0;
     /// All of them so far; zero where nothing is counted.
     virtual Traffic traffic() const { return {}; }
+    /// How all_gather goes; it changes no byte of what comes out.
+    virtual GatherWay const& gather_way() const;
     /// Ends every rank at once: for an error that other ranks cannot know of.
     [[noreturn]] virtual void abort(int status) const = 0;
 };

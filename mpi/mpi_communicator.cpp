@@ -6,44 +6,29 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <exception>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "error.hpp"
+#include "mpi/host_gather.hpp"
 #include "mpi/launcher.hpp"
+#include "mpi/mpi_handles.hpp"
 
 namespace catena {
 namespace {
-
-void check(int code, char const* call) {
-    if (code == MPI_SUCCESS) return;
-    char text[MPI_MAX_ERROR_STRING] = "unknown error";
-    int length = 0;
-    MPI_Error_string(code, text, &length);
-    throw ComputationError(std::string("MPI failed: ") + text + " (" + call + "): see whether every rank and its host are still up");
-}
-
-/// Whether an error is on its way out that other ranks may not know of: to wait for them then would be for ever.
-class Unwinding {
-  public:
-    explicit operator bool() const { return std::uncaught_exceptions() > at_start_; }
-
-  private:
-    int at_start_ = std::uncaught_exceptions();
-};
 
 /// MPI itself, from MPI_Init_thread to MPI_Finalize; owns nothing where the caller had initialised it.
 class MpiLibrary {
   public:
     MpiLibrary(int* argc, char*** argv) {
         int initialised = 0;
-        check(MPI_Initialized(&initialised), "MPI_Initialized");
+        check_mpi(MPI_Initialized(&initialised), "MPI_Initialized");
         if (initialised != 0) return;
         int provided = MPI_THREAD_SINGLE;
-        check(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
+        check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
         owned_ = true;
         if (provided < MPI_THREAD_FUNNELED)
             throw ComputationError("MPI allows no threads beside it (" + message_passing_library() + "): use one with MPI_THREAD_FUNNELED");
@@ -59,28 +44,10 @@ class MpiLibrary {
     Unwinding unwinding_;
 };
 
-/// A communicator of MPI's, freed at its end.
-class MpiHandle {
-  public:
-    explicit MpiHandle(MPI_Comm handle) : handle_(handle) {
-        check(MPI_Comm_set_errhandler(handle_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
-    }
-    MpiHandle(MpiHandle&& other) noexcept : handle_(std::exchange(other.handle_, MPI_COMM_NULL)) {}
-    MpiHandle& operator=(MpiHandle&&) = delete;
-    ~MpiHandle() {
-        if (handle_ != MPI_COMM_NULL && !unwinding_) MPI_Comm_free(&handle_);
-    }
-    operator MPI_Comm() const { return handle_; }
-
-  private:
-    MPI_Comm handle_;
-    Unwinding unwinding_;
-};
-
 MpiHandle duplicate_of_world() {
-    check(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
+    check_mpi(MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
     MPI_Comm handle = MPI_COMM_NULL;
-    check(MPI_Comm_dup(MPI_COMM_WORLD, &handle), "MPI_Comm_dup");
+    check_mpi(MPI_Comm_dup(MPI_COMM_WORLD, &handle), "MPI_Comm_dup");
     return MpiHandle(handle);
 }
 
@@ -88,13 +55,16 @@ struct OnHost {
     int rank = 0, ranks = 1;
 };
 OnHost place_on_host(MPI_Comm world) {
-    MPI_Comm host = MPI_COMM_NULL;
-    check(MPI_Comm_split_type(world, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &host), "MPI_Comm_split_type");
-    MpiHandle const owner(host);
-    OnHost place;
-    check(MPI_Comm_rank(owner, &place.rank), "MPI_Comm_rank");
-    check(MPI_Comm_size(owner, &place.ranks), "MPI_Comm_size");
-    return place;
+    Hosts const hosts(world, 0);
+    return {hosts.ranks.rank(), hosts.ranks.size()};
+}
+
+/// Rank 0's CATENA_GATHER: launchers bring variables to other hosts only when told to.
+GatherChoice choice_of_first_rank(MPI_Comm world, int rank) {
+    char text[64] = "";
+    if (char const* const own = std::getenv("CATENA_GATHER"); rank == 0 && own != nullptr) std::strncpy(text, own, sizeof(text) - 1);
+    check_mpi(MPI_Bcast(text, sizeof(text), MPI_CHAR, 0, world), "MPI_Bcast");
+    return gather_choice(text);
 }
 
 // A double as an integer of the same order, NaN above all.
@@ -107,11 +77,14 @@ double from_ordered(std::int64_t key) { return std::bit_cast<double>(key >= 0 ? 
 
 class MpiCommunicator final : public Communicator {
   public:
-    MpiCommunicator(int* argc, char*** argv, std::int64_t largest_message)
-        : library_(argc, argv), world_(duplicate_of_world()), largest_message_(static_cast<std::size_t>(largest_message)) {
-        check(MPI_Comm_rank(world_, &rank_), "MPI_Comm_rank");
-        check(MPI_Comm_size(world_, &size_), "MPI_Comm_size");
-        on_host_ = place_on_host(world_);
+    MpiCommunicator(int* argc, char*** argv, MpiOptions const& options)
+        : library_(argc, argv),
+          world_(duplicate_of_world()),
+          largest_message_(static_cast<std::size_t>(options.largest_message)),
+          rank_(world_.rank()),
+          size_(world_.size()),
+          on_host_(place_on_host(world_)) {
+        choose_way(options);
     }
 
     int rank() const override { return rank_; }
@@ -120,17 +93,19 @@ class MpiCommunicator final : public Communicator {
     int rank_on_host() const override { return on_host_.rank; }
     std::int64_t rounds() const override { return rounds_; }
     Traffic traffic() const override { return traffic_; }
+    GatherWay const& gather_way() const override { return way_; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override {
         Blocks const blocks = blocks_of(own, all, bytes_of_rank);
         ++rounds_;
-        traffic_ += {1, static_cast<std::int64_t>(all.size()), 0, 0};
+        count_gather(static_cast<std::int64_t>(all.size()));
+        if (two_stages_) return two_stages_->gather(own, all, bytes_of_rank);
         if (!blocks.short_enough) return all_gather_in_pieces(own, all, blocks);
         void const* const send = in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
-        check(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE,
-                             world_),
-              "MPI_Allgatherv");
+        check_mpi(MPI_Allgatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(),
+                                 MPI_BYTE, world_),
+                  "MPI_Allgatherv");
     }
 
     void gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes_of_rank) const override {
@@ -138,9 +113,9 @@ class MpiCommunicator final : public Communicator {
         ++rounds_;
         if (!blocks.short_enough) return gather_in_pieces(own, all, blocks);
         void const* const send = rank_ == 0 && in_place(own, all, blocks) ? MPI_IN_PLACE : own.data();
-        check(MPI_Gatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE, 0,
-                          world_),
-              "MPI_Gatherv");
+        check_mpi(MPI_Gatherv(send, static_cast<int>(own.size()), MPI_BYTE, all.data(), blocks.count.data(), blocks.first.data(), MPI_BYTE,
+                              0, world_),
+                  "MPI_Gatherv");
     }
 
     void broadcast(std::span<std::byte> data) const override {
@@ -152,14 +127,15 @@ class MpiCommunicator final : public Communicator {
         ++rounds_;
         if (to < 0) send = {};
         if (from < 0) receive = {};
-        traffic_ += {0, 0, 1, static_cast<std::int64_t>(send.size())};
+        ++traffic_.exchanges;
+        traffic_.sent_bytes += static_cast<std::int64_t>(send.size());
         while (!send.empty() || !receive.empty()) {
             std::span const out = send.first(std::min(send.size(), largest_message_));
             std::span const in = receive.first(std::min(receive.size(), largest_message_));
             MPI_Status status;
-            check(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE, out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
-                               static_cast<int>(in.size()), MPI_BYTE, in.empty() ? MPI_PROC_NULL : from, 0, world_, &status),
-                  "MPI_Sendrecv");
+            check_mpi(MPI_Sendrecv(out.data(), static_cast<int>(out.size()), MPI_BYTE, out.empty() ? MPI_PROC_NULL : to, 0, in.data(),
+                                   static_cast<int>(in.size()), MPI_BYTE, in.empty() ? MPI_PROC_NULL : from, 0, world_, &status),
+                      "MPI_Sendrecv");
             if (!in.empty()) require_length(status, in.size());
             send = send.subspan(out.size());
             receive = receive.subspan(in.size());
@@ -173,16 +149,16 @@ class MpiCommunicator final : public Communicator {
         for (Incoming const& m : in)
             for_each_piece(m.bytes, [&](std::span<std::byte> piece) {
                 expected.push_back(piece.size());
-                check(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.from, 0, world_, &requests.emplace_back()),
-                      "MPI_Irecv");
+                check_mpi(MPI_Irecv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.from, 0, world_, &requests.emplace_back()),
+                          "MPI_Irecv");
             });
         for (Outgoing const& m : out)
             for_each_piece(m.bytes, [&](std::span<std::byte const> piece) {
-                check(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.to, 0, world_, &requests.emplace_back()),
-                      "MPI_Isend");
+                check_mpi(MPI_Isend(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, m.to, 0, world_, &requests.emplace_back()),
+                          "MPI_Isend");
             });
         std::vector<MPI_Status> statuses(requests.size());
-        check(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data()), "MPI_Waitall");
+        check_mpi(MPI_Waitall(static_cast<int>(requests.size()), requests.data(), statuses.data()), "MPI_Waitall");
         for (std::size_t i = 0; i < expected.size(); ++i) require_length(statuses[i], expected[i]);
     }
 
@@ -191,7 +167,7 @@ class MpiCommunicator final : public Communicator {
 
     void barrier() const override {
         ++rounds_;
-        check(MPI_Barrier(world_), "MPI_Barrier");
+        check_mpi(MPI_Barrier(world_), "MPI_Barrier");
     }
 
     [[noreturn]] void abort(int status) const override {
@@ -200,6 +176,25 @@ class MpiCommunicator final : public Communicator {
     }
 
   private:
+    void choose_way(MpiOptions const& options) {
+        GatherChoice const choice = options.gather ? *options.gather : choice_of_first_rank(world_, rank_);
+        int colour = choice.ranks_a_host > 0 ? on_host_.rank / choice.ranks_a_host : 0;
+        if (!options.host_of_rank.empty()) colour = options.host_of_rank[static_cast<std::size_t>(rank_)];
+        hosts_ = std::make_unique<Hosts>(world_, colour);
+        way_ = GatherWay::of(choice, size_, hosts_->count);
+        if (way_.stages == 1) return;
+        way_.leads = hosts_->leads();
+        way_.piece = std::min(way_.piece, options.largest_message);
+        two_stages_ = HostGather::make(world_, *hosts_, way_.piece);
+        if (!two_stages_) way_ = way_.without_memory();
+    }
+
+    void count_gather(std::int64_t bytes) const {
+        ++traffic_.gathers;
+        traffic_.gathered_bytes += bytes;
+        traffic_ += way_.within_and_between_hosts(bytes);
+    }
+
     struct Blocks {
         std::vector<std::int64_t> const& bytes;
         std::vector<int> count, first;
@@ -240,7 +235,7 @@ class MpiCommunicator final : public Communicator {
     void broadcast_in_pieces(std::span<std::byte> data, int root) const {
         while (!data.empty()) {
             std::span const piece = data.first(std::min(data.size(), largest_message_));
-            check(MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, world_), "MPI_Bcast");
+            check_mpi(MPI_Bcast(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, root, world_), "MPI_Bcast");
             data = data.subspan(piece.size());
         }
     }
@@ -253,7 +248,8 @@ class MpiCommunicator final : public Communicator {
     void gather_in_pieces(std::span<std::byte const> own, std::span<std::byte> all, Blocks const& blocks) const {
         if (rank_ != 0) {
             for (; !own.empty(); own = own.subspan(std::min(own.size(), largest_message_)))
-                check(MPI_Send(own.data(), static_cast<int>(std::min(own.size(), largest_message_)), MPI_BYTE, 0, 0, world_), "MPI_Send");
+                check_mpi(MPI_Send(own.data(), static_cast<int>(std::min(own.size(), largest_message_)), MPI_BYTE, 0, 0, world_),
+                          "MPI_Send");
             return;
         }
         if (!in_place(own, all, blocks)) std::copy(own.begin(), own.end(), all.begin());
@@ -261,7 +257,7 @@ class MpiCommunicator final : public Communicator {
             for (std::span<std::byte> rest = blocks.of(all, r); !rest.empty();) {
                 std::span const piece = rest.first(std::min(rest.size(), largest_message_));
                 MPI_Status status;
-                check(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, r, 0, world_, &status), "MPI_Recv");
+                check_mpi(MPI_Recv(piece.data(), static_cast<int>(piece.size()), MPI_BYTE, r, 0, world_, &status), "MPI_Recv");
                 require_length(status, piece.size());
                 rest = rest.subspan(piece.size());
             }
@@ -270,7 +266,7 @@ class MpiCommunicator final : public Communicator {
 
     static void require_length(MPI_Status const& status, std::size_t expected) {
         int count = 0;
-        check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+        check_mpi(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
         if (static_cast<std::size_t>(count) != expected)
             throw std::logic_error("message of " + std::to_string(count) + " bytes where " + std::to_string(expected) + " were expected");
     }
@@ -278,23 +274,26 @@ class MpiCommunicator final : public Communicator {
     std::int64_t all_reduced(std::int64_t value, MPI_Op operation) const {
         ++rounds_;
         std::int64_t result = 0;
-        check(MPI_Allreduce(&value, &result, 1, MPI_INT64_T, operation, world_), "MPI_Allreduce");
+        check_mpi(MPI_Allreduce(&value, &result, 1, MPI_INT64_T, operation, world_), "MPI_Allreduce");
         return result;
     }
 
     MpiLibrary library_;  // before world_: MPI ends after its communicators
     MpiHandle world_;
     std::size_t largest_message_;
-    int rank_ = 0, size_ = 1;
+    int rank_, size_;
     OnHost on_host_;
+    std::unique_ptr<Hosts> hosts_;
+    std::unique_ptr<HostGather> two_stages_;  // null: in one
+    GatherWay way_;
     mutable std::int64_t rounds_ = 0;
     mutable Traffic traffic_;
 };
 
 }  // namespace
 
-std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, std::int64_t largest_message) {
-    auto communicator = std::make_unique<MpiCommunicator>(argc, argv, largest_message);
+std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, MpiOptions const& options) {
+    auto communicator = std::make_unique<MpiCommunicator>(argc, argv, options);
     Launch const launch = launch_environment();
     if (launch.size > 1 && communicator->size() == 1)
         throw InputError("every process sees itself alone", "started with " + launch.evidence + ", but MPI counts 1 rank",
@@ -311,7 +310,7 @@ std::unique_ptr<Communicator> world_communicator(int* argc, char*** argv) {
 std::string message_passing_library() {
     char text[MPI_MAX_LIBRARY_VERSION_STRING] = "";
     int length = 0;
-    check(MPI_Get_library_version(text, &length), "MPI_Get_library_version");
+    check_mpi(MPI_Get_library_version(text, &length), "MPI_Get_library_version");
     std::string const name(text);
     return name.substr(0, name.find_first_of(",\n"));
 }

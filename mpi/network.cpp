@@ -104,23 +104,24 @@ void time_gathers(NetworkTimes& times, Communicator const& communicator, int rep
     add("kinematics", 13);
     std::vector<double> ratios;
     for (TimedMessage const& gather : times.gathers)
-        ratios.push_back(gather.seconds / times.network.gather_seconds(gather.bytes, times.ranks, times.hosts));
+        ratios.push_back(gather.seconds / times.network.gather_seconds(gather.bytes, times.way));
     std::nth_element(ratios.begin(), ratios.begin() + std::ssize(ratios) / 2, ratios.end());
     times.network.gather_overhead = ratios[ratios.size() / 2];
 }
 
-double stages(std::int64_t count) { return static_cast<double>(std::bit_width(static_cast<std::uint64_t>(count - 1))); }
+double rounds_among(std::int64_t count) { return static_cast<double>(std::bit_width(static_cast<std::uint64_t>(count - 1))); }
 
 }  // namespace
 
-double Network::gather_seconds(std::int64_t bytes, std::int64_t ranks, std::int64_t hosts) const {
-    if (ranks == 1) return 0;
-    std::int64_t const on_host = (ranks + hosts - 1) / hosts;
-    double seconds =
-        static_cast<double>(bytes) * (1.0 - 1.0 / static_cast<double>(ranks)) * (hosts > 1 ? far : near).value().seconds_a_byte;
-    if (on_host > 1) seconds += stages(on_host) * near.value().latency;
-    if (hosts > 1) seconds += stages(hosts) * far.value().latency;
-    return gather_overhead * seconds;
+double Network::gather_seconds(std::int64_t bytes, GatherWay const& way) const {
+    if (way.ranks == 1) return 0;
+    Link const& within = near.value();
+    Link const& between = way.hosts > 1 && far ? *far : within;
+    auto const but_own = [&](std::int64_t count) { return static_cast<double>(bytes) * (1.0 - 1.0 / static_cast<double>(count)); };
+    if (way.stages == 1) return gather_overhead * (but_own(way.ranks) * between.seconds_a_byte + rounds_among(way.ranks) * between.latency);
+    std::int64_t const on_host = (way.ranks + way.hosts - 1) / way.hosts;
+    double const inside = 2 * rounds_among(on_host) * within.latency + static_cast<double>(bytes) * within.seconds_a_byte;
+    return gather_overhead * (inside + rounds_among(way.hosts) * between.latency + but_own(way.hosts) * between.seconds_a_byte);
 }
 
 NetworkTimes time_network(Communicator const& communicator, int repeat) {
@@ -128,6 +129,7 @@ NetworkTimes time_network(Communicator const& communicator, int repeat) {
     NetworkTimes times;
     times.ranks = communicator.size();
     times.hosts = different(host);
+    times.way = communicator.gather_way();
     for (bool const far : {false, true}) {
         auto const partner = std::find_if(host.begin() + 1, host.end(), [&](std::string const& name) { return (name != host[0]) == far; });
         if (partner == host.end()) continue;

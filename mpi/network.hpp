@@ -20,9 +20,11 @@ struct Network {
     std::optional<Link> near, far;  // between ranks of a host, of different hosts; empty where there were none to measure
     double gather_overhead = 1;     // of a measured gather over its model
 
-    /// Every rank gets `bytes` in all: log2 stages between the ranks of a host and log2 between hosts, each a latency; every byte but a
-    /// rank's own once. Preconditions: 1 <= hosts <= ranks; the links that this needs are there.
-    double gather_seconds(std::int64_t bytes, std::int64_t ranks, std::int64_t hosts) const;
+    /// Every rank gets `bytes` in all. In one stage: log2 rounds, each with a message between hosts where there are several; every byte but
+    /// a rank's own once. In two: ranks of a host wait for each other twice, log2 rounds each; log2 rounds between hosts; every byte but a
+    /// host's own once between hosts and once more to each rank. Preconditions: 1 <= hosts <= ranks; the near link is there, and stands in
+    /// for the far one where there is none.
+    double gather_seconds(std::int64_t bytes, GatherWay const&) const;
     /// Neighbours exchange `bytes`; the slower link counts.
     double exchange_seconds(std::int64_t bytes, std::int64_t hosts) const { return (hosts > 1 ? far : near).value().seconds(bytes); }
 };
@@ -34,6 +36,7 @@ struct TimedMessage {
 };
 struct NetworkTimes {
     std::int64_t ranks = 1, hosts = 1;
+    GatherWay way;
     std::vector<TimedMessage> messages;  // half of there and back, between rank 0 and the nearest and the farthest rank
     std::vector<TimedMessage> gathers;   // all_gather of the solver's own records
     Network network;

@@ -41,12 +41,13 @@ Outcome bench_network(Communicator const& communicator, BenchRequest const& requ
     Outcome outcome;
     Table table({"message", "bytes", "measured", "model"});
     auto const of_message = [&](TimedMessage const& m) { return (m.what == "far" ? network.far : network.near).value().seconds(m.bytes); };
-    auto const of_gather = [&](TimedMessage const& m) { return network.gather_seconds(m.bytes, times.ranks, times.hosts); };
+    auto const of_gather = [&](TimedMessage const& m) { return network.gather_seconds(m.bytes, times.way); };
     outcome.json = {
         {"bench", "network"},
         {"build", version_json()},
         {"ranks", times.ranks},
         {"hosts", times.hosts},
+        {"stages", times.way.stages},
         {"message_passing", message_passing_library()},
         {"repeat", request.repeat},
         {"messages", rows_of(times.messages, table, of_message)},
@@ -57,7 +58,7 @@ Outcome bench_network(Communicator const& communicator, BenchRequest const& requ
                              counted(times.hosts, "host", "hosts"), message_passing_library(), request.repeat));
     text.entry("on a host", text_of(network.near));
     text.entry("between hosts", text_of(network.far));
-    text.entry("gathers", fmt::format("{:.3g} times what the model of stages says", network.gather_overhead));
+    text.entry("gathers", fmt::format("{:.3g} times what the model says; {}", network.gather_overhead, times.way.text()));
     text.add(table);
     outcome.text = text.str();
     return outcome;

@@ -177,10 +177,12 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     Outcome outcome;
     Json& json = outcome.json;
     std::string const& reason = predictions.choice.reason;
+    GatherWay const& way = communicator.gather_way();
     json = {{"scene", scene.file},
             {"backend", name_of(system.backend())},
             {"backend_reason", reason},
             {"ranks", communicator.size()},
+            {"gathers", {{"stages", way.stages}, {"hosts", way.hosts}}},
             {"threads", system.executor().threads()},
             {"handles", name_of(scene.solver.handles)},
             {"gpu_levels", gpu_levels_json(scene)},
@@ -193,6 +195,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
         text.entry("levels on the GPU",
                    json["gpu_levels"].get<std::string>() + " of the lowest (up,down); the others on the host's threads");
     text.entry("ranks", std::to_string(communicator.size()));
+    if (communicator.size() > 1) text.entry("gathers", way.text());
     text.entry("threads a rank", std::to_string(system.executor().threads()));
     for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);
     add_memory(text, json, scene, predictions, communicator.size());

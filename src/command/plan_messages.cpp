@@ -18,7 +18,9 @@ constexpr int usual_drift_sweeps = 5;
 constexpr int measurements = 21;
 
 Json json_of(Traffic const& t) {
-    return {{"gathers", t.gathers}, {"gathered_bytes", t.gathered_bytes}, {"exchanges", t.exchanges}, {"sent_bytes", t.sent_bytes}};
+    Json json;
+    t.for_each([&](char const* name, std::int64_t count) { json[name] = count; });
+    return json;
 }
 
 Json json_of(Link const& link) { return {{"latency", link.latency}, {"seconds_a_byte", link.seconds_a_byte}}; }
@@ -33,16 +35,17 @@ struct Messages {
     }
 };
 
-/// As a rank in the middle sees it, were there so many.
-Cut cut_on(ChainGroup const& group, bool pairwise, std::int64_t ranks) {
+/// As a rank in the middle sees it that leads a host, were there so many.
+Cut cut_on(ChainGroup const& group, bool pairwise, GatherWay const& way) {
     dca::Partition const& here = group.partition;
     std::vector<std::int64_t> lengths;
     for (dca::ChainTree const& tree : here.trees) lengths.push_back(tree.bodies);
-    dca::Partition const there(lengths, pairwise, static_cast<int>(ranks), here.tip);
+    dca::Partition const there(lengths, pairwise, static_cast<int>(way.ranks), here.tip);
     Cut cut;
     for (int chain = 0; chain < there.chains(); ++chain)
         if (there.is_split(chain)) cut.shared_units += there.trees[static_cast<std::size_t>(chain)].units;
     cut.inboard = cut.outboard = cut.shared_units > 0;
+    cut.way = way;
     return cut;
 }
 
@@ -65,9 +68,9 @@ class Groups {
         return sum;
     }
     /// As a rank in the middle of so many sees them.
-    Messages messages(std::int64_t ranks) const {
+    Messages messages(GatherWay const& way) const {
         bool const pairwise = system_.scene().solver.pairwise();
-        return messages([&](ChainGroup const& group) { return cut_on(group, pairwise, ranks); });
+        return messages([&](ChainGroup const& group) { return cut_on(group, pairwise, way); });
     }
     int usual_sweeps() const {
         return uses_joint_coordinates(system_.scene().dynamics.integrator) ? JointDynamics::usual_corrections : usual_drift_sweeps;
@@ -97,9 +100,9 @@ Network read_network(std::string const& file, std::int64_t ranks, std::int64_t h
     return network;
 }
 
-double seconds_of(Traffic const& t, Network const& network, std::int64_t ranks, std::int64_t hosts) {
+double seconds_of(Traffic const& t, Network const& network, GatherWay const& way, std::int64_t hosts) {
     double seconds = 0;
-    if (t.gathers > 0) seconds += static_cast<double>(t.gathers) * network.gather_seconds(t.gathered_bytes / t.gathers, ranks, hosts);
+    if (t.gathers > 0) seconds += static_cast<double>(t.gathers) * network.gather_seconds(t.gathered_bytes / t.gathers, way);
     if (t.exchanges > 0) seconds += static_cast<double>(t.exchanges) * network.exchange_seconds(t.sent_bytes / t.exchanges, hosts);
     return seconds;
 }
@@ -110,23 +113,25 @@ void add_measured(Text& text, Json& json, ChainSystem const& system, Groups cons
     std::int64_t const ranks = communicator.size(), hosts = count_hosts(communicator);
     json["network"] = {{"measured", nullptr}};
     if (ranks == 1 || !network.near || (hosts > 1 && !network.far)) return;
-    Traffic const t = groups.messages(ranks).with(groups.usual_sweeps());
-    double const measured = time_messages(communicator, t, measurements), predicted = seconds_of(t, network, ranks, hosts);
+    GatherWay const& way = communicator.gather_way();
+    Traffic const t = groups.messages(way).with(groups.usual_sweeps());
+    double const measured = time_messages(communicator, t, measurements), predicted = seconds_of(t, network, way, hosts);
     text.entry("measured", fmt::format("{} on these {} ranks, predicted {}", duration_text(measured), ranks, duration_text(predicted)));
     json["network"]["measured"] = {{"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
 }
 
 void add_prediction(Text& text, Json& json, ChainSystem const& system, Groups const& groups, PlanRequest const& request) {
     Network const network = read_network(request.network, request.ranks, request.hosts);
-    Table table({"ranks", "hosts", "gathers", "bytes", "exchanges", "bytes sent", "time a step"});
+    Table table({"ranks", "hosts", "stages", "gathers", "bytes", "exchanges", "bytes sent", "time a step"});
     Json rows = Json::array();
     for (std::int64_t ranks = std::min<std::int64_t>(2, request.ranks);; ranks = std::min(2 * ranks, request.ranks)) {
         std::int64_t const hosts = std::max<std::int64_t>(1, request.hosts * ranks / request.ranks);
-        Traffic const t = groups.messages(ranks).with(groups.usual_sweeps());
-        double const seconds = seconds_of(t, network, ranks, hosts);
-        table.add({std::to_string(ranks), std::to_string(hosts), std::to_string(t.gathers), std::to_string(t.gathered_bytes),
-                   std::to_string(t.exchanges), std::to_string(t.sent_bytes), duration_text(seconds)});
-        Json row = {{"ranks", ranks}, {"hosts", hosts}, {"seconds", seconds}};
+        GatherWay const way = GatherWay::of({}, ranks, hosts);
+        Traffic const t = groups.messages(way).with(groups.usual_sweeps());
+        double const seconds = seconds_of(t, network, way, hosts);
+        table.add({std::to_string(ranks), std::to_string(hosts), std::to_string(way.stages), std::to_string(t.gathers),
+                   std::to_string(t.gathered_bytes), std::to_string(t.exchanges), std::to_string(t.sent_bytes), duration_text(seconds)});
+        Json row = {{"ranks", ranks}, {"hosts", hosts}, {"stages", way.stages}, {"seconds", seconds}};
         row.update(json_of(t));
         rows.push_back(row);
         if (ranks == request.ranks) break;
@@ -151,7 +156,8 @@ void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest
         return;
     }
     Groups const groups(system);
-    Messages const here = groups.messages([](ChainGroup const& group) { return cut_of(group); });
+    GatherWay const& way = system.communicator().gather_way();
+    Messages const here = groups.messages([&](ChainGroup const& group) { return cut_of(group, way); });
     text.heading("messages");
     text.entry(
         "a step",
@@ -159,6 +165,11 @@ void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest
                     "of tips adds {} gathers, {} bytes, {} exchanges, {} bytes",
                     here.fixed.gathers, here.fixed.gathered_bytes, here.fixed.exchanges, here.fixed.sent_bytes, here.each.gathers,
                     here.each.gathered_bytes, here.each.exchanges, here.each.sent_bytes));
+    if (way.stages == 2)
+        text.entry("in two stages",
+                   fmt::format("{} waits within a host and {} gathers of {} bytes in all between hosts; each sweep adds {}, {}, {} bytes",
+                               here.fixed.host_waits, here.fixed.leader_gathers, here.fixed.leader_bytes, here.each.host_waits,
+                               here.each.leader_gathers, here.each.leader_bytes));
     json["messages"] = {{"fixed", json_of(here.fixed)}, {"each_sweep", json_of(here.each)}};
     if (request.ranks > 0) add_prediction(text, json, system, groups, request);
 }

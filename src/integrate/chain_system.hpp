@@ -1,8 +1,10 @@
 // A scene made ready to compute: executor, groups, solvers and forces, on this rank.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -52,6 +54,13 @@ class ChainSystem {
         std::vector<Quat> orientation;                // identity for beads
     };
     Snapshot snapshot();
+    /// The same in parts of bounded size, in scene order, each as it comes: bodies from `first` on. Collective.
+    struct Bodies {
+        std::int64_t first = 0;
+        Snapshot motion;
+        std::vector<Vector<double, 6>> joint_force;  // where they are asked for
+    };
+    void pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take);
     /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, fixman, then
     /// OpenMM's. Collective.
     std::vector<EnergyTerm> potential_energy();
@@ -68,12 +77,8 @@ class ChainSystem {
     Accelerations accelerations();
     /// OpenMM's forces of the last evaluation alone. Collective.
     std::vector<Vec3> bead_forces() const;
-    struct JointForces {
-        std::vector<Vector<double, 6>> of_bodies;
-        std::vector<TipForce> of_tips;
-    };
-    /// The joint forces alone. Collective.
-    JointForces joint_forces();
+    /// At the chains' tips, in scene order on rank 0. Collective.
+    std::vector<TipForce> tip_forces() const { return tip_forces(results()); }
 
     std::vector<std::unique_ptr<ChainGroup>> const& groups() const { return groups_; }
     std::vector<AbsoluteDynamics*> absolute() const;
@@ -112,11 +117,21 @@ class ChainSystem {
     /// Messages of this rank that brought positions to OpenMM.
     Traffic openmm_traffic() const { return openmm_traffic_; }
 
-    /// Everything a checkpoint needs, in scene order on rank 0; and back, on every rank.
-    std::map<std::string, std::vector<double>> state();
+    /// Everything a checkpoint needs by name, where it is: numbers of this rank's bodies, group by group, zeros where a group has none.
+    struct OwnArray {
+        int width = 0;
+        std::vector<std::vector<double>> of_group;
+    };
+    using OwnState = std::map<std::string, OwnArray>;
+    OwnState own_state() const;
+    /// Accelerations of a joint group that an integrator carries from step to step belong to it.
+    void add_rates(ChainGroup const&, JointRates const&, OwnState&) const;
+    /// One of these to rank 0, in scene order, part by part as they come. Collective.
+    void pass_array(OwnArray const&, std::function<void(std::span<double const>)> const& take) const;
+    /// All of them at once, in scene order on rank 0; and back, on every rank.
+    std::map<std::string, std::vector<double>> gathered(OwnState const&) const;
+    std::map<std::string, std::vector<double>> state() const { return gathered(own_state()); }
     void set_state(std::map<std::string, std::vector<double>> const&);
-    /// The same for accelerations of a joint group that an integrator carries from step to step.
-    void collect_rates(ChainGroup const&, JointRates const&, std::map<std::string, std::vector<double>>& arrays) const;
     JointRates own_rates(ChainGroup const&, std::map<std::string, std::vector<double>> const& arrays) const;
 
   private:
@@ -131,6 +146,8 @@ class ChainSystem {
     void describe_beads();
     void order_beads_by_rank();
     std::vector<BodyResults> results() const;
+    std::vector<std::vector<double>> own_bodies(bool turning, bool joint_forces);
+    std::size_t index_of(ChainGroup const&) const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
     std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;
     ConstView<3> own_bead_positions();
@@ -143,9 +160,8 @@ class ChainSystem {
     /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
     std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
                                  int width) const;
-    /// This rank's part into an array of a checkpoint. Collective.
-    void add_part(ChainGroup const&, std::vector<double> const& own, int width, std::string const& name,
-                  std::map<std::string, std::vector<double>>& arrays) const;
+    /// Into an array of a checkpoint.
+    void add_part(ChainGroup const&, std::vector<double> own, int width, std::string const& name, OwnState&) const;
     Scene const& scene_;
     Communicator const& communicator_;
     Axes axes_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "chain/gather.hpp"
+#include "chain/scene_windows.hpp"
 #include "error.hpp"
 
 namespace catena {
@@ -38,53 +39,112 @@ Field<3> of_starts(ChainGroup const& group, std::vector<Vec3> const& of_body) {
 
 }  // namespace
 
-ChainSystem::Snapshot ChainSystem::snapshot() {
-    std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
-    std::vector<double> position(3 * n), velocity(3 * n), omega(3 * n), orientation(4 * n);
-    for (std::size_t i = 0; i < n; ++i) orientation[4 * i] = 1.0;
+std::size_t ChainSystem::index_of(ChainGroup const& group) const {
+    auto const found = std::find_if(groups_.begin(), groups_.end(), [&](auto const& g) { return g.get() == &group; });
+    return static_cast<std::size_t>(found - groups_.begin());
+}
+
+/// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega, joint force.
+std::vector<std::vector<double>> ChainSystem::own_bodies(bool turning, bool joint_forces) {
+    std::vector<std::vector<double>> own(groups_.size());
+    std::vector<BodyResults> const found = joint_forces ? results() : std::vector<BodyResults>();
+    std::size_t result = 0;
+    auto const add = [&](ChainGroup const& group, auto const& row) {
+        std::vector<double>& rows = own[index_of(group)];
+        rows.reserve(static_cast<std::size_t>(group.size) * ((turning ? 13 : 6) + (joint_forces ? 6 : 0)));
+        for (std::int64_t k = 0; k < group.size; ++k) {
+            row(rows, k);
+            if (!joint_forces) continue;
+            Vector<double, 6> const& wrench = found[result].joint_force[static_cast<std::size_t>(k)];
+            rows.insert(rows.end(), wrench.data, wrench.data + 6);
+        }
+        ++result;
+    };
     for (auto const& group : absolute_) {
+        bool const beads = group->group().beads;
         std::vector<StateArray> const state = group->state(), observed = group->observed_state();
-        gather_to_scene(communicator_, group->group(), 3, array_named(state, "position").values, position);
-        gather_to_scene(communicator_, group->group(), 3, array_named(observed, "velocity").values, velocity);
-        if (group->group().beads) continue;
-        gather_to_scene(communicator_, group->group(), 4, array_named(state, "orientation").values, orientation);
-        gather_to_scene(communicator_, group->group(), 3, array_named(observed, "omega").values, omega);
+        std::vector<double> const &x = array_named(state, "position").values, &v = array_named(observed, "velocity").values, none;
+        std::vector<double> const &q = beads ? none : array_named(state, "orientation").values,
+                                  &w = beads ? none : array_named(observed, "omega").values;
+        add(group->group(), [&](std::vector<double>& rows, std::int64_t k) {
+            auto const put = [&](std::vector<double> const& of, int n) {
+                rows.insert(rows.end(), of.begin() + n * k, of.begin() + n * (k + 1));
+            };
+            put(x, 3);
+            put(v, 3);
+            if (!turning) return;
+            if (beads) return static_cast<void>(rows.insert(rows.end(), {1, 0, 0, 0, 0, 0, 0}));
+            put(q, 4);
+            put(w, 3);
+        });
     }
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         BodyMotion const motion = dynamics->motion();
-        std::vector<Vec3> x, v;
-        for (std::int64_t k = 0; k < group.size; ++k) {
+        add(group, [&](std::vector<double>& rows, std::int64_t k) {
             Vector<double, 4> const q = motion.orientation[k];
             Mat3 const turn = to_matrix(Quat{q[0], q[1], q[2], q[3]});
-            x.push_back(motion.origin[k] - turn * group.r1[k]);
-            v.push_back(turn * (motion.velocity[k] - cross(motion.omega[k], group.r1[k])));
-        }
-        gather_to_scene(communicator_, group, 3, flat(x), position);
-        gather_to_scene(communicator_, group, 3, flat(v), velocity);
-        gather_to_scene(communicator_, group, 4, to_array<4>("", motion.orientation.view()).values, orientation);
-        gather_to_scene(communicator_, group, 3, to_array<3>("", motion.omega.view()).values, omega);
+            Vec3 const omega = motion.omega[k], x = motion.origin[k] - turn * group.r1[k];
+            Vec3 const v = turn * (motion.velocity[k] - cross(omega, group.r1[k]));
+            rows.insert(rows.end(), x.data, x.data + 3);
+            rows.insert(rows.end(), v.data, v.data + 3);
+            rows.insert(rows.end(), q.data, q.data + 4);
+            rows.insert(rows.end(), omega.data, omega.data + 3);
+        });
     }
-    Snapshot s{triples(position), triples(velocity), triples(omega), {}};
-    for (std::size_t i = 0; i < n; ++i)
-        s.orientation.push_back({orientation[4 * i], orientation[4 * i + 1], orientation[4 * i + 2], orientation[4 * i + 3]});
-    return s;
+    return own;
+}
+
+void ChainSystem::pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take) {
+    bool const turning = std::any_of(groups_.begin(), groups_.end(), [](auto const& group) { return !group->beads; });
+    int const width = (turning ? 13 : 6) + (joint_forces ? 6 : 0);
+    auto const own = own_bodies(turning, joint_forces);
+    SceneWindows(communicator_, groups_).pass(width, own, [&](std::int64_t first, std::span<double const> values) {
+        Bodies bodies;
+        bodies.first = first;
+        Snapshot& motion = bodies.motion;
+        for (auto row = values.begin(); row != values.end();) {
+            auto const next = [&] { return *row++; };
+            auto const three = [&] { return Vec3{{next(), next(), next()}}; };
+            motion.position.push_back(three());
+            motion.velocity.push_back(three());
+            motion.orientation.push_back(turning ? Quat{next(), next(), next(), next()} : Quat::identity());
+            motion.omega.push_back(turning ? three() : Vec3::zero());
+            if (joint_forces) bodies.joint_force.push_back({{next(), next(), next(), next(), next(), next()}});
+        }
+        take(bodies);
+    });
+}
+
+ChainSystem::Snapshot ChainSystem::snapshot() {
+    Snapshot all;
+    auto const append = [](auto& to, auto const& from) { to.insert(to.end(), from.begin(), from.end()); };
+    pass_bodies(false, [&](Bodies const& bodies) {
+        append(all.position, bodies.motion.position);
+        append(all.velocity, bodies.motion.velocity);
+        append(all.omega, bodies.motion.omega);
+        append(all.orientation, bodies.motion.orientation);
+    });
+    return all;
 }
 
 std::vector<EnergyTerm> ChainSystem::potential_energy() {
-    std::size_t const n = communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies()) : 0;
-    std::vector<double> gravity(n), springs(n), fixman(scene_.dynamics.fixman ? n : 0);
+    int const width = scene_.dynamics.fixman ? 3 : 2;
+    std::vector<std::vector<double>> own(groups_.size());
     auto const add = [&](ChainGroup const& group, PotentialEnergy const& e) {
-        gather_to_scene(communicator_, group, 1, e.gravity, gravity);
-        gather_to_scene(communicator_, group, 1, e.springs, springs);
-        if (scene_.dynamics.fixman) gather_to_scene(communicator_, group, 1, e.fixman, fixman);
+        std::vector<double>& rows = own[index_of(group)];
+        for (auto k = std::size_t{0}; k < static_cast<std::size_t>(group.size); ++k) {
+            rows.insert(rows.end(), {e.gravity[k], e.springs[k]});
+            if (scene_.dynamics.fixman) rows.push_back(e.fixman[k]);
+        }
     };
     for (auto const& group : absolute_) add(group->group(), group->potential());
     for (auto const& group : joint_) add(group->group(), group->potential());
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
-    for (double const e : gravity) terms[0].value += e;
-    for (double const e : springs) terms[1].value += e;
-    if (scene_.dynamics.fixman) terms.push_back({"fixman", std::accumulate(fixman.begin(), fixman.end(), 0.0)});
+    if (scene_.dynamics.fixman) terms.push_back({"fixman", 0.0});
+    SceneWindows(communicator_, groups_).pass(width, own, [&](std::int64_t, std::span<double const> values) {
+        for (std::size_t i = 0; i < values.size(); ++i) terms[i % static_cast<std::size_t>(width)].value += values[i];
+    });
     if (openmm_)
         for (EnergyTerm const& term : openmm_->energies()) terms.push_back(term);
     return terms;
@@ -95,11 +155,6 @@ std::vector<BodyResults> ChainSystem::results() const {
     for (auto const& group : absolute_) all.push_back(group->results());
     for (auto const& group : joint_) all.push_back(group->results());
     return all;
-}
-
-ChainSystem::JointForces ChainSystem::joint_forces() {
-    std::vector<BodyResults> const found = results();
-    return {joint_forces(found), tip_forces(found)};
 }
 
 std::vector<Vector<double, 6>> ChainSystem::joint_forces(std::vector<BodyResults> const& results) const {
@@ -184,32 +239,47 @@ std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std:
     return take_from_scene(group, width, found->second);
 }
 
-void ChainSystem::add_part(ChainGroup const& group, std::vector<double> const& own, int width, std::string const& name,
-                           std::map<std::string, std::vector<double>>& arrays) const {
-    auto& array = arrays[name];
-    array.resize(communicator_.rank() == 0 ? static_cast<std::size_t>(scene_.bodies() * width) : 0);
-    gather_to_scene(communicator_, group, width, own, array);
+void ChainSystem::add_part(ChainGroup const& group, std::vector<double> own, int width, std::string const& name, OwnState& state) const {
+    OwnArray& array = state[name];
+    array.width = width;
+    array.of_group.resize(groups_.size());
+    array.of_group[index_of(group)] = std::move(own);
+    for (std::size_t g = 0; g < groups_.size(); ++g) array.of_group[g].resize(static_cast<std::size_t>(groups_[g]->size * width));
 }
 
-std::map<std::string, std::vector<double>> ChainSystem::state() {
-    std::map<std::string, std::vector<double>> arrays;
+ChainSystem::OwnState ChainSystem::own_state() const {
+    OwnState own;
     for (auto const& group : absolute_)
-        for (StateArray const& a : group->state()) add_part(group->group(), a.values, a.width, a.name, arrays);
+        for (StateArray& a : group->state()) add_part(group->group(), std::move(a.values), a.width, a.name, own);
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         JointState const s = dynamics->state();
-        add_part(group, to_array<4>("", s.q.view()).values, 4, "q", arrays);
-        add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", arrays);
-        add_part(group, at_starts(group, s.base_position), 3, "base_position", arrays);
-        add_part(group, at_starts(group, s.base_velocity), 3, "base_velocity", arrays);
+        add_part(group, to_array<4>("", s.q.view()).values, 4, "q", own);
+        add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", own);
+        add_part(group, at_starts(group, s.base_position), 3, "base_position", own);
+        add_part(group, at_starts(group, s.base_velocity), 3, "base_velocity", own);
     }
-    return arrays;
+    return own;
 }
 
-void ChainSystem::collect_rates(ChainGroup const& group, JointRates const& rates,
-                                std::map<std::string, std::vector<double>>& arrays) const {
-    add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", arrays);
-    add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", arrays);
+void ChainSystem::add_rates(ChainGroup const& group, JointRates const& rates, OwnState& own) const {
+    add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", own);
+    add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", own);
+}
+
+void ChainSystem::pass_array(OwnArray const& array, std::function<void(std::span<double const>)> const& take) const {
+    SceneWindows(communicator_, groups_).pass(array.width, array.of_group, [&](std::int64_t, std::span<double const> values) {
+        take(values);
+    });
+}
+
+std::map<std::string, std::vector<double>> ChainSystem::gathered(OwnState const& own) const {
+    std::map<std::string, std::vector<double>> arrays;
+    for (auto const& [name, array] : own) {
+        std::vector<double>& whole = arrays[name];
+        pass_array(array, [&](std::span<double const> values) { whole.insert(whole.end(), values.begin(), values.end()); });
+    }
+    return arrays;
 }
 
 JointRates ChainSystem::own_rates(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "scene/freedom.hpp"
 
@@ -13,36 +14,40 @@ std::int64_t degrees_of_freedom(Scene const& scene) {
     return dof;
 }
 
-double kinetic_energy(Scene const& scene, ChainSystem::Snapshot const& snapshot) {
-    double energy = 0;
-    std::size_t i = 0;
-    for (ChainSpec const& chain : scene.chains) {
-        auto const add = [&](double mass, Sym3 const* inertia) {
-            energy += 0.5 * mass * dot(snapshot.velocity[i], snapshot.velocity[i]);
-            if (inertia) energy += 0.5 * dot(snapshot.omega[i], *inertia * snapshot.omega[i]);
-            ++i;
-        };
-        for (double const mass : chain.beads.mass) add(mass, nullptr);
-        for (std::size_t k = 0; k < chain.bodies.size(); ++k) add(chain.bodies.mass[k], &chain.bodies.inertia[k]);
-        for (std::size_t k = 0; k < chain.linked.size(); ++k) add(chain.linked.mass[k], &chain.linked.inertia[k]);
+void KineticEnergy::add(ChainSystem::Snapshot const& s) {
+    for (std::size_t i = 0; i < s.velocity.size(); ++i, ++body_) {
+        for (; body_ == scene_->chains[chain_].size(); body_ = 0) ++chain_;
+        ChainSpec const& chain = scene_->chains[chain_];
+        if (chain.is_beads()) {
+            sum_ += 0.5 * chain.beads.mass[body_] * dot(s.velocity[i], s.velocity[i]);
+            continue;
+        }
+        bool const linked = chain.is_linked();
+        sum_ += 0.5 * (linked ? chain.linked.mass[body_] : chain.bodies.mass[body_]) * dot(s.velocity[i], s.velocity[i]);
+        Sym3 const& inertia = linked ? chain.linked.inertia[body_] : chain.bodies.inertia[body_];
+        sum_ += 0.5 * dot(s.omega[i], inertia * s.omega[i]);
     }
-    return energy;
 }
 
-double radius_of_gyration(std::vector<double> const& mass, std::vector<Vec3> const& position, std::int64_t first, std::int64_t count) {
-    double total = 0, square = 0;
-    Vec3 centre = Vec3::zero();
-    for (std::int64_t i = first; i < first + count; ++i) {
-        total += mass[i];
-        centre = plus_scaled(centre, mass[i], position[i] - position[first]);
-    }
-    centre = position[first] + (1.0 / total) * centre;
-    for (std::int64_t i = first; i < first + count; ++i) square += mass[i] * dot(position[i] - centre, position[i] - centre);
-    return std::sqrt(square / total);
+double kinetic_energy(Scene const& scene, ChainSystem::Snapshot const& snapshot) {
+    KineticEnergy energy(scene);
+    energy.add(snapshot);
+    return energy.value();
 }
+
+void Shape::add(double mass, Vec3 const& position) {
+    if (sites_++ == 0) first_ = position;
+    last_ = position;
+    mass_ += mass;
+    Vec3 const from_first = position - first_, before = from_first - mean_;
+    mean_ = plus_scaled(mean_, mass / mass_, before);
+    square_ += mass * dot(before, from_first - mean_);
+}
+
+double Shape::radius_of_gyration() const { return std::sqrt(square_ / mass_); }
 
 Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
-    : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)) {
+    : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)), kinetic_(scene) {
     for (ChainSpec const& chain : scene.chains) has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
     has_temperature_ = has_temperature_ && dof_ > 0 && !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
     std::string const energy = scene.si ? " [J]" : " [kJ/mol]", length = scene.si ? " [m]" : " [nm]";
@@ -69,10 +74,29 @@ bool Observables::wants(std::string const& name) const {
     return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
 }
 
-std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std::vector<Vec3> const& positions,
-                                     std::vector<EnergyTerm> const& terms, double constraint_error) const {
+void Observables::begin() {
+    kinetic_ = KineticEnergy(scene_);
+    chain_ = site_ = 0;
+    shape_ = Shape();
+    gyration_.clear();
+    distance_.clear();
+}
+
+void Observables::add(ChainSystem::Snapshot const& bodies, std::vector<Vec3> const& positions) {
+    kinetic_.add(bodies);
+    for (Vec3 const& position : positions) {
+        shape_.add(topology_.mass[site_++], position);
+        if (static_cast<std::int64_t>(site_) < topology_.chains[chain_].first + topology_.chains[chain_].count) continue;
+        gyration_.push_back(shape_.radius_of_gyration());
+        distance_.push_back(shape_.end_to_end_distance());
+        shape_ = Shape();
+        ++chain_;
+    }
+}
+
+std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms, double constraint_error) const {
     std::vector<double> row;
-    double const kinetic = kinetic_energy(scene_, snapshot);
+    double const kinetic = kinetic_.value();
     if (wants("energy")) {
         double potential = 0;
         for (EnergyTerm const& term : terms) {
@@ -85,17 +109,12 @@ std::vector<double> Observables::row(ChainSystem::Snapshot const& snapshot, std:
     if (wants("constraint_error")) row.push_back(constraint_error);
     for (bool const gyration : {true, false}) {
         if (!wants(gyration ? "radius_of_gyration" : "end_to_end_distance")) continue;
-        std::vector<double> values;
-        for (Topology::Chain const& chain : topology_.chains)
-            values.push_back(gyration ? radius_of_gyration(topology_.mass, positions, chain.first, chain.count)
-                                      : norm(positions[chain.first + chain.count - 1] - positions[chain.first]));
+        std::vector<double> const& values = gyration ? gyration_ : distance_;
         if (values.size() <= most_single_chains_) {
             row.insert(row.end(), values.begin(), values.end());
             continue;
         }
-        double sum = 0;
-        for (double const v : values) sum += v;
-        row.push_back(sum / static_cast<double>(values.size()));
+        row.push_back(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()));
     }
     return row;
 }

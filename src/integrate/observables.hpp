@@ -1,4 +1,4 @@
-// The numbers of observables.csv, from a snapshot in scene order on rank 0.
+// The numbers of observables.csv, on rank 0, from bodies that come in scene order.
 #pragma once
 
 #include <string>
@@ -14,8 +14,33 @@ std::int64_t degrees_of_freedom(Scene const&);
 
 /// Kinetic energy of all bodies. `snapshot` in scene order.
 double kinetic_energy(Scene const&, ChainSystem::Snapshot const&);
-/// Mass-weighted radius of gyration of the sites [first, first + count).
-double radius_of_gyration(std::vector<double> const& mass, std::vector<Vec3> const& position, std::int64_t first, std::int64_t count);
+
+/// The same from parts of the scene as they come.
+class KineticEnergy {
+  public:
+    explicit KineticEnergy(Scene const& scene) : scene_(&scene) {}
+    /// The next bodies.
+    void add(ChainSystem::Snapshot const&);
+    double value() const { return sum_; }
+
+  private:
+    Scene const* scene_;
+    std::size_t chain_ = 0, body_ = 0;  // of the next one
+    double sum_ = 0;
+};
+
+/// Of a chain's sites as they come, in one pass: mean and square follow Welford (Technometrics 4, 419, 1962).
+class Shape {
+  public:
+    void add(double mass, Vec3 const& position);
+    double radius_of_gyration() const;  // weighted with masses
+    double end_to_end_distance() const { return norm(last_ - first_); }
+
+  private:
+    std::int64_t sites_ = 0;
+    double mass_ = 0, square_ = 0;
+    Vec3 first_ = Vec3::zero(), last_ = Vec3::zero(), mean_ = Vec3::zero();
+};
 
 class Observables {
   public:
@@ -24,9 +49,11 @@ class Observables {
     Observables(Scene const&, Topology const&, std::vector<EnergyTerm> const& terms);
     /// Names with units, e.g. "total_energy [kJ/mol]".
     std::vector<std::string> const& columns() const { return columns_; }
-    /// `positions`: of the topology's sites.
-    std::vector<double> row(ChainSystem::Snapshot const&, std::vector<Vec3> const& positions, std::vector<EnergyTerm> const& terms,
-                            double constraint_error) const;
+    /// Another row: forgets what was added.
+    void begin();
+    /// The next bodies and their sites.
+    void add(ChainSystem::Snapshot const&, std::vector<Vec3> const& positions);
+    std::vector<double> row(std::vector<EnergyTerm> const& terms, double constraint_error) const;
 
   private:
     bool wants(std::string const& name) const;
@@ -35,6 +62,10 @@ class Observables {
     Topology const& topology_;
     std::int64_t dof_;
     std::vector<std::string> columns_;
+    KineticEnergy kinetic_;
+    std::size_t chain_ = 0, site_ = 0;  // of the topology, next
+    Shape shape_;                       // of that chain, so far
+    std::vector<double> gyration_, distance_;
     static constexpr std::size_t most_single_chains_ = 10;  // beyond, shapes are averaged over chains
 };
 

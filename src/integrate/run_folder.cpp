@@ -1,6 +1,8 @@
 #include "integrate/run_folder.hpp"
 
 #include <filesystem>
+#include <set>
+#include <utility>
 
 #include "error.hpp"
 #include "mpi/first_rank.hpp"
@@ -38,6 +40,7 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         fs::create_directories(folder_, error);
         if (error) throw InputError("the output folder cannot be made: " + error.message(), folder_, "name another with --output");
     });
+    appends_ = communicator.sum(appends_ ? 1 : 0) > 0;  // rank 0 alone looked
 }
 
 /// Between two renames of a checkpoint that was being written, only the one before is there.
@@ -48,11 +51,11 @@ std::string RunFolder::newest_checkpoint() const {
     return {};
 }
 
-void RunFolder::open(Topology const& topology, Frame const& first, std::vector<std::string> const& columns) {
+void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns) {
     on_first_rank(communicator_, [&] {
         // The frame of the checkpoint's step is written anew: it may have been no frame of the run before.
         std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_ - 1) : std::nullopt;
-        if (!appends_) topology_files_ = write_topology(folder_, topology, first);
+        if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
         trajectory_ = make_trajectory(path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
         observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");
     });
@@ -71,18 +74,77 @@ void RunFolder::on_disk(Action const& action) {
     });
 }
 
-void RunFolder::write(Frame const& frame, std::vector<double> const& observables) {
-    on_disk([&] {
-        trajectory_->write(frame);
-        observables_->write(frame.step, frame.time, observables);
+template <class Action>
+void RunFolder::keeping_failure(Action const& action) {
+    if (failure_) return;
+    try {
+        action();
+    } catch (...) {
+        failure_ = std::current_exception();
+    }
+}
+
+void RunFolder::throw_kept() {
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void RunFolder::put_topology(Frame const& part) {
+    keeping_failure([&] { topology_->put(part.positions); });
+}
+
+void RunFolder::end_topology() {
+    on_first_rank(communicator_, [&] {
+        throw_kept();
+        topology_files_ = topology_->finish();
+        topology_.reset();
     });
 }
 
-void RunFolder::write_checkpoint(Checkpoint const& checkpoint) {
+void RunFolder::begin(std::int64_t step, double time) {
+    step_ = step;
+    time_ = time;
+    if (trajectory_) keeping_failure([&] { trajectory_->begin(step, time); });
+}
+
+void RunFolder::put(Frame const& part) {
+    keeping_failure([&] { trajectory_->put(part); });
+}
+
+void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables) {
     on_disk([&] {
+        throw_kept();
+        trajectory_->end(tip_forces);
+        observables_->write(step_, time_, observables);
+    });
+}
+
+void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system, ChainSystem::OwnState const& own) {
+    std::unique_ptr<CheckpointWriter> writer;
+    auto const on_root = [&](auto const& action) {
+        if (communicator_.rank() == 0) keeping_failure(action);
+    };
+    on_root([&] {
         trajectory_->flush();  // a restart finds every frame up to the checkpoint's step
         observables_->flush();
-        catena::write_checkpoint(path("checkpoint.h5"), checkpoint);
+        writer = std::make_unique<CheckpointWriter>(path("checkpoint.h5"), checkpoint);
+    });
+    std::set<std::string> names;
+    for (auto const& [name, values] : checkpoint.arrays) names.insert(name);
+    for (auto const& [name, array] : own) names.insert(name);
+    for (std::string const& name : names) {
+        auto const small = checkpoint.arrays.find(name);
+        if (small != checkpoint.arrays.end()) {
+            on_root([&] { writer->begin_array(name, std::ssize(small->second)); });
+            on_root([&] { writer->put(small->second); });
+            continue;
+        }
+        ChainSystem::OwnArray const& array = own.at(name);
+        on_root([&] { writer->begin_array(name, scene_.bodies() * array.width); });
+        system.pass_array(array, [&](std::span<double const> values) { keeping_failure([&] { writer->put(values); }); });
+    }
+    on_disk([&] {
+        throw_kept();
+        writer->finish();
     });
 }
 

@@ -1,6 +1,7 @@
 // The folder a run writes, on rank 0. What fails there (a full disk) ends all ranks in good order: every call is collective.
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,10 +18,17 @@ class RunFolder {
     /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Throws InputError on every rank.
     RunFolder(Scene const&, Communicator const&, RunOptions const&, std::int64_t first_step);
 
-    /// The files that need the first state.
-    void open(Topology const&, Frame const& first, std::vector<std::string> const& columns);
-    void write(Frame const&, std::vector<double> const& observables);
-    void write_checkpoint(Checkpoint const&);
+    void open(Topology const&, std::vector<std::string> const& columns);
+    /// Whether the topology's files are wanted: the first state's parts, and the end of it.
+    bool wants_topology() const { return !appends_; }
+    void put_topology(Frame const& part);
+    void end_topology();
+    /// A frame: begin and parts on rank 0 alone, which keeps what fails there for the end.
+    void begin(std::int64_t step, double time);
+    void put(Frame const& part);
+    void end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables);
+    /// With the arrays of bodies that ranks have of the system.
+    void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
     /// Closes the tables, writes summary, timeline and report.
     void finish(std::string const& summary, std::string const& timeline);
 
@@ -33,15 +41,23 @@ class RunFolder {
     /// By rank 0; a ComputationError of its tells the way back as well.
     template <class Action>
     void on_disk(Action const& action);
+    /// On rank 0 between collective calls, unless something failed before.
+    template <class Action>
+    void keeping_failure(Action const& action);
+    void throw_kept();
 
     Scene const& scene_;
     Communicator const& communicator_;
     bool appends_ = false;
     std::int64_t first_step_;
     std::string folder_;
+    std::unique_ptr<TopologyWriter> topology_;
     std::unique_ptr<TrajectoryWriter> trajectory_;
     std::unique_ptr<ObservablesWriter> observables_;
     std::vector<std::string> topology_files_;
+    std::exception_ptr failure_;
+    std::int64_t step_ = 0;
+    double time_ = 0;
 };
 
 }  // namespace catena

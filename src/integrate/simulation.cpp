@@ -28,11 +28,9 @@ constexpr std::int64_t check_every = 100;
 constexpr double early = 0.1, rounding_of_joints = 1e-13;
 
 json as_json(Traffic const& sum, std::int64_t steps) {
-    auto const a_step = [&](std::int64_t n) { return static_cast<double>(n) / static_cast<double>(steps); };
-    return {{"gathers", a_step(sum.gathers)},
-            {"gathered_bytes", a_step(sum.gathered_bytes)},
-            {"exchanges", a_step(sum.exchanges)},
-            {"sent_bytes", a_step(sum.sent_bytes)}};
+    json a_step;
+    sum.for_each([&](char const* name, std::int64_t count) { a_step[name] = static_cast<double>(count) / static_cast<double>(steps); });
+    return a_step;
 }
 
 class Run {
@@ -43,7 +41,7 @@ class Run {
           options_(options),
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene_.dynamics.steps)),
-          sites_(scene_),
+          sites_(root_ ? Sites(scene_) : Sites()),
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator,
                   is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0) {
         Integrator const integrator = scene_.dynamics.integrator;
@@ -108,37 +106,32 @@ class Run {
         return &timelines_.back();
     }
 
-    Frame frame(std::int64_t n, ChainSystem::Snapshot const& s) {
-        Frame f;
-        f.step = n;
-        f.time = time(n);
-        f.positions = sites_.positions(s);
-        if (scene_.output.velocities) f.velocities = sites_.velocities(s);
-        f.orientations = sites_.orientations(s);
-        if (scene_.output.joint_forces) {
-            auto const [of_bodies, of_tips] = system_.joint_forces();
-            f.joint_forces = sites_.joint_forces(of_bodies);
-            for (TipForce const& tip : of_tips) f.tip_forces.push_back(tip.wrench);
-        }
-        return f;
-    }
-
     void open(std::int64_t n) {
         first_ = n;
         folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
         stepper_->observe(scene_.output.joint_forces);
-        std::vector<EnergyTerm> const terms = system_.potential_energy();
-        observables_ = std::make_unique<Observables>(scene_, sites_.topology(), terms);
-        folder_->open(sites_.topology(), frame(n, system_.snapshot()), observables_->columns());
+        observables_ = std::make_unique<Observables>(scene_, sites_.topology(), system_.potential_energy());
+        folder_->open(sites_.topology(), observables_->columns());
+        if (!folder_->wants_topology()) return;
+        system_.pass_bodies(false, [&](ChainSystem::Bodies const& bodies) { folder_->put_topology(sites_.part(bodies, false)); });
+        folder_->end_topology();
     }
 
     void output(std::int64_t n, double error) {
         stepper_->observe(scene_.output.joint_forces);
-        ChainSystem::Snapshot const snapshot = system_.snapshot();
+        folder_->begin(n, time(n));
+        observables_->begin();
+        system_.pass_bodies(scene_.output.joint_forces, [&](ChainSystem::Bodies const& bodies) {
+            Frame const part = sites_.part(bodies, scene_.output.velocities);
+            observables_->add(bodies.motion, part.positions);
+            folder_->put(part);
+        });
         std::vector<EnergyTerm> const terms = system_.potential_energy();
-        Frame const f = frame(n, snapshot);
-        if (root_) last_row_ = observables_->row(snapshot, f.positions, terms, error);
-        folder_->write(f, last_row_);
+        std::vector<Vector<double, 6>> at_tips;
+        if (scene_.output.joint_forces)
+            for (TipForce const& tip : system_.tip_forces()) at_tips.push_back(tip.wrench);
+        if (root_) last_row_ = observables_->row(terms, error);
+        folder_->end(at_tips, last_row_);
     }
 
     /// The largest over ranks: every rank decides the same. A state that is not finite has none.
@@ -167,7 +160,8 @@ class Run {
         ++counted_steps_;
         counted_ += of_step;
         for (std::size_t i = 0; i < messages_.size(); ++i)
-            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i]), stepper_->parts(), stepper_->solved());
+            predicted_ += messages_[i].a_step(stepper_->sweeps(), cut_of(*system_.groups()[i], communicator_.gather_way()),
+                                              stepper_->parts(), stepper_->solved());
     }
 
     /// What fails within a step says at which.
@@ -190,10 +184,11 @@ class Run {
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
         if (system_.openmm()) c.notes[note_of_platform] = platform();
-        c.arrays = system_.state();
-        stepper_->save(c);
         c.arrays["largest_constraint_error"] = {worst_error_};
-        folder_->write_checkpoint(c);
+        stepper_->save(c);
+        ChainSystem::OwnState own = system_.own_state();
+        stepper_->save(own);
+        folder_->write_checkpoint(c, system_, own);
     }
 
     static constexpr char const* note_of_platform = "openmm_platform";
@@ -254,6 +249,7 @@ class Run {
         s["parallel"] = {{"ranks", communicator_.size()},
                          {"threads", system_.executor().threads()},
                          {"message_passing", message_passing_library()},
+                         {"gathers", communicator_.gather_way().text()},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
         if (counted_steps_ > 0)

@@ -1,5 +1,7 @@
 #include "integrate/sites.hpp"
 
+#include <algorithm>
+
 namespace catena {
 
 Sites::Sites(Scene const& scene) {
@@ -45,36 +47,23 @@ void Sites::add(ChainSpec const& chain, std::size_t first_body) {
     }
 }
 
-std::vector<Vec3> Sites::positions(ChainSystem::Snapshot const& s) const {
-    std::vector<Vec3> all;
-    if (s.position.empty()) return all;
-    all.reserve(sites_.size());
-    for (Site const& site : sites_) all.push_back(s.position[site.body] + to_matrix(s.orientation[site.body]) * site.place);
-    return all;
-}
-
-std::vector<Vec3> Sites::velocities(ChainSystem::Snapshot const& s) const {
-    std::vector<Vec3> all;
-    if (s.velocity.empty()) return all;
-    all.reserve(sites_.size());
-    for (Site const& site : sites_)
-        all.push_back(s.velocity[site.body] + to_matrix(s.orientation[site.body]) * cross(s.omega[site.body], site.place));
-    return all;
-}
-
-std::vector<Quat> Sites::orientations(ChainSystem::Snapshot const& s) const {
-    std::vector<Quat> all;
-    if (s.orientation.empty()) return all;
-    for (std::size_t const body : turning_) all.push_back(s.orientation[body]);
-    return all;
-}
-
-std::vector<Vector<double, 6>> Sites::joint_forces(std::vector<Vector<double, 6>> const& of_bodies) const {
-    std::vector<Vector<double, 6>> all;
-    if (of_bodies.empty()) return all;
-    all.reserve(sites_.size());
-    for (Site const& site : sites_) all.push_back(site.is_first ? of_bodies[site.body] : Vector<double, 6>::zero());
-    return all;
+Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities) const {
+    auto const first = static_cast<std::size_t>(bodies.first), end = first + bodies.motion.position.size();
+    auto const begin = std::lower_bound(sites_.begin(), sites_.end(), first, [](Site const& site, std::size_t b) { return site.body < b; });
+    auto const turning = std::lower_bound(turning_.begin(), turning_.end(), first);
+    Frame part;
+    part.first_site = static_cast<std::size_t>(begin - sites_.begin());
+    part.first_body = static_cast<std::size_t>(turning - turning_.begin());
+    ChainSystem::Snapshot const& s = bodies.motion;
+    for (auto site = begin; site != sites_.end() && site->body < end; ++site) {
+        std::size_t const k = site->body - first;
+        Mat3 const turn = to_matrix(s.orientation[k]);
+        part.positions.push_back(s.position[k] + turn * site->place);
+        if (velocities) part.velocities.push_back(s.velocity[k] + turn * cross(s.omega[k], site->place));
+        if (!bodies.joint_force.empty()) part.joint_forces.push_back(site->is_first ? bodies.joint_force[k] : Vector<double, 6>::zero());
+    }
+    for (auto body = turning; body != turning_.end() && *body < end; ++body) part.orientations.push_back(s.orientation[*body - first]);
+    return part;
 }
 
 }  // namespace catena

@@ -11,15 +11,12 @@ namespace catena {
 
 class Sites {
   public:
+    Sites() = default;  // none: where no files are written
     explicit Sites(Scene const&);
 
     Topology const& topology() const { return topology_; }
-    std::vector<Vec3> positions(ChainSystem::Snapshot const&) const;
-    std::vector<Vec3> velocities(ChainSystem::Snapshot const&) const;
-    /// Of topology().bodies.
-    std::vector<Quat> orientations(ChainSystem::Snapshot const&) const;
-    /// From those of the scene's bodies; zero on the beads of a body but its first.
-    std::vector<Vector<double, 6>> joint_forces(std::vector<Vector<double, 6>> const& of_bodies) const;
+    /// What these bodies show of themselves, without step and time.
+    Frame part(ChainSystem::Bodies const&, bool velocities) const;
 
   private:
     struct Site {

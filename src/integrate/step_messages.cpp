@@ -13,8 +13,11 @@ class Sum {
     explicit Sum(Cut const& cut) : cut_(cut) {}
     void gathers(std::int64_t times, std::int64_t numbers) {
         if (cut_.shared_units == 0) return;
-        traffic_.gathers += times;
-        traffic_.gathered_bytes += times * bytes(cut_.shared_units * numbers);
+        std::int64_t const all = bytes(cut_.shared_units * numbers);
+        Traffic one = cut_.way.within_and_between_hosts(all);
+        one.gathers = 1;
+        one.gathered_bytes = all;
+        traffic_ += one * times;
     }
     /// As exchange_from_inboard: the last body goes to the rank after.
     void from_inboard(std::int64_t times, std::int64_t numbers) { exchanges(times, numbers, cut_.outboard); }
@@ -46,9 +49,9 @@ bool has_tips(Scene const& scene) {
 
 }  // namespace
 
-Cut cut_of(ChainGroup const& group) {
+Cut cut_of(ChainGroup const& group, GatherWay const& way) {
     auto const shown = std::count_if(group.rings.begin(), group.rings.end(), [](LocalRing const& ring) { return !ring.is_whole(); });
-    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0, group.neighbour_outboard >= 0, shown};
+    return {std::ssize(group.schedule.shared), group.neighbour_inboard >= 0, group.neighbour_outboard >= 0, shown, way};
 }
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)

@@ -11,8 +11,9 @@ struct Cut {
     std::int64_t shared_units = 0;           // of chains that several ranks share
     bool inboard = false, outboard = false;  // a chain goes on there on another rank
     std::int64_t ring_ends = 0;              // rings that have their other end on another rank
+    GatherWay way;
 };
-Cut cut_of(ChainGroup const&);
+Cut cut_of(ChainGroup const&, GatherWay const&);
 
 class StepMessages {
   public:

@@ -52,8 +52,10 @@ class JointStepper final : public Stepper {
     void save(Checkpoint& c) const override {
         c.integers["corrections_of_tips"] = corrections_;
         integrator_->save(c);
+    }
+    void save(ChainSystem::OwnState& own) const override {
         if (!integrator_->carries_rates()) return;
-        for (JointDynamics const* const group : system_.joint()) system_.collect_rates(group->group(), group->carried_rates(), c.arrays);
+        for (JointDynamics const* const group : system_.joint()) system_.add_rates(group->group(), group->carried_rates(), own);
     }
     void restore(Checkpoint const& c) override {
         for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(c.step) * h_);
@@ -144,6 +146,7 @@ class ConstrainedStepper final : public Stepper {
     }
     int sweeps() const override { return integrator_.sweeps(); }
     int parts() const override { return integrator_.parts(); }
+    using Stepper::save;
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();

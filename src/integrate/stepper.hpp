@@ -30,6 +30,8 @@ class Stepper {
     /// How many there were of an adaptive run; null of others.
     virtual nlohmann::json inner_steps() const;
     virtual void save(Checkpoint&) const = 0;
+    /// What is carried from step to step beside the system's own state.
+    virtual void save(ChainSystem::OwnState&) const {}
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;
 };

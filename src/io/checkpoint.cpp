@@ -2,6 +2,7 @@
 // arrays (doubles), one dataset an entry. The checksum runs over all of it in the order of the keys.
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <filesystem>
@@ -39,15 +40,13 @@ Checksum checksum_of_head(Checkpoint const& checkpoint) {
     return sum;
 }
 
-void add_array(Checksum& sum, std::string const& key, std::vector<double> const& values) {
+void add_head_of_array(Checksum& sum, std::string const& key, std::size_t size) {
     sum.add(std::string_view(key));
-    sum.add(std::span<double const>(values));
+    sum.add(std::uint64_t{size});
 }
 
-std::uint64_t checksum_of(Checkpoint const& checkpoint) {
-    Checksum sum = checksum_of_head(checkpoint);
-    for (auto const& [key, values] : checkpoint.arrays) add_array(sum, key, values);
-    return sum.value();
+void add_values(Checksum& sum, std::span<double const> values) {
+    for (double const value : values) sum.add(value);
 }
 
 std::string previous_of(std::string const& file) {
@@ -71,27 +70,18 @@ void put_all(Place const& root, std::string const& group, Map const& entries, Pu
     }
 }
 
-/// `draft` is written; messages name `file`.
-void write_unverified(std::string const& draft, std::string const& file, Checkpoint const& checkpoint) {
-    File handle(check(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), file, writing));
-    Place const root{handle.get(), file, writing};
+void put_head(Place const& root, Checkpoint const& checkpoint) {
     put_text(root, "format", format);
     put_attribute(root, "version", format_version);
     put_attribute(root, "step", checkpoint.step);
     put_attribute(root, "time_bits", std::bit_cast<std::int64_t>(checkpoint.time));
     put_text(root, "scene_hash", checkpoint.scene_hash);
-    put_attribute(root, "checksum", std::bit_cast<std::int64_t>(checksum_of(checkpoint)));
     put_all(root, "notes", checkpoint.notes, [](Place const& place, std::string const& key, std::string const& text) {
         return put_array(place, key, std::span<std::string const>(&text, 1));
     });
     put_all(root, "integers", checkpoint.integers, [](Place const& place, std::string const& key, std::int64_t value) {
         return put_array(place, key, std::span<std::int64_t const>(&value, 1));
     });
-    put_all(root, "arrays", checkpoint.arrays, [](Place const& place, std::string const& key, std::vector<double> const& values) {
-        return put_array(place, key, std::span<double const>(values));
-    });
-    flush_to_disk(handle, file, writing);
-    check(handle.close(), file, writing);
 }
 
 std::vector<std::string> keys_of(Place const& group) {
@@ -153,7 +143,26 @@ Group open_group(Place const& root, char const* name) { return Group(check(H5Gop
 
 enum class Arrays { keep, only_check };
 
-/// Throws ComputationError where the file is damaged. Checked only, it takes the memory of one array.
+/// Piece by piece through the checksum; without values where they are only checked.
+std::vector<double> read_array(Place const& group, std::string const& key, Checksum& sum, Arrays wish) {
+    constexpr hsize_t most = 1 << 18;
+    Entry const entry(group, key);
+    std::vector<double> values(wish == Arrays::keep ? entry.size : 0), piece(std::min<std::size_t>(most, entry.size));
+    add_head_of_array(sum, key, entry.size);
+    Space const in_file(check(H5Dget_space(entry.data.get()), group.file, group.doing));
+    for (hsize_t at = 0; at < entry.size; at += most) {
+        hsize_t const count = std::min<hsize_t>(most, entry.size - at);
+        Space const in_memory(check(H5Screate_simple(1, &count, nullptr), group.file, group.doing));
+        check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &at, nullptr, &count, nullptr), group.file, group.doing);
+        check(H5Dread(entry.data.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT, piece.data()), group.file,
+              group.doing);
+        add_values(sum, std::span(piece).first(count));
+        if (wish == Arrays::keep) std::copy_n(piece.begin(), count, values.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    return values;
+}
+
+/// Throws ComputationError where the file is damaged. Checked only, it takes the memory of a piece of an array.
 Checkpoint read_verified(Place const& root, Arrays wish) {
     Checkpoint checkpoint;
     checkpoint.step = get_integer(root, "step");
@@ -170,8 +179,7 @@ Checkpoint read_verified(Place const& root, Arrays wish) {
     }
     Checksum sum = checksum_of_head(checkpoint);
     for (std::string const& key : keys_of(in_arrays)) {
-        auto values = get_values<double>(in_arrays, key, H5T_NATIVE_DOUBLE);
-        add_array(sum, key, values);
+        std::vector<double> values = read_array(in_arrays, key, sum, wish);
         if (wish == Arrays::keep) checkpoint.arrays[key] = std::move(values);
     }
     if (std::bit_cast<std::uint64_t>(get_integer(root, "checksum")) != sum.value())
@@ -210,21 +218,94 @@ void keep_previous(std::string const& file) {
 
 }  // namespace
 
-void write_checkpoint(std::string const& file, Checkpoint const& checkpoint) {
+/// `name` is written; messages name `file`.
+struct CheckpointWriter::Draft {
+    Draft(std::string of, Checkpoint const& checkpoint)
+        : file(std::move(of)),
+          name(file + ".writing"),
+          handle(check(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), file, writing)),
+          sum(checksum_of_head(checkpoint)) {
+        put_head(root(), checkpoint);
+        arrays = make_group(root(), "arrays");
+    }
+    Place root() const { return {handle.get(), file, writing}; }
+
+    std::string file, name;
+    File handle;
+    Group arrays;
+    Dataset array;  // being written
+    hsize_t size = 0, written = 0;
+    Checksum sum;
+};
+
+CheckpointWriter::CheckpointWriter(std::string const& file, Checkpoint const& checkpoint) {
     Quiet const quiet;
-    std::string const draft = file + ".writing";
     try {
-        write_unverified(draft, file, checkpoint);
-        read(draft, Arrays::only_check);
-        keep_previous(file);
-        rename_file(draft, file);
-    } catch (InputError const& error) {
-        ::unlink(draft.c_str());
-        throw ComputationError("cannot write the checkpoint (" + file + "): it does not read back, " + error.what());
+        draft_ = std::make_unique<Draft>(file, checkpoint);
     } catch (...) {
-        ::unlink(draft.c_str());
+        ::unlink((file + ".writing").c_str());
         throw;
     }
+}
+
+CheckpointWriter::~CheckpointWriter() {
+    if (!draft_) return;
+    Quiet const quiet;
+    ::unlink(draft_->name.c_str());
+    draft_.reset();
+}
+
+void CheckpointWriter::begin_array(std::string const& name, std::int64_t size) {
+    Quiet const quiet;
+    require_key(name, draft_->file);
+    Place const place{draft_->arrays.get(), draft_->file, writing};
+    if (draft_->array) check(draft_->array.close(), draft_->file, writing);
+    draft_->size = static_cast<hsize_t>(size);
+    draft_->written = 0;
+    Space const space(check(H5Screate_simple(1, &draft_->size, nullptr), draft_->file, writing));
+    draft_->array = Dataset(check(H5Dcreate2(place.id, name.c_str(), H5T_NATIVE_DOUBLE, space.get(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                                  draft_->file, writing));
+    add_head_of_array(draft_->sum, name, draft_->size);
+}
+
+void CheckpointWriter::put(std::span<double const> values) {
+    if (values.empty()) return;
+    Quiet const quiet;
+    hsize_t const count = values.size();
+    Space const in_file(check(H5Dget_space(draft_->array.get()), draft_->file, writing)),
+        in_memory(check(H5Screate_simple(1, &count, nullptr), draft_->file, writing));
+    check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, &draft_->written, nullptr, &count, nullptr), draft_->file, writing);
+    check(H5Dwrite(draft_->array.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), H5P_DEFAULT, values.data()), draft_->file,
+          writing);
+    add_values(draft_->sum, values);
+    draft_->written += count;
+}
+
+void CheckpointWriter::finish() {
+    Quiet const quiet;
+    std::string const file = draft_->file, name = draft_->name;
+    try {
+        put_attribute(draft_->root(), "checksum", std::bit_cast<std::int64_t>(draft_->sum.value()));
+        if (draft_->array) check(draft_->array.close(), file, writing);
+        check(draft_->arrays.close(), file, writing);
+        flush_to_disk(draft_->handle, file, writing);
+        check(draft_->handle.close(), file, writing);
+        read(name, Arrays::only_check);
+        keep_previous(file);
+        rename_file(name, file);
+        draft_.reset();
+    } catch (InputError const& error) {
+        throw ComputationError("cannot write the checkpoint (" + file + "): it does not read back, " + error.what());
+    }
+}
+
+void write_checkpoint(std::string const& file, Checkpoint const& checkpoint) {
+    CheckpointWriter writer(file, checkpoint);
+    for (auto const& [name, values] : checkpoint.arrays) {
+        writer.begin_array(name, std::ssize(values));
+        writer.put(values);
+    }
+    writer.finish();
 }
 
 Checkpoint read_checkpoint(std::string const& file) { return read(file, Arrays::keep); }

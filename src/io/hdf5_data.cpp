@@ -157,10 +157,24 @@ Series Series::open(Place const& place, std::string const& name, hid_t type) {
 }
 
 void Series::put(Place const& place, hsize_t frame, void const* values) {
-    std::vector<hsize_t> shape{frame + 1}, start{frame}, count{1};
-    shape.insert(shape.end(), row_.begin(), row_.end());
-    start.resize(shape.size(), 0);
+    std::vector<hsize_t> start{frame}, count{1};
+    start.resize(row_.size() + 1, 0);
     count.insert(count.end(), row_.begin(), row_.end());
+    put_block(place, start, count, values);
+}
+
+void Series::put(Place const& place, hsize_t frame, hsize_t first, hsize_t count, void const* values) {
+    if (count == 0) return;
+    std::vector<hsize_t> start{frame, first}, extent{1};
+    start.resize(row_.size() + 1, 0);
+    extent.insert(extent.end(), row_.begin(), row_.end());
+    extent[1] = count;
+    put_block(place, start, extent, values);
+}
+
+void Series::put_block(Place const& place, std::vector<hsize_t> const& start, std::vector<hsize_t> const& count, void const* values) {
+    std::vector<hsize_t> shape{start[0] + 1};
+    shape.insert(shape.end(), row_.begin(), row_.end());
     check(H5Dset_extent(data_.get(), shape.data()), place.file, place.doing);
     Space const file_space(check(H5Dget_space(data_.get()), place.file, place.doing));
     check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), place.file, place.doing);

@@ -43,6 +43,8 @@ class Series {
     static Series open(Place const&, std::string const& name, hid_t type);
     /// Writes row `frame`, growing to frame + 1 rows.
     void put(Place const&, hsize_t frame, void const* values);
+    /// Of that row the entries [first, first + count) along the row's first extent.
+    void put(Place const&, hsize_t frame, hsize_t first, hsize_t count, void const* values);
     /// Leaves the first `frames` rows.
     void cut(Place const&, hsize_t frames);
     hsize_t frames(Place const&) const;
@@ -52,6 +54,8 @@ class Series {
     void close(Place const&);
 
   private:
+    void put_block(Place const&, std::vector<hsize_t> const& start, std::vector<hsize_t> const& count, void const* values);
+
     Dataset data_;
     hid_t type_ = H5I_INVALID_HID;  // a native type of the library, not owned
     std::vector<hsize_t> row_;

@@ -1,5 +1,5 @@
-// The files of a run. Only rank 0 writes; it is handed gathered frames. Every writer checks each write, flush and close
-// and throws ComputationError naming file and cause (a full disk included); bad existing files give InputError.
+// The files of a run. Only rank 0 writes; it is handed frames in parts, as they come from the ranks. Every writer checks each write, flush
+// and close and throws ComputationError naming file and cause (a full disk included); bad existing files give InputError.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,12 +35,14 @@ struct Topology {
     bool si = false;  // units stay the user's: no unit attributes are written but "m", "s", ...
 };
 
+/// Of all sites, or of neighbours among them.
 struct Frame {
     std::int64_t step = 0;
     double time = 0;
-    std::vector<Vec3> positions;     // W, unwrapped
-    std::vector<Vec3> velocities;    // empty: not written
-    std::vector<Quat> orientations;  // of the topology's bodies, W
+    std::size_t first_site = 0, first_body = 0;  // where a part begins, among the topology's sites and bodies
+    std::vector<Vec3> positions;                 // W, unwrapped
+    std::vector<Vec3> velocities;                // empty: not written
+    std::vector<Quat> orientations;              // of the topology's bodies, W
     std::vector<Vector<double, 6>>
         joint_forces,  // [torque, force] on each site at its inboard joint (on a body's first), W; empty: not written
         tip_forces;    // the same at each of the topology's tips, on the last body
@@ -49,7 +52,15 @@ struct Frame {
 class TrajectoryWriter {
   public:
     virtual ~TrajectoryWriter() = default;
-    virtual void write(Frame const&) = 0;
+    /// A frame in parts: these follow one another, from the first site to the last.
+    virtual void begin(std::int64_t step, double time) = 0;
+    virtual void put(Frame const& part) = 0;
+    virtual void end(std::vector<Vector<double, 6>> const& tip_forces) = 0;
+    void write(Frame const& whole) {
+        begin(whole.step, whole.time);
+        put(whole);
+        end(whole.tip_forces);
+    }
     /// All frames so far are on disk when this returns.
     virtual void flush() = 0;
     virtual void close() = 0;
@@ -59,7 +70,21 @@ class TrajectoryWriter {
 std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool velocities, bool joint_forces,
                                                   std::optional<std::int64_t> after_step);
 
-/// PDB; beyond 99,999 sites mmCIF beside it as well. Returns the paths written.
+/// PDB; beyond 99,999 sites mmCIF beside it as well.
+class TopologyWriter {
+  public:
+    TopologyWriter(std::string const& folder, Topology const&);
+    ~TopologyWriter();
+    /// The next sites' places.
+    void put(std::vector<Vec3> const& positions);
+    /// Returns the paths written.
+    std::vector<std::string> finish();
+
+  private:
+    struct Files;
+    std::unique_ptr<Files> files_;
+};
+/// All of it at once.
 std::vector<std::string> write_topology(std::string const& folder, Topology const&, Frame const& first);
 
 /// Everything that decides how a run goes on, in global order; doubles bit for bit.
@@ -73,6 +98,22 @@ struct Checkpoint {
 };
 /// Writes to a temporary name, fsyncs, reopens and verifies a checksum, then renames; the checkpoint before is kept as
 /// `<name>.previous.h5`.
+class CheckpointWriter {
+  public:
+    /// Writes all but the arrays.
+    CheckpointWriter(std::string const& file, Checkpoint const&);
+    ~CheckpointWriter();
+    /// The next array, in the order of their names, and its numbers as they come.
+    void begin_array(std::string const& name, std::int64_t size);
+    void put(std::span<double const> values);
+    /// Without it nothing is left.
+    void finish();
+
+  private:
+    struct Draft;
+    std::unique_ptr<Draft> draft_;
+};
+/// All of it at once.
 void write_checkpoint(std::string const& file, Checkpoint const&);
 /// InputError for a file that is missing, not a checkpoint, cut short or altered (checksum).
 Checkpoint read_checkpoint(std::string const& file);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "io/output.hpp"
 #include "io/output_file.hpp"
@@ -47,13 +48,15 @@ std::string fixed(double value, int width) {
 }
 
 /// Angstrom for each unit of the scene: 10 for nm; with `units: si` the power of ten that makes a typical link 1 to 10 Angstrom long.
-double angstrom_per_unit(Topology const& topology, Frame const& first) {
+/// `positions`: of the first sites.
+double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& positions) {
     if (!topology.si) return 10;
     std::vector<double> links;
     for (Topology::Chain const& chain : topology.chains)
         for (std::int64_t k = 1; k < chain.count && links.size() < 10000; ++k) {
             auto const site = static_cast<std::size_t>(chain.first + k);
-            links.push_back(norm(first.positions[site] - first.positions[site - 1]));
+            if (site >= positions.size()) break;
+            links.push_back(norm(positions[site] - positions[site - 1]));
         }
     if (links.empty()) return 1;
     auto const middle = links.begin() + static_cast<std::ptrdiff_t>(links.size() / 2);
@@ -93,26 +96,6 @@ void write_bonds(AtomicFile& out, Topology const& topology) {
         }
 }
 
-void write_pdb(std::string const& file, Topology const& topology, Frame const& first) {
-    AtomicFile out(file);
-    double const scale = angstrom_per_unit(topology, first);
-    write_remarks(out, topology, scale);
-    for (std::size_t c = 0; c < topology.chains.size(); ++c) {
-        Topology::Chain const& chain = topology.chains[c];
-        for (std::int64_t k = 0; k < chain.count; ++k) {
-            auto const site = static_cast<std::size_t>(chain.first + k);
-            Vec3 const x = scale * first.positions[site];
-            out.write(fmt::format("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n", serial(chain.first + k + 1),
-                                  residue_of(topology, site), chain_letters[c % chain_letters.size()], (k + 1) % 10000, fixed(x[0], 8),
-                                  fixed(x[1], 8), fixed(x[2], 8)));
-        }
-        out.write("TER\n");
-    }
-    if (static_cast<std::int64_t>(first.positions.size()) <= most_pdb_serials) write_bonds(out, topology);
-    out.write("END\n");
-    out.publish();
-}
-
 /// A, B, ..., Z, AA, AB, ...: mmCIF's chain names have no width.
 std::string chain_name(std::size_t number) {
     std::string name;
@@ -120,9 +103,7 @@ std::string chain_name(std::size_t number) {
     return name;
 }
 
-void write_cif(std::string const& file, Topology const& topology, Frame const& first) {
-    AtomicFile out(file);
-    double const scale = angstrom_per_unit(topology, first);
+void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
     std::string title = plain(topology.title);
     std::replace(title.begin(), title.end(), '"', '\'');
     out.write("data_catena\n#\n_struct.entry_id catena\n_struct.title \"" + title + "\"\n#\n");
@@ -138,30 +119,84 @@ void write_cif(std::string const& file, Topology const& topology, Frame const& f
                                "label_entity_id", "label_seq_id", "pdbx_PDB_ins_code", "Cartn_x", "Cartn_y", "Cartn_z", "occupancy",
                                "B_iso_or_equiv", "auth_seq_id", "auth_asym_id", "pdbx_PDB_model_num"})
         out.write(fmt::format("_atom_site.{}\n", column));
-    for (std::size_t c = 0; c < topology.chains.size(); ++c) {
-        Topology::Chain const& chain = topology.chains[c];
-        std::string const name = chain_name(c);
-        for (std::int64_t k = 0; k < chain.count; ++k) {
-            auto const site = static_cast<std::size_t>(chain.first + k);
-            Vec3 const x = scale * first.positions[site];
-            out.write(fmt::format("ATOM {} C CA . {} {} 1 {} ? {:.3f} {:.3f} {:.3f} 1.00 0.00 {} {} 1\n", site + 1,
-                                  residue_of(topology, site), name, k + 1, x[0], x[1], x[2], k + 1, name));
-        }
-    }
-    out.write("#\n");
-    out.publish();
 }
 
 }  // namespace
 
+struct TopologyWriter::Files {
+    Files(std::string const& folder, Topology const& of) : topology(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
+        written.push_back((std::filesystem::path(folder) / "topology.pdb").string());
+        for (Topology::Chain const& each : topology.chains) sites += each.count;
+        if (sites <= most_pdb_serials) return;
+        written.push_back((std::filesystem::path(folder) / "topology.cif").string());
+        cif.emplace(written[1]);
+    }
+
+    void begin(std::vector<Vec3> const& positions) {
+        scale = angstrom_per_unit(topology, positions);
+        write_remarks(pdb, topology, scale);
+        if (cif) write_cif_head(*cif, topology, scale);
+        begun = true;
+    }
+
+    void add(Vec3 const& position) {
+        Topology::Chain const& in = topology.chains[chain];
+        auto const site = static_cast<std::size_t>(in.first + k);
+        std::string const residue = residue_of(topology, site);
+        Vec3 const x = scale * position;
+        pdb.write(fmt::format("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n", serial(in.first + k + 1), residue,
+                              chain_letters[chain % chain_letters.size()], (k + 1) % 10000, fixed(x[0], 8), fixed(x[1], 8),
+                              fixed(x[2], 8)));
+        if (cif) {
+            if (k == 0) name = chain_name(chain);
+            cif->write(fmt::format("ATOM {} C CA . {} {} 1 {} ? {:.3f} {:.3f} {:.3f} 1.00 0.00 {} {} 1\n", site + 1, residue, name, k + 1,
+                                   x[0], x[1], x[2], k + 1, name));
+        }
+        if (++k < in.count) return;
+        pdb.write("TER\n");
+        k = 0;
+        ++chain;
+    }
+
+    void finish() {
+        if (!begun) begin({});
+        if (sites <= most_pdb_serials) write_bonds(pdb, topology);
+        pdb.write("END\n");
+        pdb.publish();
+        if (!cif) return;
+        cif->write("#\n");
+        cif->publish();
+    }
+
+    Topology const& topology;
+    AtomicFile pdb;
+    std::optional<AtomicFile> cif;
+    std::vector<std::string> written;
+    std::int64_t sites = 0, k = 0;  // k: of the next site in its chain
+    std::size_t chain = 0;
+    double scale = 1;
+    std::string name;
+    bool begun = false;
+};
+
+TopologyWriter::TopologyWriter(std::string const& folder, Topology const& topology) : files_(std::make_unique<Files>(folder, topology)) {}
+
+TopologyWriter::~TopologyWriter() = default;
+
+void TopologyWriter::put(std::vector<Vec3> const& positions) {
+    if (!files_->begun) files_->begin(positions);
+    for (Vec3 const& x : positions) files_->add(x);
+}
+
+std::vector<std::string> TopologyWriter::finish() {
+    files_->finish();
+    return files_->written;
+}
+
 std::vector<std::string> write_topology(std::string const& folder, Topology const& topology, Frame const& first) {
-    std::filesystem::path const in(folder);
-    std::vector<std::string> written{(in / "topology.pdb").string()};
-    write_pdb(written[0], topology, first);
-    if (static_cast<std::int64_t>(first.positions.size()) <= most_pdb_serials) return written;
-    written.push_back((in / "topology.cif").string());
-    write_cif(written[1], topology, first);
-    return written;
+    TopologyWriter writer(folder, topology);
+    writer.put(first.positions);
+    return writer.finish();
 }
 
 }  // namespace catena

@@ -51,19 +51,41 @@ class H5mdWriter final : public TrajectoryWriter {
         for (Series* series : series_.present()) *series = Series();
     }
 
-    void write(Frame const& frame) override {
+    void begin(std::int64_t step, double time) override {
+        if (!file_) throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
+        if (frames_ > 0 && step <= last_step_) refuse(step, "its last frame is already of step " + std::to_string(last_step_));
+        step_ = step;
+        time_ = time;
+        sites_ = bodies_ = 0;
+    }
+
+    void put(Frame const& part) override {
         Quiet const quiet;
-        require(frame);
-        series_.position.put(place(), frames_, frame.positions.data());
-        if (contents_.velocities) series_.velocity.put(place(), frames_, frame.velocities.data());
+        std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
+        auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
+        if (part.first_site != sites_ || part.first_body != bodies_ || sites_ + sites > contents_.sites ||
+            bodies_ + bodies > contents_.bodies.size() || !fits(part.velocities.size(), contents_.velocities) ||
+            !fits(part.joint_forces.size(), contents_.joint_forces))
+            refuse_arrays();
+        series_.position.put(place(), frames_, sites_, sites, part.positions.data());
+        if (contents_.velocities) series_.velocity.put(place(), frames_, sites_, sites, part.velocities.data());
+        if (bodies > 0) series_.orientation.put(place(), frames_, bodies_, bodies, part.orientations.data());
+        if (contents_.joint_forces) put_wrenches(part.joint_forces, sites_, series_.torque, series_.force);
+        sites_ += sites;
+        bodies_ += bodies;
+    }
+
+    void end(std::vector<Vector<double, 6>> const& tip_forces) override {
+        Quiet const quiet;
+        if (sites_ != contents_.sites || bodies_ != contents_.bodies.size() ||
+            (contents_.joint_forces && tip_forces.size() != contents_.tips))
+            refuse_arrays();
         if (contents_.periodic) series_.edges.put(place(), frames_, box_.data);
-        if (!contents_.bodies.empty()) series_.orientation.put(place(), frames_, frame.orientations.data());
-        if (contents_.joint_forces) put_wrenches(frame.joint_forces, series_.torque, series_.force);
-        if (series_.tip_force) put_wrenches(frame.tip_forces, series_.tip_torque, series_.tip_force);
-        series_.time.put(place(), frames_, &frame.time);
-        series_.step.put(place(), frames_, &frame.step);
+        if (series_.tip_force) put_wrenches(tip_forces, 0, series_.tip_torque, series_.tip_force);
+        series_.time.put(place(), frames_, &time_);
+        series_.step.put(place(), frames_, &step_);
         ++frames_;
-        last_step_ = frame.step;
+        last_step_ = step_;
         if (now() - flushed_ < seconds_between_flushes) return;
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
         flushed_ = now();
@@ -123,28 +145,19 @@ class H5mdWriter final : public TrajectoryWriter {
         return steps;
     }
 
-    void require(Frame const& frame) const {
-        auto const fits = [](std::size_t size, bool wanted, std::size_t count) { return !wanted || size == count; };
-        if (!file_) throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
-        if (frame.positions.size() != contents_.sites || !fits(frame.velocities.size(), contents_.velocities, contents_.sites) ||
-            !fits(frame.orientations.size(), true, contents_.bodies.size()) ||
-            !fits(frame.joint_forces.size(), contents_.joint_forces, contents_.sites) ||
-            !fits(frame.tip_forces.size(), contents_.joint_forces, contents_.tips))
-            throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(frame.step) +
-                                   "): the frame's arrays do not fit the topology");
-        if (frames_ > 0 && frame.step <= last_step_)
-            throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(frame.step) +
-                                   "): its last frame is already of step " + std::to_string(last_step_));
+    [[noreturn]] void refuse(std::int64_t step, std::string const& why) const {
+        throw ComputationError("cannot write the trajectory (" + name_ + ", step " + std::to_string(step) + "): " + why);
     }
+    [[noreturn]] void refuse_arrays() const { refuse(step_, "the frame's arrays do not fit the topology"); }
 
-    void put_wrenches(std::vector<Vector<double, 6>> const& wrenches, Series& torques, Series& forces) {
+    void put_wrenches(std::vector<Vector<double, 6>> const& wrenches, hsize_t first, Series& torques, Series& forces) {
         std::vector<double> torque, force;
         for (Vector<double, 6> const& wrench : wrenches) {
             torque.insert(torque.end(), wrench.data, wrench.data + 3);
             force.insert(force.end(), wrench.data + 3, wrench.data + 6);
         }
-        torques.put(place(), frames_, torque.data());
-        forces.put(place(), frames_, force.data());
+        torques.put(place(), frames_, first, wrenches.size(), torque.data());
+        forces.put(place(), frames_, first, wrenches.size(), force.data());
     }
 
     std::string name_;
@@ -154,6 +167,9 @@ class H5mdWriter final : public TrajectoryWriter {
     TrajectorySeries series_;
     hsize_t frames_ = 0;
     std::int64_t last_step_ = 0;
+    std::int64_t step_ = 0;  // of the frame on its way
+    double time_ = 0;
+    std::size_t sites_ = 0, bodies_ = 0;  // of it, so far
     double flushed_ = 0;
 };
 

@@ -1,5 +1,6 @@
 """64 ranks on a few cores end in the bits of one, and the messages of their steps are those that the partition predicts: in summary.json,
-counted by every rank's communicator, and in `plan`. Usage: many_ranks.py [--ranks P]"""
+counted by every rank's communicator, and in `plan`; the same where gathers go in two stages, over ranks that are dealt to hosts of seven.
+Usage: many_ranks.py [--ranks P]"""
 import json
 import subprocess
 import sys
@@ -32,26 +33,34 @@ def planned(runs, ranks, sweeps):
     return {key: messages["fixed"][key] + sweeps * messages["each_sweep"][key] for key in messages["fixed"]}
 
 
-def check(options, integrator):
-    with Runs(options, scene(integrator), ["solver.backend=segments"]) as runs:
-        runs.complete(1, "one")
-        runs.complete(options.ranks, "many")
-        difference = runs.difference("one", "many")
-        with open(runs.path("many", "summary.json"), encoding="utf-8") as file:
-            summary = json.load(file)
-        messages = summary["parallel"]["messages_a_step"]
-        plan = planned(runs, options.ranks, summary["solver"].get("sweeps_a_drift", summary["solver"].get("corrections_of_tips", 0)))
+def check(runs, options, integrator, gather):
+    name = "many-" + gather
+    runs.environment["CATENA_GATHER"] = gather
+    runs.complete(options.ranks, name)
+    difference = runs.difference("one", name)
+    with open(runs.path(name, "summary.json"), encoding="utf-8") as file:
+        summary = json.load(file)
+    messages = summary["parallel"]["messages_a_step"]
+    plan = planned(runs, options.ranks, summary["solver"].get("sweeps_a_drift", summary["solver"].get("corrections_of_tips", 0)))
     counted = messages["counted"]
     good = not difference and messages["ranks_that_differ"] == 0 and counted == messages["predicted"] == plan and counted["gathers"] > 0
-    return verdict(f"{integrator} on {options.ranks} ranks", good,
+    good = good and (counted["leader_gathers"] == (0 if gather == "one-stage" else counted["gathers"]))
+    return verdict(f"{integrator} on {options.ranks} ranks, {gather}", good,
                    f"{difference + ' DIFFERS' if difference else 'the bits of one'}; a step {counted['gathers']:.0f} gathers of "
-                   f"{counted['gathered_bytes']:.0f} bytes, {counted['exchanges']:.0f} exchanges; {messages['ranks_that_differ']} ranks differ "
+                   f"{counted['gathered_bytes']:.0f} bytes, {counted['leader_gathers']:.0f} of {counted['leader_bytes']:.0f} between hosts, "
+                   f"{counted['exchanges']:.0f} exchanges; {messages['ranks_that_differ']} ranks differ "
                    f"from the prediction" + ("" if counted == plan else f"; plan says {plan}"))
+
+
+def checks(options, integrator):
+    with Runs(options, scene(integrator), ["solver.backend=segments"]) as runs:
+        runs.complete(1, "one")
+        return [check(runs, options, integrator, gather) for gather in ("one-stage", "two-stage:7")]
 
 
 def main():
     options = arguments(__doc__, ranks=64, scenes=len(SCENES))
-    good = [check(options, integrator) for integrator in list(SCENES)[:options.scenes]]
+    good = [each for integrator in list(SCENES)[:options.scenes] for each in checks(options, integrator)]
     sys.exit(0 if all(good) else 1)
 
 

@@ -1,6 +1,6 @@
 """Two hosts on one machine: two network namespaces with host names of their own, joined by a pair of virtual Ethernet cards; mpirun reaches
-the second by `ip netns exec`, ranks speak TCP. Runs over both are bit for bit those of one host, and a run whose link is cut ends within 30 s
-and says so. Needs root. Usage: two_hosts.py"""
+the second by `ip netns exec`, ranks speak TCP. Runs over both are bit for bit those of one host, gathers in one stage and in two, and a run
+whose link is cut ends within 30 s and says so. Needs root. Usage: two_hosts.py"""
 import os
 import subprocess
 import sys
@@ -49,6 +49,9 @@ class TwoHosts:
     def cut(self):
         ip("-n", HOSTS[0], "link", "set", "link-a", "down")
 
+    def mend(self):
+        ip("-n", HOSTS[0], "link", "set", "link-a", "up")
+
     def launcher(self, ranks_a, ranks_b, mpirun):
         network = ADDRESSES[0] + "/24"
         settings = {"plm_rsh_agent": self.agent, "btl": "self,vader,tcp", "btl_tcp_if_include": network, "oob_tcp_if_include": network,
@@ -59,18 +62,23 @@ class TwoHosts:
         return words + ["--host", f"{ADDRESSES[0]}:{ranks_a},{ADDRESSES[1]}:{ranks_b}"]
 
 
-def same_bits(runs, hosts, mpirun, scene, ranks_a, ranks_b):
-    name = f"{scene}-{ranks_a}-{ranks_b}"
+def same_bits(runs, hosts, mpirun, scene, ranks_a, ranks_b, gather="auto"):
+    name = f"{scene}-{ranks_a}-{ranks_b}-{gather}"
+    runs.environment["CATENA_GATHER"] = gather
     runs.launcher = mpirun
     alone = name + "-alone"
     runs.complete(ranks_a + ranks_b, alone)
     runs.launcher = hosts.launcher(ranks_a, ranks_b, mpirun)
     runs.complete(ranks_a + ranks_b, name)
     difference = runs.difference(alone, name)
-    return verdict(f"{scene}, {ranks_a} and {ranks_b} ranks", not difference, f"{difference + ' DIFFERS' if difference else 'the bits of one host'}")
+    return verdict(f"{scene}, {ranks_a} and {ranks_b} ranks, gathers {gather}", not difference,
+                   f"{difference + ' DIFFERS' if difference else 'the bits of one host'}")
 
 
-def cut_link(runs, hosts, mpirun):
+def cut_link(runs, hosts, mpirun, gather="auto"):
+    runs.environment["CATENA_GATHER"] = gather
+    runs.remove("cut")
+    hosts.mend()
     runs.launcher = hosts.launcher(2, 2, mpirun)
     started = runs.start(4, "cut", ["--steps", "1000000"])
     runs.wait_for_steps(started, "cut")
@@ -81,7 +89,7 @@ def cut_link(runs, hosts, mpirun):
     took = time.monotonic() - cut
     good = started.returncode not in (0, 3) and took < SECONDS_TO_END and len(said) > 0
     line = next((each.strip() for each in said.splitlines() if "lost" in each or "catena:" in each), "NO message")
-    return verdict("link cut", good and line != "NO message", f"status {started.returncode} after {took:.1f} s: {line}")
+    return verdict(f"link cut, gathers {gather}", good and line != "NO message", f"status {started.returncode} after {took:.1f} s: {line}")
 
 
 def resumed(runs, mpirun):
@@ -104,12 +112,13 @@ def main():
     with Runs(options, settings=["dynamics.steps=60"]) as runs, TwoHosts(runs.folder) as hosts:
         mpirun = runs.launcher
         good += [same_bits(runs, hosts, mpirun, "beads-and-bodies", *ranks) for ranks in ((1, 1), (2, 1), (3, 3))]
+        good += [same_bits(runs, hosts, mpirun, "beads-and-bodies", *ranks, "two-stage") for ranks in ((2, 1), (3, 3))]
         if "OpenMM   none" not in subprocess.run([options.catena, "--version"], capture_output=True, text=True, check=True).stdout:
             runs.scene = os.path.join(ROOT, "inputs", "alpha-synuclein.yaml")
             runs.settings = ["--set", "dynamics.steps=20", "--set", "forces.openmm.platform=Reference", "--set", "output.every=5"]
             good += [same_bits(runs, hosts, mpirun, "OpenMM", 1, 1), same_bits(runs, hosts, mpirun, "OpenMM", 2, 1)]
             runs.scene, runs.settings = os.path.join(runs.folder, "scene.yaml"), []
-        good += [cut_link(runs, hosts, mpirun), resumed(runs, mpirun)]
+        good += [cut_link(runs, hosts, mpirun, "two-stage"), cut_link(runs, hosts, mpirun), resumed(runs, mpirun)]
     sys.exit(0 if all(good) else 1)
 
 

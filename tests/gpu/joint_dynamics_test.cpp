@@ -30,11 +30,10 @@ class GpuJoints : public ::testing::Test {
             stepper->step(h);
             system.close_tips();
         }
-        auto arrays = system.state();
-        for (JointDynamics* const group : system.joint()) {
-            system.collect_rates(group->group(), group->carried_rates(), arrays);
-            arrays["closure"].push_back(group->closure_error());
-        }
+        ChainSystem::OwnState own = system.own_state();
+        for (JointDynamics* const group : system.joint()) system.add_rates(group->group(), group->carried_rates(), own);
+        auto arrays = system.gathered(own);
+        for (JointDynamics* const group : system.joint()) arrays["closure"].push_back(group->closure_error());
         system.evaluate();
         arrays["residual"] = {system.residual()};
         EXPECT_LE(arrays["residual"][0], system.residual_bound());

@@ -238,6 +238,45 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
     EXPECT_EQ(steps(file), (std::vector<std::int64_t>{0, 10})) << "a refused restart changed the file";
 }
 
+/// As a frame comes from several ranks: cut where one likes, bodies with their sites.
+TEST(Trajectory, PartsMakeTheWholeFrame) {
+    TemporaryFolder const folder;
+    Topology const topology = sample_topology();  // sites 5 to 7 are the bodies
+    Frame const whole = sample_frame(10, topology);
+    write_frames(folder / "whole.h5md", {10});
+    auto const trajectory = make_trajectory(folder / "parts.h5md", topology, true, true, {});
+    EXPECT_THROW(
+        {
+            trajectory->begin(10, whole.time);
+            trajectory->end(whole.tip_forces);
+        },
+        ComputationError)
+        << "no part of it";
+    trajectory->begin(10, whole.time);
+    for (std::size_t const first : {0, 3, 6}) {
+        std::size_t const end = std::min<std::size_t>(first + 3, 8);
+        auto const cut = [](auto const& from, std::size_t a, std::size_t b) {
+            return std::decay_t<decltype(from)>(from.begin() + static_cast<std::ptrdiff_t>(a),
+                                                from.begin() + static_cast<std::ptrdiff_t>(b));
+        };
+        Frame part;
+        part.first_site = first;
+        part.first_body = first < 5 ? 0 : first - 5;
+        part.positions = cut(whole.positions, first, end);
+        part.velocities = cut(whole.velocities, first, end);
+        part.joint_forces = cut(whole.joint_forces, first, end);
+        part.orientations = cut(whole.orientations, part.first_body, end < 5 ? 0 : end - 5);
+        trajectory->put(part);
+        EXPECT_THROW(trajectory->put(part), ComputationError) << "the same part twice";
+    }
+    trajectory->end(whole.tip_forces);
+    trajectory->close();
+    EXPECT_EQ(steps(folder / "parts.h5md"), (std::vector<std::int64_t>{10}));
+    for (char const* const name : {"particles/trajectory/position/value", "particles/trajectory/velocity/value", "catena/orientation/value",
+                                   "catena/joint_force/value", "catena/joint_torque/value", "catena/tip_force/value"})
+        EXPECT_EQ(numbers(folder / "parts.h5md", name), numbers(folder / "whole.h5md", name)) << name;
+}
+
 TEST(Trajectory, RefusesFramesThatDoNotFit) {
     TemporaryFolder const folder;
     Topology const topology = sample_topology();

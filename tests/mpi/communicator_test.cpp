@@ -8,23 +8,21 @@
 #include <functional>
 #include <limits>
 #include <numeric>
+#include <random>
+#include <string>
 
 #include "mpi/launcher.hpp"
+#include "tests/mpi/connection.hpp"
 #include "tests/mpi/world.hpp"
 
 namespace catena::testing {
 
-/// The same ranks, but no message longer than 5 bytes, so that all data go in pieces (with_mpi.cpp); without MPI one rank.
-std::unique_ptr<Communicator> splitting_communicator();
-
 namespace {
 
-enum class Messages { whole, in_pieces };
-
-class CommunicatorTest : public ::testing::TestWithParam<Messages> {
+class CommunicatorTest : public ::testing::TestWithParam<Connection> {
   protected:
     void SetUp() override {
-        if (GetParam() == Messages::in_pieces) owner_ = splitting_communicator();
+        if (GetParam().in_pieces || GetParam().hosts > 0) owner_ = connected(GetParam());
     }
     Communicator const& ranks() const { return owner_ ? *owner_ : world(); }
 
@@ -85,6 +83,23 @@ TEST_P(CommunicatorTest, AllGatherInPlace) {
     std::span<std::int64_t const> const own(all.data() + first, block.size());
     ranks().all_gather(bytes_of(own), writable(all), bytes);
     EXPECT_EQ(all, expected);
+}
+
+TEST_P(CommunicatorTest, AllGatherOfBlocksOfAnySize) {
+    std::mt19937 draw(11);  // the same on all ranks
+    for (int i = 0; i < 60; ++i) {
+        std::vector<std::int64_t> bytes;
+        std::vector<std::byte> expected;
+        for (int r = 0; r < ranks().size(); ++r) {
+            bytes.push_back(draw() % 3 == 0 ? 0 : static_cast<std::int64_t>(draw() % 40));
+            for (std::int64_t k = 0; k < bytes.back(); ++k) expected.push_back(static_cast<std::byte>(draw() % 256));
+        }
+        auto const own = static_cast<std::size_t>(ranks().rank());
+        auto const first = std::accumulate(bytes.begin(), bytes.begin() + ranks().rank(), std::int64_t{0});
+        std::vector<std::byte> all(expected.size());
+        ranks().all_gather(std::span(expected).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(bytes[own])), all, bytes);
+        EXPECT_EQ(all, expected);
+    }
 }
 
 TEST_P(CommunicatorTest, GatherFillsRankZeroAlone) {
@@ -190,11 +205,32 @@ TEST_P(CommunicatorTest, TrafficCountsGathersAndExchanges) {
     ranks().exchange(readable(send), outboard, writable(receive), inboard);
     Traffic const counted = ranks().traffic() - before;
     if (message_passing_library() == "none") return;
-    EXPECT_EQ(counted, (Traffic{1, 8 * std::ssize(all), 1, outboard < 0 ? 0 : 24}));
+    Traffic expected{1, 8 * std::ssize(all), 1, outboard < 0 ? 0 : 24};
+    if (GetParam().hosts > 0) {
+        std::int64_t const pieces = GetParam().in_pieces ? (8 * std::ssize(all) + 4) / 5 : 1;
+        int const hosts = std::min(GetParam().hosts, ranks().size());
+        bool const leads = GetParam().in_turn ? ranks().rank() < hosts : ranks().rank() * hosts % ranks().size() < hosts;
+        EXPECT_EQ(ranks().gather_way().leads, leads);
+        expected.host_waits = 2 * pieces;
+        expected.leader_gathers = leads && hosts > 1 ? pieces : 0;
+        expected.leader_bytes = leads && hosts > 1 ? 8 * std::ssize(all) : 0;
+    }
+    EXPECT_EQ(counted, expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(Messages, CommunicatorTest, ::testing::Values(Messages::whole, Messages::in_pieces),
-                         [](auto const& test) { return test.param == Messages::whole ? "Whole" : "InPieces"; });
+TEST_P(CommunicatorTest, SaysHowItGathers) {
+    GatherWay const& way = ranks().gather_way();
+    int const hosts = message_passing_library() == "none" ? 0 : GetParam().hosts;
+    EXPECT_EQ(way.stages, hosts > 0 ? 2 : 1);
+    EXPECT_EQ(way.hosts, hosts > 0 ? std::min(hosts, ranks().size()) : 1);
+    EXPECT_EQ(way.text().find("in two stages") != std::string::npos && way.text().find("by CATENA_GATHER") != std::string::npos, hosts > 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Connections, CommunicatorTest,
+                         ::testing::Values(Connection{"Whole"}, Connection{"InPieces", true}, Connection{"OneHost", false, 1},
+                                           Connection{"TwoHosts", false, 2}, Connection{"TwoHostsInTurn", false, 2, true},
+                                           Connection{"ThreeHostsInTurnInPieces", true, 3, true}, Connection{"HostsOfOne", false, 6}),
+                         [](auto const& test) { return std::string(test.param.name); });
 
 }  // namespace
 }  // namespace catena::testing

@@ -8,20 +8,33 @@
 namespace catena::testing {
 namespace {
 
-TEST(Network, AGatherTakesAStageADoublingAndEveryByteOnce) {
+/// Seconds of a gather on so many ranks and hosts, in so many stages.
+double gather(Network const& network, std::int64_t bytes, std::int64_t ranks, std::int64_t hosts, int stages = 1) {
+    GatherWay way;
+    way.ranks = ranks;
+    way.hosts = hosts;
+    way.stages = stages;
+    return network.gather_seconds(bytes, way);
+}
+
+TEST(Network, AGatherTakesARoundADoublingAndEveryByteOnce) {
     Network network;
     network.near = Link{1e-6, 1e-9};
     network.far = Link{1e-5, 1e-8};
-    EXPECT_EQ(network.gather_seconds(1000, 1, 1), 0);
-    EXPECT_DOUBLE_EQ(network.gather_seconds(1000, 2, 1), 1e-6 + 500e-9);
-    EXPECT_DOUBLE_EQ(network.gather_seconds(0, 8, 1), 3e-6);
-    EXPECT_DOUBLE_EQ(network.gather_seconds(0, 5, 1), 3e-6);
-    EXPECT_DOUBLE_EQ(network.gather_seconds(0, 4096, 512), 3e-6 + 9e-5);
-    EXPECT_DOUBLE_EQ(network.gather_seconds(1000, 2, 2), 1e-5 + 500e-8);
+    EXPECT_EQ(gather(network, 1000, 1, 1), 0);
+    EXPECT_DOUBLE_EQ(gather(network, 1000, 2, 1), 1e-6 + 500e-9);
+    EXPECT_DOUBLE_EQ(gather(network, 0, 8, 1), 3e-6);
+    EXPECT_DOUBLE_EQ(gather(network, 0, 5, 1), 3e-6);
+    EXPECT_DOUBLE_EQ(gather(network, 0, 4096, 512), 12e-5);
+    EXPECT_DOUBLE_EQ(gather(network, 1000, 2, 2), 1e-5 + 500e-8);
+    EXPECT_DOUBLE_EQ(gather(network, 0, 4096, 512, 2), 6e-6 + 9e-5);
+    EXPECT_DOUBLE_EQ(gather(network, 1000, 8, 2, 2), 4e-6 + 1000e-9 + 1e-5 + 500e-8);
     network.gather_overhead = 2;
-    EXPECT_DOUBLE_EQ(network.gather_seconds(0, 2, 1), 2e-6);
+    EXPECT_DOUBLE_EQ(gather(network, 0, 2, 1), 2e-6);
     EXPECT_DOUBLE_EQ(network.exchange_seconds(100, 1), 1.1e-6);
     EXPECT_DOUBLE_EQ(network.exchange_seconds(100, 2), 1.1e-5);
+    network.far.reset();  // hosts that are there by name alone
+    EXPECT_DOUBLE_EQ(gather(network, 0, 8, 2, 2), 2 * (4e-6 + 1e-6));
 }
 
 TEST(Network, IsMeasuredBetweenRanks) {

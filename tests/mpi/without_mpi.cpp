@@ -1,7 +1,7 @@
-#include "mpi/communicator.hpp"
+#include "tests/mpi/connection.hpp"
 
 namespace catena::testing {
 
-std::unique_ptr<Communicator> splitting_communicator() { return serial_communicator(); }
+std::unique_ptr<Communicator> connected(Connection const&) { return serial_communicator(); }
 
 }  // namespace catena::testing

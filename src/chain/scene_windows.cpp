@@ -1,0 +1,82 @@
+#include "chain/scene_windows.hpp"
+
+#include <algorithm>
+
+namespace catena {
+
+SceneWindows::SceneWindows(Communicator const& communicator, std::vector<std::unique_ptr<ChainGroup>> const& groups, std::int64_t bytes)
+    : communicator_(communicator), bytes_(bytes) {
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        dca::Partition const& partition = groups[g]->partition;
+        bodies_ += partition.bodies();
+        int rank = 0;
+        for (int chain = 0; chain < partition.chains(); ++chain) {
+            std::int64_t const begin = partition.first_of_chain[chain], end = partition.first_of_chain[chain + 1];
+            for (std::int64_t body = begin; body < end;) {
+                while (partition.first_of_rank[rank + 1] <= body) ++rank;
+                std::int64_t const next = std::min(end, partition.first_of_rank[rank + 1]);
+                std::int64_t const first = groups[g]->first_in_scene[chain] + body - begin;
+                parts_.push_back({first, next - body, g, rank, body - partition.first_of_rank[rank]});
+                body = next;
+            }
+        }
+    }
+    std::sort(parts_.begin(), parts_.end(), [](Part const& a, Part const& b) { return a.first < b.first; });
+}
+
+/// action(part, begin, end): what of a part, counted from its first body, lies in the window.
+template <class Action>
+void SceneWindows::for_each_part_in(Window const& window, Action const& action) const {
+    for (std::size_t p = window.first_part; p < parts_.size() && parts_[p].first < window.end; ++p)
+        action(parts_[p], std::max(window.first - parts_[p].first, std::int64_t{0}),
+               std::min(window.end - parts_[p].first, parts_[p].count));
+}
+
+void SceneWindows::send(Window const& window, int width, std::vector<std::vector<double>> const& own) const {
+    std::vector<double> packed;
+    for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
+        if (part.rank != communicator_.rank()) return;
+        auto const from = own[part.group].begin() + (part.local + begin) * width;
+        packed.insert(packed.end(), from, from + (end - begin) * width);
+    });
+    if (!packed.empty()) communicator_.exchange(std::as_bytes(std::span(packed)), 0, {}, -1);
+}
+
+/// One message from each rank that has something of the window, then everything to its place.
+std::vector<double> SceneWindows::receive(Window const& window, int width, std::vector<std::vector<double>> const& own) const {
+    std::vector<std::int64_t> at(static_cast<std::size_t>(communicator_.size()) + 1, 0);
+    for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
+        if (part.rank != 0) at[static_cast<std::size_t>(part.rank) + 1] += (end - begin) * width;
+    });
+    for (std::size_t r = 1; r < at.size(); ++r) at[r] += at[r - 1];
+    std::vector<double> received(static_cast<std::size_t>(at.back())),
+        values(static_cast<std::size_t>((window.end - window.first) * width));
+    for (int rank = 1; rank < communicator_.size(); ++rank) {
+        auto const r = static_cast<std::size_t>(rank);
+        std::span<double> const from_rank(received.data() + at[r], static_cast<std::size_t>(at[r + 1] - at[r]));
+        if (!from_rank.empty()) communicator_.exchange({}, -1, std::as_writable_bytes(from_rank), rank);
+    }
+    for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
+        std::int64_t const numbers = (end - begin) * width;
+        std::int64_t& next = at[static_cast<std::size_t>(part.rank)];
+        double const* const from =
+            part.rank == 0 ? own[part.group].data() + (part.local + begin) * width : received.data() + std::exchange(next, next + numbers);
+        std::copy_n(from, numbers, values.data() + (part.first + begin - window.first) * width);
+    });
+    return values;
+}
+
+void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const {
+    std::int64_t const length = std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
+    std::size_t first_part = 0;
+    for (std::int64_t first = 0; first < bodies_; first += length) {
+        while (parts_[first_part].first + parts_[first_part].count <= first) ++first_part;
+        Window const window{first, std::min(first + length, bodies_), first_part};
+        if (communicator_.rank() == 0)
+            take(first, receive(window, width, own));
+        else
+            send(window, width, own);
+    }
+}
+
+}  // namespace catena

@@ -1,0 +1,49 @@
+// Numbers of bodies on their way to rank 0, in the order of the scene, a window of bounded size at a time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "chain/chain_group.hpp"
+
+namespace catena {
+
+class SceneWindows {
+  public:
+    static constexpr std::int64_t usual_bytes = 4 << 20;
+
+    /// `groups`: those that hold the scene's bodies between them.
+    SceneWindows(Communicator const&, std::vector<std::unique_ptr<ChainGroup>> const& groups, std::int64_t bytes = usual_bytes);
+
+    /// Bodies [first, first + values.size() / width) of the scene.
+    using Take = std::function<void(std::int64_t first, std::span<double const> values)>;
+    /// `own[g]`: `width` numbers for each of this rank's bodies of group g. Rank 0 takes window after window. What `take` throws leaves the
+    /// other ranks waiting: it is for failures that end the program. Collective.
+    void pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const;
+
+  private:
+    /// Neighbours in the scene, in a group and on a rank.
+    struct Part {
+        std::int64_t first, count;  // in the scene
+        std::size_t group;
+        int rank;
+        std::int64_t local;
+    };
+    struct Window {
+        std::int64_t first, end;
+        std::size_t first_part;
+    };
+    template <class Action>
+    void for_each_part_in(Window const&, Action const& action) const;
+    void send(Window const&, int width, std::vector<std::vector<double>> const& own) const;
+    std::vector<double> receive(Window const&, int width, std::vector<std::vector<double>> const& own) const;
+
+    Communicator const& communicator_;
+    std::int64_t bytes_, bodies_ = 0;
+    std::vector<Part> parts_;  // in the order of the scene
+};
+
+}  // namespace catena

@@ -1,0 +1,40 @@
+// Bodies reach rank 0 in the order of the scene, whoever has them and however large the windows are.
+#include "chain/scene_windows.hpp"
+
+#include <gtest/gtest.h>
+
+#include "integrate/chain_system.hpp"
+#include "tests/mpi/world.hpp"
+
+namespace catena::test {
+namespace {
+
+TEST(SceneWindows, BringBodiesInTheOrderOfTheScene) {
+    Communicator const& world = catena::testing::world();
+    std::string text = "units: si\nchains:\n";
+    for (int const bodies : {70, 3, 300, 1, 1, 130})
+        for (char const* const joint : {"link", "spherical"})
+            text += "  - {generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 5}}}\n";
+    Scene const scene = parse_scene(text, "test");
+    ChainSystem const system(scene, Axes::joint, world);
+    for (int const width : {1, 3})
+        for (std::int64_t const length : {std::int64_t{1}, std::int64_t{7}, scene.bodies(), 3 * scene.bodies()}) {
+            std::vector<std::vector<double>> own;
+            for (auto const& group : system.groups()) {
+                own.emplace_back();
+                for (std::int64_t k = 0; k < group->size; ++k)
+                    for (int i = 0; i < width; ++i) own.back().push_back(static_cast<double>(group->scene_index(k) * width + i));
+            }
+            std::int64_t next = 0;
+            SceneWindows const windows(world, system.groups(), 8 * width * length);
+            windows.pass(width, own, [&](std::int64_t first, std::span<double const> values) {
+                EXPECT_EQ(first * width, next);
+                EXPECT_LE(std::ssize(values), width * length);
+                for (double const value : values) EXPECT_EQ(value, static_cast<double>(next++));
+            });
+            EXPECT_EQ(next, world.rank() == 0 ? scene.bodies() * width : 0);
+        }
+}
+
+}  // namespace
+}  // namespace catena::test
