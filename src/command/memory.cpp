@@ -1,8 +1,7 @@
 #include <algorithm>
 
 #include "command/describe.hpp"
-#include "dca/segment.hpp"
-#include "dca/simd/level.hpp"
+#include "dca/simd/runs.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::command {
@@ -17,12 +16,17 @@ SolverSizes sizes() {
             static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)),
             static_cast<double>(sizeof(dca::JointMatrix<double, K>) + sizeof(Vector<double, K>))};
 }
-/// Of a run among those that go side by side (dca/simd/runs.hpp): body, slot and what follows.
-constexpr double bytes_of_place = 3 * sizeof(std::int64_t);
-
-bool goes_side_by_side(Scene const& scene) {
-    return scene.solver.simd.value_or(best_simd_level()) != SimdLevel::off && scene.solver.handles == Handles::projected &&
-           !scene.solver.pairwise();
+/// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, the joints between its parts and of
+/// the merge, its bodies' constants. 0 where none do.
+double side_by_side(Scene const& scene, ChainSpec const& chain, double node) {
+    SimdLevel const level = scene.solver.simd.value_or(best_simd_level());
+    if (level == SimdLevel::off || scene.solver.handles != Handles::projected || scene.solver.pairwise()) return 0;
+    double const places = static_cast<double>(sizeof(dca::RunsInLanes) + sizeof(dca::MergesInLanes)) / lanes_of(level);
+    using InJoints = dca::BodyLeaf<5, dca::MeetingFrames<5, false>>;
+    using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
+    bool const joints = !chain.is_linked() && uses_joint_coordinates(scene.dynamics.integrator);
+    int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
+    return places + dca::parts_of_run * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
 SolverSizes sizes_for(int directions) {
     switch (directions) {
@@ -78,8 +82,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
-        if (goes_side_by_side(scene))
-            m.solver += static_cast<double>(tree.runs) * ((dca::parts_of_run - 1) * size.node + bytes_of_place) / ranks;
+        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size.node) / ranks;
     }
     return m;
 }

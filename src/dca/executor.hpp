@@ -13,9 +13,9 @@ class Executor {
   public:
     explicit Executor(SimdLevel simd) : simd_(simd) {}
     virtual ~Executor() = default;
-    /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side by side, where that pays: `each` of
-    /// these is worth so many bodies, runs or merges.
-    virtual void for_ranges(std::int64_t count, int each, std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
+    /// Calls body(begin, end) on ranges that together cover [0, count) once. The calls may run side by side, where that pays: one of
+    /// `count` costs as much as `cost` single bodies, merges or runs do.
+    virtual void for_ranges(std::int64_t count, int cost, std::function<void(std::int64_t, std::int64_t)> const& body) const = 0;
     virtual int threads() const = 0;
     /// Of each thread, where several items go side by side.
     SimdLevel simd() const { return simd_; }

@@ -203,8 +203,8 @@ class HostSpace : public HostAccess {
     SimdLevel simd() const { return executor_->simd(); }
     /// action(begin, end) on ranges that together cover [0, count); they may run side by side.
     template <class Action>
-    void over_ranges(std::int64_t count, int each, Action const& action) const {
-        executor_->for_ranges(count, each, action);
+    void over_ranges(std::int64_t count, int cost, Action const& action) const {
+        executor_->for_ranges(count, cost, action);
     }
 
   private:

@@ -10,8 +10,8 @@
 
 namespace catena::dca {
 
-/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which the caller keeps forces. The first ones
-/// alone have forces, orthonormal, unless `any_forces`: then all may (screws).
+/// The directions of one handle: K unit wrenches; torques in body axes, forces in the axes in which the caller keeps forces. The first
+/// three (K < 3: all) have forces, orthonormal, the others none, unless `any_forces`: then all may (screws).
 template <class Real, int K, bool any_forces = false>
 struct Handle {
     static constexpr int forces = any_forces || K < 3 ? K : 3;

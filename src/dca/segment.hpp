@@ -110,20 +110,6 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
     }
     return s;
 }
-/// a^T S^-1 b
-template <class Real, int K>
-CATENA_HD Matrix<Real, K, K> weighted_product(Matrix<Real, K, K> const& a, Symmetric<Real, K> const& factor, Matrix<Real, K, K> const& b) {
-    Matrix<Real, K, K> p;
-    CATENA_UNROLL
-    for (int j = 0; j < K; ++j) {
-        Vector<Real, K> scaled;
-        CATENA_UNROLL
-        for (int k = 0; k < K; ++k) scaled[k] = factor(k, k) * b(k, j);
-        p.set_column(j, transposed_times(a, scaled));
-    }
-    return p;
-}
-
 /// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
 /// W = D (D^T Z D)^-1 D^T). Not `with_first`: z11 stays as it was, for those who ask only for the forces at joints to come.
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
@@ -135,8 +121,19 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
     joint.factor = factorize(z, restricted);
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
-    segment.z22 = less_square(outboard.z22, joint.outboard, joint.factor);
-    segment.z12 = weighted_product(joint.inboard, joint.factor, joint.outboard);
+    CATENA_UNROLL
+    for (int j = 0; j < K; ++j) {  // as less_square, of both at once
+        Vector<Real, K> scaled;
+        CATENA_UNROLL
+        for (int k = 0; k < K; ++k) scaled[k] = joint.factor(k, k) * joint.outboard(k, j);
+        CATENA_UNROLL
+        for (int i = j; i < K; ++i) {
+            segment.z22(i, j) = outboard.z22(i, j);
+            CATENA_UNROLL
+            for (int k = 0; k < K; ++k) segment.z22(i, j) = less_product(joint.outboard(k, i), scaled[k], segment.z22(i, j));
+        }
+        segment.z12.set_column(j, transposed_times(joint.inboard, scaled));
+    }
     if constexpr (with_first) segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
 }
 /// Their biases; `offset` keeps L^-1 (b2 - b1 of `outboard`) for the disassembly (Y of the chapter). Not `with_first`: b1 stays.
@@ -179,7 +176,7 @@ struct Elimination {
     Vector<Real, K> offset;
 };
 
-/// One side of `assemble`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
+/// One side of `append`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
 /// that force's part in it); they become the joined segment's.
 template <class Real, int K>
 CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,

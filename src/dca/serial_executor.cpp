@@ -6,7 +6,7 @@ namespace {
 class SerialExecutor final : public Executor {
   public:
     using Executor::Executor;
-    void for_ranges(std::int64_t count, int /*each*/, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
+    void for_ranges(std::int64_t count, int /*cost*/, std::function<void(std::int64_t, std::int64_t)> const& body) const override {
         if (count > 0) body(0, count);
     }
     int threads() const override { return 1; }

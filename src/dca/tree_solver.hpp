@@ -153,14 +153,14 @@ class TreeSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
 
-    /// What does not go side by side: runs, one level after the other, and all that is above these.
+    /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
             rest_.emplace_back(runs, levels, roots, schedule_.slots, K);
         };
         add(aside_->other_runs(), no_levels_, no_roots_);
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
-        add(no_runs_, aside_->upper_levels(), schedule_.roots);
+        add(no_runs_, no_levels_, schedule_.roots);
     }
     typename Space::Blocks const& blocks() {
         if (!blocks_) blocks_.emplace(group_);
@@ -191,7 +191,7 @@ class TreeSolver final : public ChainSolver {
         if (Space::answers_at_once) check();
     }
 
-    /// Runs that go side by side, and around them the others and the tree.
+    /// With runs and merges that go side by side where there are any, and the others of each level after them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         auto const gather = [&] {

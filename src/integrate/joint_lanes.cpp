@@ -3,9 +3,6 @@
 namespace catena {
 namespace {
 
-/// Whether the rest of the program rounds a product and a sum at once, as vectors do. If not, which bodies go side by side would show.
-bool rounds_as_vectors() { return fused(1 + 0x1p-30, 1 + 0x1p-30, -1 - 0x1p-29) != 0; }
-
 /// Whether bodies k to k + lanes - 1 go side by side: what they are asked for is the same of each, and found without a decision that
 /// depends on numbers. Their neighbours are of the same chain on this rank.
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
@@ -37,11 +34,11 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
         return;
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
-    lanes_ = lanes_of(level);
+    int const lanes = lanes_of(level);
     for (std::int64_t k = 0; k < group.size;) {
-        if (go_side_by_side(group, springs, k, lanes_)) {
+        if (go_side_by_side(group, springs, k, lanes)) {
             first_.push_back(k);
-            k += lanes_;
+            k += lanes;
         } else {
             others_.push_back(k);
             ++k;

@@ -33,14 +33,12 @@ class JointLanes {
     template <class Space, class Some, class One>
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
-        space.over_ranges(std::ssize(first_), lanes_,
-                          [&](std::int64_t begin, std::int64_t end) { some(loops, first_.data(), begin, end); });
+        space.over_ranges(std::ssize(first_), 2, [&](std::int64_t begin, std::int64_t end) { some(loops, first_.data(), begin, end); });
         space.over(typename Space::template List<std::int64_t>(others_), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
 
   private:
     JointLoops loops_[2]{};
-    int lanes_ = 1;
     std::vector<std::int64_t> first_, others_;
 };
 

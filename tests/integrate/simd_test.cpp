@@ -45,9 +45,6 @@ double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     return worst == 0 ? 0 : worst / most;
 }
 
-/// As the base's instruction set says, everything else is compiled for.
-bool base_fuses() { return fused(1 + 0x1p-30, 1 + 0x1p-30, -1 - 0x1p-29) != 0; }
-
 /// The same operations in the same order. Where the rest of the program rounds products before it adds, a chain of n bodies lets the last
 /// digits of that grow like n.
 void expect_found(Scene const& scene, Axes axes, std::string const& what) {
@@ -59,7 +56,7 @@ void expect_found(Scene const& scene, Axes axes, std::string const& what) {
         Accelerations const one = found(scene, axes, level, 1, *alone), shared = found(scene, axes, level, 1, world);
         double const tolerance = 64 * static_cast<double>(scene.bodies()) * 0x1p-53;
         EXPECT_LE(difference(expected.acceleration, one.acceleration), tolerance) << name;
-        EXPECT_TRUE(!base_fuses() || same(expected, one)) << name;
+        EXPECT_TRUE(!rounds_as_vectors() || same(expected, one)) << name;
         EXPECT_TRUE(world.rank() > 0 || same(one, shared)) << name << ", " << world.size() << " ranks";
         if (world.size() > 1 || !openmp_is_built()) continue;
         for (int const threads : {2, 3}) EXPECT_TRUE(same(one, found(scene, axes, level, threads, *alone))) << name << ", " << threads;
@@ -137,7 +134,7 @@ TEST(SimdOfSteps, FindTheSame) {
                     return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&
                            same_bits(a.orientation, b.orientation);
                 };
-                EXPECT_TRUE(!base_fuses() || same_state(found, expected)) << name;
+                EXPECT_TRUE(!rounds_as_vectors() || same_state(found, expected)) << name;
                 EXPECT_TRUE(testing::world().rank() > 0 || same_state(found, shared)) << name << ", ranks";
                 if (testing::world().size() > 1 || !openmp_is_built()) continue;
                 EXPECT_TRUE(same_state(found, after_steps(level, *alone, 2))) << name;
@@ -152,7 +149,7 @@ TEST(SimdOfSteps, DealOutBodiesOfOneType) {
     auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
     for (SimdLevel const level : simd_levels()) {
         JointLanes const lanes(*groups.front(), false, level);
-        ASSERT_EQ(lanes.any(), level != SimdLevel::off && base_fuses());
+        ASSERT_EQ(lanes.any(), level != SimdLevel::off && rounds_as_vectors());
         if (!lanes.any()) continue;
         std::vector<int> seen(100, 0);
         std::int64_t several = 0;

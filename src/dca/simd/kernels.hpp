@@ -71,6 +71,8 @@ struct NodeInLanes {
         return disassemble(joint, offset, first, next);
     }
 };
+template <class Real, int K>
+inline constexpr bool fits_nodes = sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real);
 /// Of joints number[j] + further.
 template <class Leaf, class Real, int K>
 void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, Symmetric<Real, K> const& factor) {
@@ -93,6 +95,7 @@ class RunsSideBySide {
     using Segment = BiasedSegment<Real, K>;
     using Directions = Vector<Real, K>;
     using Node = NodeInLanes<Real, K>;
+    static_assert(fits_nodes<Real, K>);
     static constexpr std::int64_t bodies_of_item = lanes * longest_run;
 
   public:
@@ -137,16 +140,16 @@ class RunsSideBySide {
   private:
     double* place(std::int64_t item, int p) const { return work_.nodes + (item * (parts_of_run - 1) + p - 1) * node_numbers<K> * lanes; }
     /// The next item's bodies usually follow, or come before where the way is back.
-    void fill(RunsInLanes const& runs, int p, int ahead) {
+    void fill(RunsInLanes const& runs, int p, int way) {
         begin_ = {by_runs ? p * part_length : 0};
         if (!by_runs)
-            tile_.fill(columns(runs, p), ahead * bodies_of_item);
-        else if (p == (ahead > 0 ? 0 : parts_of_run - 1))
-            tile_.fill(runs.body, ahead * bodies_of_item);
+            tile_.fill(columns(runs, p), way * bodies_of_item);
+        else if (p == (way > 0 ? 0 : parts_of_run - 1))
+            tile_.fill(runs.body, way * bodies_of_item);
         if constexpr (constants_of<Leaf> > 0) {
             constexpr int block = constants_of<Leaf> * part_length * lanes;
             double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            for (int n = 0; n < block; n += 8) InTile::ask_for(here + 2 * ahead * block + n);
+            for (int n = 0; n < block; n += 8) InTile::ask_for(here + 2 * way * block + n);
             bodies_ = in_tile_.with({here});
         }
     }

@@ -1,5 +1,7 @@
 #include "dca/simd/level.hpp"
 
+#include "dca/host_device.hpp"
+
 namespace catena {
 
 char const* name_of(SimdLevel level) {
@@ -23,6 +25,8 @@ int lanes_of(SimdLevel level) {
             return 1;
     }
 }
+
+bool rounds_as_vectors() { return fused(1 + 0x1p-30, 1 + 0x1p-30, -1 - 0x1p-29) != 0; }
 
 SimdLevel best_simd_level() {
     static SimdLevel const best = simd_levels().back();

@@ -27,6 +27,7 @@ void by_four(Action const& action) {
 template <class Real, class Record, class OfOne, Order order>
 void scatter(Record const& record, RecordsView<OfOne, order> to, std::int64_t const* index) {
     constexpr int count = RecordsView<OfOne, order>::numbers, lanes = Real::lanes;
+    static_assert(sizeof(Record) == count * sizeof(Real));
     alignas(64) double values[count * lanes];
     store_vectors<Real>(values, record);
     std::int64_t at[lanes];

@@ -1,6 +1,6 @@
 // Runs of bodies side by side, one in each lane of a vector, and merges of the tree above them: what the sources of the instruction sets
 // offer. These sources must not share a function with the rest of the program, or the linker may keep the one that not every processor
-// runs: nothing of the standard library passes this door, and all that is behind it is a template over their own vectors.
+// runs: nothing of the standard library but placement new passes this door, and all behind it is a template over their own vectors.
 #pragma once
 
 #include "dca/simd/level.hpp"

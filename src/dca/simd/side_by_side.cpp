@@ -37,26 +37,24 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes) {
 std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
     std::vector<LevelDealtOut> all;
     for (std::vector<Merge> const& level : group.schedule.levels) {
-        LevelDealtOut dealt{{}, {{}}};
-        int lane = 0;
-        MergesInLanes item{};
-        std::vector<Merge> waiting;
+        LevelDealtOut& dealt = all.emplace_back(LevelDealtOut{{}, {{}}});
+        int lane = lanes;
         for (Merge const& m : level) {
-            if (group.restricted_of_joint[static_cast<std::size_t>(m.joint)] != group.directions) {
+            if (!rounds_as_vectors() || group.restricted_of_joint[static_cast<std::size_t>(m.joint)] != group.directions) {
                 dealt.others.front().push_back(m);
                 continue;
             }
-            item.inboard[lane] = m.inboard, item.outboard[lane] = m.outboard, item.slot[lane] = m.slot;
-            item.first[lane] = m.first, item.joint[lane] = m.joint, item.next[lane] = m.next;
-            waiting.push_back(m);
-            if (++lane < lanes) continue;
-            dealt.items.push_back(item);
-            waiting.clear();
-            lane = 0;
+            if (lane == lanes) {
+                dealt.items.emplace_back();
+                lane = 0;
+            }
+            MergesInLanes& item = dealt.items.back();
+            for (int same = lane; same < lanes; ++same) {
+                item.inboard[same] = m.inboard, item.outboard[same] = m.outboard, item.slot[same] = m.slot;
+                item.first[same] = m.first, item.joint[same] = m.joint, item.next[same] = m.next;
+            }
+            ++lane;
         }
-        dealt.others.front().insert(dealt.others.front().end(), waiting.begin(), waiting.end());
-        if (dealt.items.empty()) break;
-        all.push_back(std::move(dealt));
     }
     return all;
 }

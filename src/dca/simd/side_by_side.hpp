@@ -1,4 +1,4 @@
-// A group's runs that go side by side: which ones, in what order, and the kernels of an instruction set for them.
+// A group's runs and merges that go side by side: which ones, in what order, and the kernels of an instruction set for them.
 #pragma once
 
 #include <algorithm>
@@ -57,12 +57,12 @@ AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lan
     return all;
 }
 
-/// Merges of one level in whole vectors, and those that are left over, as a list of one level.
+/// Merges of one level at joints that carry what handles do, side by side, in the lanes that are left over the last one again; and the
+/// others, as a list of one level.
 struct LevelDealtOut {
     std::vector<MergesInLanes> items;
     std::vector<std::vector<Merge>> others;
 };
-/// The lowest levels, as far as they fill vectors with merges at joints that carry what handles do.
 std::vector<LevelDealtOut> deal_out_levels(ChainGroup const&, int lanes);
 
 /// Runs, and the levels above them, that go side by side; with what is left to others of each.
@@ -85,12 +85,10 @@ class SideBySide {
         if (items() == 0) return;
         levels_ = deal_out_levels(group, lanes_);
         for (LevelDealtOut const& l : levels_) merge_nodes_.emplace_back(std::ssize(l.items) * node_numbers<Leaf::K> * lanes_);
-        upper_.assign(group.schedule.levels.begin() + std::ssize(levels_), group.schedule.levels.end());
     }
     std::int64_t items() const { return std::ssize(runs_.items); }
     std::vector<Run> const& other_runs() const { return runs_.others; }
     std::vector<LevelDealtOut> const& levels() const { return levels_; }
-    std::vector<std::vector<Merge>> const& upper_levels() const { return upper_; }
     std::int64_t bytes() const {
         std::int64_t all = nodes_.bytes() + constants_.bytes() + items() * static_cast<std::int64_t>(sizeof(RunsInLanes));
         for (std::size_t l = 0; l < levels_.size(); ++l)
@@ -122,13 +120,12 @@ class SideBySide {
     template <class Space, class Kernel>
     void over_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l, Kernel const& kernel) {
         MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data()};
-        space.over_ranges(std::ssize(levels_[l].items), lanes_, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
+        space.over_ranges(std::ssize(levels_[l].items), 2, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
     }
     RunKernels<Leaf> kernels_{};
     int lanes_ = 1;
     RunsDealtOut runs_;
     std::vector<LevelDealtOut> levels_;
-    std::vector<std::vector<Merge>> upper_;
     AlignedNumbers nodes_, constants_;
     std::vector<AlignedNumbers> merge_nodes_;
 };

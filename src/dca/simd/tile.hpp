@@ -1,5 +1,5 @@
-// What a part's bodies read and write, turned so that those of several runs lie side by side: one part of as many runs as a vector has
-// lanes. Views of a tile are read at a Column: a place that stands for one body of every run.
+// What bodies of a few runs read and write, turned so that those of several runs lie side by side: a part, or the whole, of as many runs
+// as a vector has lanes. Views of a tile are read at a Column: a place that stands for one body of every run.
 #pragma once
 
 #include "dca/places.hpp"
@@ -7,7 +7,7 @@
 
 namespace catena::dca {
 
-/// Body `at` of the part: -1 and part_length are the neighbours.
+/// Body `at` of those in the tile: -1 and the one after the last are the neighbours.
 template <class Real_>
 struct Column {
     using Real = Real_;
