@@ -64,10 +64,12 @@ std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts,
     if (failed != 0) made->window_ = MPI_WIN_NULL;
     int somewhere = 0;
     check_mpi(MPI_Allreduce(&failed, &somewhere, 1, MPI_INT, MPI_MAX, world), "MPI_Allreduce");
-    if (made->window_ == MPI_WIN_NULL) return nullptr;
+    if (somewhere != 0) {
+        made->window_ = MPI_WIN_NULL;  // not freed: that takes all ranks of a host
+        return nullptr;
+    }
     check_mpi(MPI_Win_set_errhandler(made->window_, MPI_ERRORS_RETURN), "MPI_Win_set_errhandler");
     check_mpi(MPI_Win_lock_all(MPI_MODE_NOCHECK, made->window_), "MPI_Win_lock_all");
-    if (somewhere != 0) return nullptr;
     MPI_Aint size = 0;
     int unit = 1;
     check_mpi(MPI_Win_shared_query(made->window_, 0, &size, &unit, &made->memory_), "MPI_Win_shared_query");

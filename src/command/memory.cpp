@@ -24,7 +24,7 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, double node) {
     double const places = static_cast<double>(sizeof(dca::RunsInLanes) + sizeof(dca::MergesInLanes)) / lanes_of(level);
     using InJoints = dca::BodyLeaf<5, dca::MeetingFrames<5, false>>;
     using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
-    bool const joints = !chain.is_linked() && uses_joint_coordinates(scene.dynamics.integrator);
+    bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
     int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
     return places + dca::parts_of_run * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }

@@ -170,7 +170,7 @@ class RigidDynamics final : public AbsoluteDynamics {
         std::vector<StateArray> all{
             to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view()),
             to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(omega_).view())};
-        if (rotors() > 0) all.push_back(to_array<3>("rotor", space_.read(rotor_).view()));
+        if (of_stiffness_ > 0) all.push_back(to_array<3>("rotor", space_.read(rotor_).view()));  // also on ranks that have none
         return all;
     }
     void set_state(std::vector<StateArray> const& arrays) override {

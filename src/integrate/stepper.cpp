@@ -28,9 +28,10 @@ class JointStepper final : public Stepper {
     }
     void step(std::int64_t n, StepTimeline* timeline) override {
         double const start = seconds_now();
-        for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(n) * h_);
+        set_time(n);
         integrator_->close_with(corrections_);
         integrator_->step(h_);
+        set_time(n + 1);  // as a restart has it: sums of inner steps round
         system_.close_tips(corrections_);
         sum_.add(solved(), has_tips() ? corrections_ + 1 : 0);
         if (timeline) timeline->phases.push_back({"evaluations", "catena", 0.0, seconds_now() - start});
@@ -58,7 +59,7 @@ class JointStepper final : public Stepper {
         for (JointDynamics const* const group : system_.joint()) system_.add_rates(group->group(), group->carried_rates(), own);
     }
     void restore(Checkpoint const& c) override {
-        for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(c.step) * h_);
+        set_time(c.step);
         if (auto const kept = c.integers.find("corrections_of_tips"); kept != c.integers.end())
             corrections_ = static_cast<int>(kept->second);
         if (integrator_->carries_rates())
@@ -82,6 +83,9 @@ class JointStepper final : public Stepper {
     }
 
   private:
+    void set_time(std::int64_t step) {
+        for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(step) * h_);
+    }
     bool has_tips() const {
         auto const groups = system_.joint();
         return std::any_of(groups.begin(), groups.end(), [](JointDynamics const* g) { return g->group().has_tips(); });

@@ -104,6 +104,7 @@ std::vector<std::string> keys_of(Place const& group) {
 struct Entry {
     Entry(Place const& group, std::string const& key) : data(check(H5Dopen2(group.id, key.c_str(), H5P_DEFAULT), group.file, group.doing)) {
         Space const space(check(H5Dget_space(data.get()), group.file, group.doing));
+        if (check(H5Sget_simple_extent_ndims(space.get()), group.file, group.doing) > 1) throw ComputationError(key + " is a table");
         size = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.get()), group.file, group.doing));
         // What claims to be larger than its file is damaged, and not worth the memory.
         if (size * sizeof(double) > std::filesystem::file_size(group.file)) throw ComputationError(key + " is larger than the file");

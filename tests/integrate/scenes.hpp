@@ -98,6 +98,17 @@ inline RunScene const run_scenes[] = {
      "{mass: 1, com: [0.1, 0, 0], inertia: [1, 1, 1], joint: {type: spherical, translation: [0.2, 0, 0], stiffness: [30, 40, 50]}}]}]\n"
      "forces: {gravity: [0, 0, -1], drag: {linear: 0.1, angular: 0.1}}\n"
      "dynamics: {integrator: dormand-prince, step: 0.03, steps: 20, tolerance: 1e-8}\noutput: {every: 5, checkpoint_every: 10}\n"},
+    {"adaptive_driven_tip",
+     "chains: [{name: a, base: fixed, bodies: ["
+     "{mass: 1, com: [0.25, 0, 0], inertia: [0.1, 0.1, 0.1], joint: {type: revolute, axis: [0, 0, 1], motion: {amplitude: 0.3, "
+     "frequency: 0.7, phase: 0.4}}},"
+     "{mass: 1, com: [0.25, 0, 0], inertia: [0.1, 0.1, 0.1], joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0], q: 1}},"
+     "{mass: 1, com: [0.25, 0, 0], inertia: [0.1, 0.1, 0.1], joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0], q: 1}},"
+     "{mass: 1, com: [0.25, 0, 0], inertia: [0.1, 0.1, 0.1], joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0], q: 1}}], "
+     "tip: {joint: {type: revolute, axis: [0, 0, 1], translation: [0.5, 0, 0]}}}]\n"
+     "forces: {gravity: [0, -1, 0]}\n"
+     "dynamics: {integrator: dormand-prince, step: 0.1, steps: 12, tolerance: 1e-8, constraint_tolerance: 1e-8}\n"
+     "output: {every: 3, checkpoint_every: 6}\n"},
     {"adaptive_rings",
      "chains: [{name: a, base: free, generator: {polygon: {bodies: 60, joint: spherical, spin: [1, 2, 3]}}, tip: {ring: {type: spherical, "
      "translation: [1, 0, 0]}}}, {name: b, base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 20, joint: revolute, "

@@ -98,6 +98,24 @@ TEST(SimdInAbsoluteCoordinates, FindsTheSame) {
     expect_found(scene_of("{generator: {random: {bodies: 300, joint: link, rigid: 0.5, seed: 8}}}"), Axes::world, "bodies on links");
 }
 
+/// Some joints restrict less than handles carry: their runs and merges go one by one among the others.
+TEST(SimdOfMixedJoints, FindsTheSame) {
+    for (std::size_t const distance : {16, 24, 96}) {
+        RandomChainOptions options;
+        options.bodies = 1500;
+        options.joints = RandomJoints::revolute;
+        Scene scene;
+        scene.chains = {random_chain(5, options)};
+        scene.chains[0].name = "chain";
+        BodyArrays& b = scene.chains[0].bodies;
+        for (std::size_t k = distance; k < b.size(); k += distance) {
+            b.joint[k] = JointType::spherical;
+            b.q[k] = {1, 0, 0, 0};
+        }
+        expect_found(scene, Axes::joint, "a spherical joint after " + std::to_string(distance) + " bodies");
+    }
+}
+
 /// What a step moves and what it needs for that, with every kind of load, and angles of many turns.
 TEST(SimdOfSteps, FindTheSame) {
     auto const alone = serial_communicator();
