@@ -1,5 +1,13 @@
 #include "io/hdf5_handle.hpp"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
 #include "error.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
@@ -42,11 +50,35 @@ std::string cause() {
 
 void fail(std::string const& file, std::string const& doing) { throw ComputationError("cannot " + doing + " (" + file + "): " + cause()); }
 
-void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) {
-    check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);
+namespace {
+int descriptor_of(File const& handle, std::string const& file, std::string const& doing) {
     void* descriptor = nullptr;
     check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &descriptor), file, doing);
-    sync_to_disk(*static_cast<int const*>(descriptor), file);
+    return *static_cast<int const*>(descriptor);
+}
+}  // namespace
+
+void make_room(File const& handle, std::string const& file, std::string const& doing) {
+    hsize_t size = 0;
+    check(H5Fget_filesize(handle.get(), &size), file, doing);
+    auto const written = static_cast<off_t>(size);
+    off_t const not_placed_yet = std::min<off_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
+    int const descriptor = descriptor_of(handle, file, doing);
+    if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, written + not_placed_yet) != 0 && errno == ENOSPC)
+        throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(ENOSPC));
+}
+
+void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) {
+    check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);
+    sync_to_disk(descriptor_of(handle, file, doing), file);
+}
+
+void leave_as_flushed(File const& handle) {
+    void* descriptor = nullptr;
+    int const nowhere = memfd_create("catena", 0);
+    if (nowhere < 0) return;
+    if (H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &descriptor) >= 0) dup2(nowhere, *static_cast<int const*>(descriptor));
+    ::close(nowhere);
 }
 
 }  // namespace catena::hdf5

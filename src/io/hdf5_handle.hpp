@@ -70,7 +70,11 @@ Status check(Status status, std::string const& file, std::string const& doing) {
     return status;
 }
 
+/// On the disk for all that a flush writes: a full one is found before anything in the file is overwritten.
+void make_room(File const&, std::string const& file, std::string const& doing);
 /// Everything written so far reaches the disk: H5Fflush, then fsync.
 void flush_to_disk(File const&, std::string const& file, std::string const& doing);
+/// For a file in which something could not be written: as its last flush left it, whatever HDF5 still does to it.
+void leave_as_flushed(File const&);
 
 }  // namespace catena::hdf5

@@ -60,43 +60,27 @@ class H5mdWriter final : public TrajectoryWriter {
     }
 
     void put(Frame const& part) override {
-        Quiet const quiet;
         std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
         auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
         if (part.first_site != sites_ || part.first_body != bodies_ || sites_ + sites > contents_.sites ||
             bodies_ + bodies > contents_.bodies.size() || !fits(part.velocities.size(), contents_.velocities) ||
             !fits(part.joint_forces.size(), contents_.joint_forces))
             refuse_arrays();
-        series_.position.put(place(), frames_, sites_, sites, part.positions.data());
-        if (contents_.velocities) series_.velocity.put(place(), frames_, sites_, sites, part.velocities.data());
-        if (bodies > 0) series_.orientation.put(place(), frames_, bodies_, bodies, part.orientations.data());
-        if (contents_.joint_forces) put_wrenches(part.joint_forces, sites_, series_.torque, series_.force);
-        sites_ += sites;
-        bodies_ += bodies;
+        whole_or_as_flushed([&] { put_part(part); });
     }
-
     void end(std::vector<Vector<double, 6>> const& tip_forces) override {
-        Quiet const quiet;
         if (sites_ != contents_.sites || bodies_ != contents_.bodies.size() ||
             (contents_.joint_forces && tip_forces.size() != contents_.tips))
             refuse_arrays();
-        if (contents_.periodic) series_.edges.put(place(), frames_, box_.data);
-        if (series_.tip_force) put_wrenches(tip_forces, 0, series_.tip_torque, series_.tip_force);
-        series_.time.put(place(), frames_, &time_);
-        series_.step.put(place(), frames_, &step_);
-        ++frames_;
-        last_step_ = step_;
-        if (now() - flushed_ < seconds_between_flushes) return;
-        check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
-        flushed_ = now();
+        whole_or_as_flushed([&] { end_frame(tip_forces); });
     }
-
     void flush() override {
-        Quiet const quiet;
-        flush_to_disk(file_, name_, writing);
+        whole_or_as_flushed([&] {
+            make_room(file_, name_, writing);
+            flush_to_disk(file_, name_, writing);
+        });
         flushed_ = now();
     }
-
     void close() override {
         if (!file_) return;
         // A full disk shows at the flush; H5Fclose reports success all the same.
@@ -107,6 +91,38 @@ class H5mdWriter final : public TrajectoryWriter {
     }
 
   private:
+    template <class Action>
+    void whole_or_as_flushed(Action const& action) {
+        Quiet const quiet;
+        try {
+            action();
+        } catch (...) {
+            leave_as_flushed(file_);
+            throw;
+        }
+    }
+    void put_part(Frame const& part) {
+        std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
+        series_.position.put(place(), frames_, sites_, sites, part.positions.data());
+        if (contents_.velocities) series_.velocity.put(place(), frames_, sites_, sites, part.velocities.data());
+        if (bodies > 0) series_.orientation.put(place(), frames_, bodies_, bodies, part.orientations.data());
+        if (contents_.joint_forces) put_wrenches(part.joint_forces, sites_, series_.torque, series_.force);
+        sites_ += sites;
+        bodies_ += bodies;
+    }
+
+    void end_frame(std::vector<Vector<double, 6>> const& tip_forces) {
+        if (contents_.periodic) series_.edges.put(place(), frames_, box_.data);
+        if (series_.tip_force) put_wrenches(tip_forces, 0, series_.tip_torque, series_.tip_force);
+        series_.time.put(place(), frames_, &time_);
+        series_.step.put(place(), frames_, &step_);
+        ++frames_;
+        last_step_ = step_;
+        if (now() - flushed_ < seconds_between_flushes) return;
+        make_room(file_, name_, writing);
+        check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
+        flushed_ = now();
+    }
     Place place() const { return {file_.get(), name_, writing}; }
 
     void create(Topology const& topology) {
