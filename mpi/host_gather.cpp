@@ -60,7 +60,10 @@ std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts,
     std::unique_ptr<HostGather> made(new HostGather(hosts, piece));
     check_mpi(MPI_Comm_rank(world, &made->rank_), "MPI_Comm_rank");
     MPI_Aint const bytes = hosts.leads() ? static_cast<MPI_Aint>(2 * piece) : 0;
-    int const failed = MPI_Win_allocate_shared(bytes, 1, MPI_INFO_NULL, hosts.ranks, &made->memory_, &made->window_) == MPI_SUCCESS ? 0 : 1;
+    int const failed =
+        MPI_Win_allocate_shared(bytes, 1, MPI_INFO_NULL, hosts.ranks, static_cast<void*>(&made->memory_), &made->window_) == MPI_SUCCESS
+            ? 0
+            : 1;
     if (failed != 0) made->window_ = MPI_WIN_NULL;
     int somewhere = 0;
     check_mpi(MPI_Allreduce(&failed, &somewhere, 1, MPI_INT, MPI_MAX, world), "MPI_Allreduce");
@@ -72,7 +75,7 @@ std::unique_ptr<HostGather> HostGather::make(MPI_Comm world, Hosts const& hosts,
     check_mpi(MPI_Win_lock_all(MPI_MODE_NOCHECK, made->window_), "MPI_Win_lock_all");
     MPI_Aint size = 0;
     int unit = 1;
-    check_mpi(MPI_Win_shared_query(made->window_, 0, &size, &unit, &made->memory_), "MPI_Win_shared_query");
+    check_mpi(MPI_Win_shared_query(made->window_, 0, &size, &unit, static_cast<void*>(&made->memory_)), "MPI_Win_shared_query");
     return made;
 }
 
