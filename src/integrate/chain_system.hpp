@@ -24,8 +24,8 @@ SimdLevel choose_simd_level(Scene const&, Communicator const&);
 
 class ChainSystem {
   public:
-    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint (solve, rk4, velocity-verlet) or world (rattle,
-    /// g-baoab). Collective.
+    /// Bead chains are always in absolute coordinates; body chains by `axes`: joint or world, as
+    /// uses_joint_coordinates() has it for integrators. Collective.
     /// `implicit_step`: of an implicit integrator, in whose matrices stand what springs and dampers do within a step; 0: those of
     /// forward dynamics.
     ChainSystem(Scene const&, Axes axes, Communicator const&, double implicit_step = 0);

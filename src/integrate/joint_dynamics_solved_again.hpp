@@ -1,6 +1,6 @@
 // Members of JointDynamicsIn that go beyond a step's own solution: the motion as the host sees it, noise, refinement, tips that
-// are closed, and what chains' ends tell each
-// other for these. Included by joint_dynamics_in.hpp.
+// are closed, and what chains' ends tell each other for these.
+// Included by joint_dynamics_in.hpp.
 #pragma once
 
 #include "integrate/joint_dynamics_in.hpp"

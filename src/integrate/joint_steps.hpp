@@ -15,7 +15,7 @@ struct RungeKuttaStage {
 struct JointSteps {
     JointChains chains;
     StateView start, sum;
-    RatesView carried;  // accelerations that velocity Verlet carries from step to step
+    RatesView carried;  // accelerations that an integrator carries from step to step
 
     template <class Real>
     CATENA_HD static Vector<Real, 4> rate_of_quaternion(Quaternion<Real> const& q, Vector<Real, 3> const& omega) {

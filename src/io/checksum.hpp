@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <span>
 #include <string_view>
 
 namespace catena {
@@ -27,10 +26,6 @@ class Checksum {
             std::memcpy(&word, text.data() + at, std::min(sizeof word, text.size() - at));
             add(word);
         }
-    }
-    void add(std::span<double const> values) {
-        add(std::uint64_t{values.size()});
-        for (double const value : values) add(value);
     }
     std::uint64_t value() const {
         std::uint64_t mixed = state_ + words_;
