@@ -1,5 +1,6 @@
 // Checkpoints: attributes format, version, step, time, scene_hash and checksum at the root; groups notes (texts), integers and
-// arrays (doubles), one dataset an entry. The checksum runs over all of it in the order of the keys.
+// arrays (doubles), one dataset an entry. The checksum runs over all of it in the order of the keys: what was handed over is what is read.
+// A seal in front of HDF5's own bytes tells of damage before HDF5 meets it.
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "io/hdf5_data.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
+#include "io/seal.hpp"
 
 namespace catena {
 namespace {
@@ -21,7 +23,7 @@ using namespace hdf5;
 std::string const writing = "write the checkpoint";
 std::string const reading = "read the checkpoint";
 std::string const format = "catena checkpoint";
-constexpr std::int64_t format_version = 1;
+constexpr std::int64_t format_version = 2;
 
 /// All but the arrays, which the caller adds in the order of their keys.
 Checksum checksum_of_head(Checkpoint const& checkpoint) {
@@ -193,11 +195,13 @@ Checkpoint read(std::string const& file, Arrays wish) {
     if (!std::filesystem::exists(file)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_of(file);
     std::string const remedy = std::filesystem::exists(previous) ? "use the one before, " + previous : "start anew";
+    if (!has_seal(file)) throw InputError("not a checkpoint of Catena", file, "name the checkpoint.h5 of a run");
+    if (std::string const wrong = broken_seal(file); !wrong.empty()) throw InputError("the checkpoint is damaged, " + wrong, file, remedy);
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    if (!handle) throw InputError("not a checkpoint or cut short, " + cause(), file, remedy);
+    if (!handle) throw InputError("not a checkpoint, " + cause(), file, remedy);
     Place const root{handle.get(), file, reading};
-    if (get_text(root, "format") != format) throw InputError("not a checkpoint of Catena", file, "name the checkpoint.h5 of a run");
     try {
+        if (get_text(root, "format") != format) throw ComputationError("it tells of no checkpoint");
         if (get_integer(root, "version") != format_version)
             throw InputError("a checkpoint of another version of Catena", file, "restart with the version that wrote it");
         return read_verified(root, wish);
@@ -222,14 +226,16 @@ void keep_previous(std::string const& file) {
 /// `name` is written; messages name `file`.
 struct CheckpointWriter::Draft {
     Draft(std::string of, Checkpoint const& checkpoint)
-        : file(std::move(of)),
-          name(file + ".writing"),
-          handle(check(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), file, writing)),
-          sum(checksum_of_head(checkpoint)) {
+        : file(std::move(of)), name(file + ".writing"), handle(create(name, file)), sum(checksum_of_head(checkpoint)) {
         put_head(root(), checkpoint);
         arrays = make_group(root(), "arrays");
     }
     Place root() const { return {handle.get(), file, writing}; }
+    static hid_t create(std::string const& name, std::string const& file) {
+        Properties const properties(check(H5Pcreate(H5P_FILE_CREATE), file, writing));
+        check(H5Pset_userblock(properties.get(), seal_size), file, writing);
+        return check(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, properties.get(), H5P_DEFAULT), file, writing);
+    }
 
     std::string file, name;
     File handle;
@@ -291,6 +297,7 @@ void CheckpointWriter::finish() {
         check(draft_->arrays.close(), file, writing);
         flush_to_disk(draft_->handle, file, writing);
         check(draft_->handle.close(), file, writing);
+        put_seal(name);
         read(name, Arrays::only_check);
         keep_previous(file);
         rename_file(name, file);

@@ -48,6 +48,25 @@ TEST(Checkpoint, OneAlteredNumberIsSeen) {
     EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")), std::string::npos) << refusal(file);
 }
 
+/// What is damaged never comes before HDF5, so neither do its errors.
+TEST(Checkpoint, DamageIsSeenBeforeHdf5) {
+    TemporaryFolder const folder;
+    std::string const file = folder / "checkpoint.h5";
+    write_checkpoint(file, sample());
+    std::string const good = bytes_of(file);
+    EXPECT_TRUE(good.starts_with("Catena, sealed file: " + std::to_string(good.size() - 512) + " bytes, checksum ")) << good.substr(0, 80);
+    EXPECT_EQ(good.substr(512, 4), "\x89HDF");
+    put_bytes(file, good + "more");
+    EXPECT_EQ(refusal(file), "the checkpoint is damaged, its checksum does not fit its contents (" + file + "): start anew");
+    put_bytes(file, good.substr(0, 600));
+    EXPECT_EQ(refusal(file),
+              "the checkpoint is damaged, cut short, 600 of " + std::to_string(good.size()) + " bytes (" + file + "): start anew");
+    put_bytes(file, good.substr(0, 100));
+    EXPECT_NE(refusal(file).find("cut short, 100 of"), std::string::npos) << refusal(file);
+    put_bytes(file, good.substr(512));
+    EXPECT_NE(refusal(file).find("not a checkpoint of Catena"), std::string::npos) << refusal(file);
+}
+
 TEST(Checkpoint, TwoFlippedSignsAreSeen) {
     TemporaryFolder const folder;
     std::string const file = folder / "checkpoint.h5";

@@ -1,0 +1,115 @@
+#include "io/seal.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+#include "error.hpp"
+#include "io/checksum.hpp"
+#include "io/output_file.hpp"
+
+namespace catena {
+namespace {
+
+constexpr std::string_view name = "Catena, sealed file";
+
+class Descriptor {
+  public:
+    Descriptor(std::string const& file, int flags) : file_(file), descriptor_(::open(file.c_str(), flags | O_CLOEXEC)) {
+        if (descriptor_ < 0) fail();
+    }
+    ~Descriptor() { ::close(descriptor_); }
+    Descriptor(Descriptor const&) = delete;
+    Descriptor& operator=(Descriptor const&) = delete;
+    int get() const { return descriptor_; }
+
+    /// As many bytes as there are, `most` at most.
+    std::size_t read(char* to, std::size_t most, std::int64_t at) const {
+        std::size_t done = 0;
+        while (done < most) {
+            ssize_t const count = ::pread(descriptor_, to + done, most - done, at + static_cast<std::int64_t>(done));
+            if (count < 0 && errno == EINTR) continue;
+            if (count < 0) fail();
+            if (count == 0) break;
+            done += static_cast<std::size_t>(count);
+        }
+        return done;
+    }
+    void write(std::string_view bytes, std::int64_t at) const {
+        while (!bytes.empty()) {
+            ssize_t const count = ::pwrite(descriptor_, bytes.data(), bytes.size(), at);
+            if (count < 0 && errno == EINTR) continue;
+            if (count <= 0) fail();
+            bytes.remove_prefix(static_cast<std::size_t>(count));
+            at += count;
+        }
+    }
+
+  private:
+    [[noreturn]] void fail() const {
+        throw ComputationError("cannot read or seal (" + file_ + "): " + std::generic_category().message(errno));
+    }
+
+    std::string const& file_;
+    int descriptor_;
+};
+
+struct Body {
+    std::int64_t size = 0;
+    std::uint64_t checksum = 0;
+};
+
+Body body_of(Descriptor const& file) {
+    std::vector<char> piece(1 << 22);
+    Body body;
+    Checksum sum;
+    while (std::size_t const count = file.read(piece.data(), piece.size(), seal_size + body.size)) {
+        sum.add(std::string_view(piece.data(), count));
+        body.size += static_cast<std::int64_t>(count);
+    }
+    body.checksum = sum.value();
+    return body;
+}
+
+std::string seal_of(Body const& body) { return fmt::format("{}: {} bytes, checksum {:016x}\n", name, body.size, body.checksum); }
+
+std::string first_bytes(Descriptor const& file) {
+    std::string seal(seal_size, '\0');
+    seal.resize(file.read(seal.data(), seal.size(), 0));
+    return seal;
+}
+
+}  // namespace
+
+void put_seal(std::string const& file) {
+    Descriptor const open(file, O_RDWR);
+    std::string seal = seal_of(body_of(open));
+    seal.resize(seal_size);
+    open.write(seal, 0);
+    sync_to_disk(open.get(), file);
+}
+
+bool has_seal(std::string const& file) {
+    return std::filesystem::is_regular_file(file) && first_bytes(Descriptor(file, O_RDONLY)).starts_with(name);
+}
+
+std::string broken_seal(std::string const& file) {
+    Descriptor const open(file, O_RDONLY);
+    Body const body = body_of(open);
+    std::string const seal = first_bytes(open);
+    std::int64_t const told = seal.size() > name.size() + 2 ? std::strtoll(seal.c_str() + name.size() + 2, nullptr, 10) : 0;
+    if (seal.size() < seal_size || body.size < told)
+        return fmt::format("cut short, {} of {} bytes", std::filesystem::file_size(file), told + seal_size);
+    std::string expected = seal_of(body);
+    expected.resize(seal_size);
+    return seal == expected ? "" : "its checksum does not fit its contents";
+}
+
+}  // namespace catena
