@@ -136,16 +136,18 @@ class CountingSpace : public HostAccess {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, int directions) {
+             std::int64_t slots, std::span<std::uint8_t const> restricted, int directions) {
             constexpr std::int64_t shared_bytes = 227 << 10, together = 8;  // of an H100; others' plans take about as much
-            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, dca::stage_sizes(directions, shared_bytes, together));
+            dca::StagePlan const plan =
+                dca::plan_stages(runs, levels, roots, slots, restricted, dca::stage_sizes(directions, shared_bytes, together));
             count(runs);
             for (dca::Stage const& stage : plan.stages) {
                 count(stage.items);
                 count(stage.merges);
                 count(stage.roots);
                 for (auto const* handed : {&stage.segments_up, &stage.forces_down}) count(*handed);
-                for (auto const* ranges : {&stage.item, &stage.merge, &stage.root, &stage.up, &stage.down}) count(*ranges);
+                count(dca::blocks_of(stage));
+                count(dca::level_ends_of(stage));
             }
         }
 

@@ -69,10 +69,10 @@ class DeviceSpace {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, int directions)
+             std::int64_t slots, std::span<std::uint8_t const> restricted, int directions)
             : runs_(runs) {
             dca::StageSizes const sizes = sizes_here(directions);
-            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, sizes);
+            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
             for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
             together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
@@ -87,11 +87,8 @@ class DeviceSpace {
                   roots(stage.roots),
                   segments_up(stage.segments_up),
                   forces_down(stage.forces_down),
-                  item(stage.item),
-                  merge(stage.merge),
-                  root(stage.root),
-                  up(stage.up),
-                  down(stage.down),
+                  block(dca::blocks_of(stage)),
+                  level_end(dca::level_ends_of(stage)),
                   blocks(static_cast<unsigned>(stage.blocks())),
                   threads(dca::threads_for(stage, sizes)),
                   view{static_cast<unsigned>(stage.blocks()),
@@ -104,16 +101,14 @@ class DeviceSpace {
                        roots.data(),
                        segments_up.data(),
                        forces_down.data(),
-                       item.data(),
-                       merge.data(),
-                       root.data(),
-                       up.data(),
-                       down.data()} {}
+                       block.data(),
+                       level_end.data()} {}
             Buffer<dca::StageItem> items;
             Buffer<dca::StageMerge> merges;
             Buffer<dca::StageRoot> roots;
             Buffer<dca::Handed> segments_up, forces_down;
-            Buffer<dca::Range> item, merge, root, up, down;
+            Buffer<dca::StageBlock> block;
+            Buffer<std::int32_t> level_end;
             unsigned blocks;
             int threads;
             kernels::DeviceStage view;
@@ -367,24 +362,25 @@ class DeviceSpace {
     /// Of the first `stages` stages.
     template <class Sweep>
     void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) const {
-        if (tree.runs_apart_) {
-            over_runs(tree, sweep, kernels::SharedRecords<typename Sweep::Segment>::size(kernels::threads), kernels::climb_runs<Sweep>);
-        }
+        if (tree.runs_apart_) climb_runs(tree, sweep);
         for (std::size_t i = 0; i < stages; ++i) launch(kernels::climb<Sweep>, tree.stages_[i], sweep);
     }
     template <class Sweep>
     void descend_below(Tree const& tree, std::size_t stages, Sweep const& sweep) const {
         for (std::size_t i = stages; i-- > 0;) launch(kernels::descend<Sweep>, tree.stages_[i], sweep);
-        if (tree.runs_apart_) over_runs(tree, sweep, 0, kernels::descend_runs<Sweep>);
+        if (tree.runs_apart_) descend_runs(tree, sweep);
     }
-    /// `numbers` of shared memory that it needs.
     template <class Sweep>
-    void over_runs(Tree const& tree, Sweep const& sweep, std::size_t numbers, void (*kernel)(dca::Run const*, std::int64_t, Sweep)) const {
-        auto const count = static_cast<std::int64_t>(tree.runs_.size());
-        std::int64_t const in_groups = (count + 31) / 32 * 32;  // that walk side by side
-        std::size_t const bytes = sizeof(double) * numbers;
-        allow_shared(kernel, bytes);
-        kernel<<<blocks(in_groups * dca::parts_of_run), kernels::threads, bytes, stream()>>>(tree.runs_.data(), count, sweep);
+    void climb_runs(Tree const& tree, Sweep const& sweep) const {
+        kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(static_cast<std::int64_t>(tree.runs_.size()));
+        allow_shared(kernels::climb_runs<Sweep>, grid.shared_bytes);
+        kernels::climb_runs<<<grid.blocks, grid.threads, grid.shared_bytes, stream()>>>(tree.runs_.data(), grid.runs, sweep);
+        started();
+    }
+    template <class Sweep>
+    void descend_runs(Tree const& tree, Sweep const& sweep) const {
+        kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(static_cast<std::int64_t>(tree.runs_.size()));
+        kernels::descend_runs<<<grid.blocks, grid.threads, grid.shared_bytes, stream()>>>(tree.runs_.data(), grid.runs, sweep);
         started();
     }
     std::shared_ptr<Stream> stream_;

@@ -2,8 +2,6 @@
 // again on the way down, because that is cheaper than to keep what became of them.
 #pragma once
 
-#include <utility>
-
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -21,20 +19,23 @@ struct Resting {
 
     /// Bodies from `begin` on.
     struct Part {
-        Resting const& bodies;
         std::int64_t begin;
-        CATENA_HD_IN_PLACE Body<std::int64_t> body(int i) const {
-            return {bodies.leaf.body(bodies.loads, begin + i), bodies.restricted[begin + i]};
-        }
     };
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/) const { return {*this, begin}; }
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/) const { return {begin}; }
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
+        return {leaf.body(loads, part.begin + i), restricted[part.begin + i]};
+    }
     /// What is needed to accelerate it.
     template <class Place>
     CATENA_HD static Place keep(Body<Place> const& body) {
         return body.k;
     }
 
-    /// Of several bodies side by side, whose joints restrict what handles carry: as Part.
+    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
+        leaf.accelerate(loads, part.begin + i, inboard, outboard, out);
+    }
+    /// Of several bodies side by side, whose joints restrict what handles carry.
     template <class Place>
     struct Walk {
         Resting const& bodies;
@@ -67,36 +68,39 @@ struct Evaluation {
     using Joint = typename Sweeps::Joint;
     using Directions = typename Sweeps::Directions;
     using Node = typename Sweeps::Node;
+    using Part = typename Bodies::Part;
     using Body = typename Bodies::template Body<std::int64_t>;
-    using Kept = decltype(Bodies::keep(std::declval<Body const&>()));
     Sweeps s;
     Bodies bodies;
     AccelerationsView out;
 
-    CATENA_HD Segment part(Run const& run, int p) const {
+    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
         Lost found;
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
-        auto part = bodies.part(begin, end);
-        Segment segment = bodies.segment(part.body(0));
-        each_body<K>(1, static_cast<int>(end - begin), [&](int i) {
-            Body const body = part.body(i);
+        Segment segment{};
+        each_body<unrolled<K>>(0, static_cast<int>(end - begin), [&](int i) {
+            Body const body = bodies.body(part, i);
             Joint joint;
             Directions offset;
-            append(segment, bodies.segment(body), begin + i, body.restricted, joint, offset, found);
+            if (i == 0)
+                segment = bodies.segment(body);
+            else
+                append(segment, bodies.segment(body), {begin + i, body.restricted}, joint, offset, found);
         });
         s.note(found);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Node node;
-        Segment const segment = joined(inboard, outboard, k, node);
-        keep(k, node);
+        Segment const segment = joined(inboard, outboard, at, node);
+        keep(at.k, node);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k, Node& node) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node) const {
         Lost found;
         Segment segment = inboard;
-        append(segment, outboard, k, s.restricted[k], node.joint, node.offset, found);
+        append(segment, outboard, at, node.joint, node.offset, found);
         s.note(found);
         return segment;
     }
@@ -110,50 +114,45 @@ struct Evaluation {
         s.biases.store(slot, segment.bias);
     }
     CATENA_HD void close(Root const& root, Segment const& floating) const {
-        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), root.next) : floating;
+        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
-    CATENA_HD_IN_PLACE typename Bodies::Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
-    CATENA_HD_IN_PLACE void down(Run const& run, int p, typename Bodies::Part& part, Directions const& first, Directions next) const {
-        std::int64_t const k = begin_of(run, p), end = end_of(run, p);
-        Body body = part.body(0);
-        Kept kept[part_length] = {bodies.keep(body)};
+    template <bool unroll>
+    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
+        constexpr bool unrolled_here = unroll || unrolled<K>;
+        std::int64_t const k = begin_of(run, p);
+        int const count = static_cast<int>(end_of(run, p) - k);
         Elimination<double, K> passed[part_length] = {};
-        Segment segment = bodies.segment(body);
-        Symmetric<double, K> z22 = segment.matrix.z22;
-        Directions b2 = segment.bias.b2 + transposed_times(segment.matrix.z12, first);
-        CATENA_UNROLL
-        for (int i = 1; i < part_length; ++i)
-            if (k + i < end) {
-                body = part.body(i);
-                kept[i] = bodies.keep(body);
-                segment = bodies.segment(body);
+        Symmetric<double, K> z22{};
+        Directions b2{};
+        each_body<unrolled_here>(0, count, [&](int i) {
+            Body const body = bodies.body(part, i);
+            Segment const segment = bodies.segment(body);
+            if (i > 0) {
                 passed[i] = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted);
+            } else {
+                z22 = segment.matrix.z22;
+                b2 = segment.bias.b2 + transposed_times(segment.matrix.z12, first);
             }
-        CATENA_UNROLL
-        for (int i = part_length - 1; i > 0; --i)
-            if (k + i < end) {
-                Directions const at_i = passed[i].gain * next + passed[i].offset;
-                give(kept[i], k + i, at_i, next);
-                next = at_i;
-            }
-        give(kept[0], k, first, next);
+        });
+        each_body_back<unrolled_here>(0, count, [&](int i) {
+            Directions const at_i = i > 0 ? passed[i].gain * next + passed[i].offset : first;
+            bodies.accelerate(part, i, at_i, next, out);
+            store_forces(s.leaf.group(), out, k + i, at_i, next);
+            next = at_i;
+        });
     }
 
   private:
-    CATENA_HD void append(Segment& segment, Segment const& outboard, std::int64_t k, int restricted, Joint& joint, Directions& offset,
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset,
                           Lost& found) const {
-        dca::append(segment.matrix, outboard.matrix, restricted, joint);
-        s.watch(k, restricted, joint.factor, found);
+        dca::append(segment.matrix, outboard.matrix, at.restricted, joint);
+        s.watch(at, joint.factor, found);
         dca::append(segment.bias, outboard.bias, joint, offset);
-    }
-    CATENA_HD void give(Kept const& body, std::int64_t k, Directions const& inboard, Directions const& outboard) const {
-        bodies.accelerate(body, inboard, outboard, out);
-        store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
 };
 
@@ -170,13 +169,15 @@ struct BothSweeps {
     MatrixSweep<Leaf> matrices;
     BiasSweep<Leaf> biases;
 
-    CATENA_HD Segment part(Run const& run, int p) const {
-        auto const matrix = matrices.part(run, p);  // whose joints the biases need
-        return {matrix, biases.part(run, p)};
+    using Part = NothingRead;
+    CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    CATENA_HD Segment part(Run const& run, int p, Part read) const {
+        auto const matrix = matrices.part(run, p, read);  // whose joints the biases need
+        return {matrix, biases.part(run, p, read)};
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
-        auto const matrix = matrices.joined(inboard.matrix, outboard.matrix, k);
-        return {matrix, biases.joined(inboard.bias, outboard.bias, k)};
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+        auto const matrix = matrices.joined(inboard.matrix, outboard.matrix, at);
+        return {matrix, biases.joined(inboard.bias, outboard.bias, at)};
     }
     CATENA_HD Segment load(std::int64_t slot) const { return {matrices.load(slot), biases.load(slot)}; }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
@@ -191,10 +192,9 @@ struct BothSweeps {
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return biases.force(node, first, next);
     }
-    CATENA_HD auto read(std::int64_t begin, std::int64_t end) const { return biases.read(begin, end); }
-    CATENA_HD void down(Run const& run, int p, typename BiasSweep<Leaf>::NothingYet bodies, Directions const& first,
-                        Directions const& next) const {
-        biases.down(run, p, bodies, first, next);
+    template <bool unroll>
+    CATENA_HD void down(Run const& run, int p, Part read, Directions const& first, Directions const& next) const {
+        biases.template down<unroll>(run, p, read, first, next);
     }
 };
 

@@ -39,50 +39,50 @@ struct MovingBeads {
     ConfigurationView configuration;
     LoadsView loads;
 
-    /// Of bodies `begin` to `end` - 1 and their neighbours all is read at once, in the place of what is not there something that is:
-    /// reads that wait for each other cost more.
-    class Part {
-      public:
-        CATENA_HD_IN_PLACE Part(MovingBeads const& beads, std::int64_t begin, std::int64_t end)
-            : beads_(beads), begin_(begin), starts_(beads.group.is_first[begin] != 0), left_(static_cast<int>(end - begin)) {
-            goes_on_ = beads.group.is_last[end - 1] == 0;
-            CATENA_UNROLL
-            for (int i = 0; i < part_length + 2; ++i) {
-                std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;  // fields have a halo, and `restricted` more
-                position_[i] = beads.configuration.position.load(k);
-                velocity_[i] = beads.loads.velocity.load(k);
-                if (i == 0 || i > part_length) continue;
-                inverse_mass_[i - 1] = beads.group.inverse_mass.at(k, 0);
-                restricted_[i - 1] = beads.restricted[k];
-                force_[i - 1] = beads.loads.force.origin ? beads.loads.force.load(k) : Vec3::zero();
-            }
-            outboard_ = starts_ ? ground_link() : link(position_[1] - position_[0], velocity_[1] - velocity_[0]);
-        }
-        /// Body i: one after the other.
-        CATENA_HD_IN_PLACE Body<std::int64_t> body(int i) {
-            Body<std::int64_t> body{begin_ + i, outboard_, Link<double>::none(), force_[i], inverse_mass_[i], restricted_[i]};
-            Link<double> const after = link(position_[i + 2] - position_[i + 1], velocity_[i + 2] - velocity_[i + 1]);
-            if (i + 1 < left_ || goes_on_) body.outboard = after;
-            outboard_ = body.outboard;
-            return body;
-        }
-
-      private:
-        CATENA_HD Link<double> ground_link() const {
-            if (restricted_[0] == 0) return Link<double>::none();
-            ConfigurationView const& c = beads_.configuration;
-            return link(position_[1] - piece_of(c.piece, c.pieces, begin_).anchor, velocity_[1]);
-        }
-        MovingBeads const& beads_;
-        std::int64_t begin_;
-        bool starts_, goes_on_;
-        int left_;
-        Vec3 position_[part_length + 2], velocity_[part_length + 2], force_[part_length];
-        double inverse_mass_[part_length];
-        std::uint8_t restricted_[part_length];
-        Link<double> outboard_;
+    /// Bodies from `begin` on, and the links between them and to their neighbours.
+    struct Part {
+        std::int64_t begin;
+        Link<double> link[part_length + 1];
+        Vec3 force[part_length];
+        double inverse_mass[part_length];
+        std::uint8_t restricted[part_length];
     };
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end) const { return Part(*this, begin, end); }
+    /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end) const {
+        Part read;
+        read.begin = begin;
+        bool const starts = group.is_first[begin] != 0, goes_on = group.is_last[end - 1] == 0;
+        Vec3 position[part_length + 2], velocity[part_length + 2];
+        CATENA_UNROLL
+        for (int i = 0; i < part_length + 2; ++i) {
+            std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;  // fields have a halo, and `restricted` more
+            position[i] = configuration.position.load(k);
+            velocity[i] = loads.velocity.load(k);
+            if (i == 0 || i > part_length) continue;
+            read.inverse_mass[i - 1] = group.inverse_mass.at(k, 0);
+            read.restricted[i - 1] = restricted[k];
+            read.force[i - 1] = loads.force.origin ? loads.force.load(k) : Vec3::zero();
+        }
+        if (!starts)
+            read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0]);
+        else
+            read.link[0] = read.restricted[0] == 0
+                               ? Link<double>::none()
+                               : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
+        CATENA_UNROLL
+        for (int i = 1; i <= part_length; ++i) {
+            read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i]);
+            if (begin + i >= end && !goes_on) read.link[i] = Link<double>::none();
+        }
+        return read;
+    }
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
+        return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
+    }
+    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard, Vector<double, K> const& outboard,
+                                       AccelerationsView const& out) const {
+        accelerate(body(part, i), inboard, outboard, out);
+    }
     template <class Place>
     CATENA_HD static Body<Place> keep(Body<Place> const& body) {
         return body;

@@ -160,7 +160,7 @@ struct MatricesOfChains {
         tree.assemble_matrices([&](int i) { return sweeps.leaf.matrix(place.body_there(i)); },
                                [&](int i) { return sweeps.restricted[place.body_there(i)]; },
                                [&](int i, Symmetric<double, K> const& factor) {
-                                   sweeps.watch(place.body + i, factor, lost);
+                                   sweeps.watch(sweeps.at(place.body + i), factor, lost);
                                    sweeps.joints.store(place.body + i, tree.joint[i]);
                                });
         sweeps.note(lost);

@@ -19,8 +19,9 @@ int levels_above(std::int64_t items) { return std::bit_width(static_cast<std::ui
 
 class Planner {
   public:
-    Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots, std::int64_t slots)
-        : runs_(runs), levels_(levels), roots_(roots), node_(static_cast<std::size_t>(slots)) {
+    Planner(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots, std::int64_t slots,
+            std::span<std::uint8_t const> restricted)
+        : runs_(runs), levels_(levels), roots_(roots), restricted_(restricted), node_(static_cast<std::size_t>(slots)) {
         for (Run const& run : runs) know(run.slot, run.body, run.next);
         for (int l = 0; l < end(); ++l)
             for (Merge const& m : levels[static_cast<std::size_t>(l)]) {
@@ -130,7 +131,8 @@ class Planner {
             Range& range = s.merge[static_cast<std::size_t>(joined.block * s.levels + l)];
             if (range.begin == range.end) range.begin = range.end = std::ssize(s.merges);
             ++range.end;
-            s.merges.push_back({inboard.place, outboard.place, outboard.next_place, m.joint});
+            s.merges.push_back(
+                {inboard.place, outboard.place, outboard.next_place, restricted_[static_cast<std::size_t>(m.joint)], m.joint});
         }
     }
     static void sort_by_block(Stage& s) {
@@ -184,6 +186,7 @@ class Planner {
     std::vector<Run> const& runs_;
     std::vector<std::vector<Merge>> const& levels_;
     std::vector<Root> const& roots_;
+    std::span<std::uint8_t const> restricted_;
     std::vector<Node> node_;             // by slot
     std::vector<std::int64_t> root_of_;  // by slot
 };
@@ -203,8 +206,8 @@ std::int64_t width_of_runs(std::int64_t runs, bool apart, StageSizes const& size
 }  // namespace
 
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
-                      std::int64_t slots, StageSizes const& sizes) {
-    Planner planner(runs, levels, roots, slots);
+                      std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes) {
+    Planner planner(runs, levels, roots, slots, restricted);
     StagePlan plan;
     plan.runs_apart = std::ssize(runs) > many_runs;
     int level = 0;
@@ -223,9 +226,27 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
     return plan;
 }
 
+std::vector<StageBlock> blocks_of(Stage const& stage) {
+    std::vector<StageBlock> blocks;
+    for (std::size_t b = 0; b < stage.item.size(); ++b) {
+        auto const* const level = stage.merge.data() + b * static_cast<std::size_t>(stage.levels);
+        Range const merge = stage.levels > 0 ? Range{level[0].begin, level[stage.levels - 1].end} : Range{};
+        blocks.push_back({stage.item[b], merge, stage.root[b], stage.up[b], stage.down[b]});
+    }
+    return blocks;
+}
+
+std::vector<std::int32_t> level_ends_of(Stage const& stage) {
+    std::vector<std::int32_t> ends;
+    for (std::size_t i = 0; i < stage.merge.size(); ++i)
+        ends.push_back(static_cast<std::int32_t>(stage.merge[i].end - stage.merge[i - i % static_cast<std::size_t>(stage.levels)].begin));
+    return ends;
+}
+
 StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t together) {
     std::int64_t const k = directions;
-    std::int64_t const numbers = k * (k + 1) + k * k + 2 * k + 2 * k + 3;  // of a segment with its biases, of two forces, of a merge
+    std::int64_t const numbers =
+        k * (k + 1) + k * k + 2 * k + 2 * k + 4;  // of a segment with its biases, of two forces, of a merge, of an item
     StageSizes sizes{stage_threads(directions), 2, together};
     auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dca/tree.hpp"
@@ -23,7 +24,8 @@ struct StageItem {
 /// The joined segment takes the place of the inboard one.
 struct StageMerge {
     std::int32_t inboard = 0, outboard = 0;
-    std::int32_t next = 0;  // place of the force after it
+    std::int32_t next = 0;        // place of the force after it
+    std::int32_t restricted = 0;  // directions of the joint
     std::int64_t joint = 0;
 };
 struct StageRoot {
@@ -51,6 +53,14 @@ struct Stage {
     std::int64_t blocks() const { return std::ssize(item); }
 };
 
+/// All ranges of a block, of `merges` those of all levels.
+struct StageBlock {
+    Range item, merge, root, up, down;
+};
+std::vector<StageBlock> blocks_of(Stage const&);
+/// Of every block and level: where its merges end among the block's.
+std::vector<std::int32_t> level_ends_of(Stage const&);
+
 struct StagePlan {
     std::vector<Stage> stages;  // from the leaves up
     bool runs_apart = false;    // runs come before all stages, which find them in their slots
@@ -68,9 +78,10 @@ StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t t
 /// That a stage needs.
 int threads_for(Stage const&, StageSizes const&);
 
-/// With enough blocks together: five launches for a sweep up and down of any chain, one for a small one.
+/// With enough blocks together: five launches for a sweep up and down of any chain, one for a small one. `restricted`: directions of every
+/// joint.
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
-                      std::int64_t slots, StageSizes const& sizes);
+                      std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes);
 
 /// Chains that one thread of the host takes whole: nothing is shared.
 struct BlockPlan {

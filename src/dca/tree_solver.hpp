@@ -29,8 +29,8 @@ class TreeSolver final : public ChainSolver {
           space_(space),
           communicator_(communicator),
           model_(group),
-          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, K),
-          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, K),
+          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, K),
+          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, K),
           top_copies_(schedule_.top_copies),
           matrices_(schedule_.slots),
           biases_(schedule_.slots),
@@ -156,7 +156,7 @@ class TreeSolver final : public ChainSolver {
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
-            rest_.emplace_back(runs, levels, roots, schedule_.slots, K);
+            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint, K);
         };
         add(aside_->other_runs(), no_levels_, no_roots_);
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);

@@ -1,9 +1,9 @@
 // One item of every sweep over the canonical tree, host and device: a part of a run, a run, a merge, a root. Who calls them for which
 // items is the driver's business (tree_solver.hpp) and the space's.
 //
-// A sweep is an object with Segment (what travels upwards), part(Run, p), joined(inboard, outboard, joint), load and store of slots,
-// close(Root, segment) and, if it `descends`, node(joint), force(node, first, next), read(begin, end) of a part's bodies and
-// down(Run, p, bodies, first, next) from what was read and the forces at the ends of part p.
+// A sweep is an object with Segment (what travels upwards), Part (what read(begin, end) finds of a part's bodies), part(Run, p, Part),
+// joined(inboard, outboard, JointAt), load and store of slots, close(Root, segment) and, if it `descends`, node(joint),
+// force(node, first, next) and down(Run, p, Part, first, next) from the forces at the ends of part p.
 #pragma once
 
 #include "dca/closure.hpp"
@@ -12,6 +12,12 @@
 #include "dca/tree.hpp"
 
 namespace catena::dca {
+
+/// A joint to be eliminated, and how many directions it restricts.
+struct JointAt {
+    std::int64_t k = 0;
+    int restricted = 0;
+};
 
 /// A joint whose matrix is not positive definite; none at first.
 struct Lost {
@@ -39,13 +45,13 @@ struct TreeSweeps {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
                schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + 2 * sizeof(Directions));
     }
+    CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
     /// The smallest joint so far whose matrix is not positive definite, as its pivots say.
-    CATENA_HD void watch(std::int64_t k, Symmetric<double, K> const& factor, Lost& found) const { watch(k, restricted[k], factor, found); }
-    CATENA_HD static void watch(std::int64_t k, int restricted_of_k, Symmetric<double, K> const& factor, Lost& found) {
+    CATENA_HD static void watch(JointAt const& joint, Symmetric<double, K> const& factor, Lost& found) {
         bool good = true;
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) good = good && (i >= restricted_of_k || (factor(i, i) > 0 && factor(i, i) - factor(i, i) == 0));
-        auto const bad = static_cast<unsigned long long>(k);
+        for (int i = 0; i < K; ++i) good = good && (i >= joint.restricted || (factor(i, i) > 0 && factor(i, i) - factor(i, i) == 0));
+        auto const bad = static_cast<unsigned long long>(joint.k);
         found.joint = good || bad > found.joint ? found.joint : bad;
     }
     /// Apart from the watching, so that it does not stand between a loop's reads.
@@ -73,25 +79,28 @@ struct TreeSweeps {
     /// chain as it floats; `held`, with its tip on the ground.
     CATENA_HD Joint fasten(Root const& root, Matrices const& floating, Matrices const& held) const {
         Lost found;
-        Joint first = joints.load(root.first);
+        JointAt const at_first = at(root.first);
+        Joint first{};
         if (root.tip == TipTo::nothing) {
-            first.factor = factorize(held.z11, restricted[root.first]);
+            first.factor = factorize(held.z11, at_first.restricted);
         } else {
             bool const ring = root.tip == TipTo::first_body;
-            first = closing_joint(ring ? ring_matrix(floating) : held.z11, open_response(floating, ring), restricted[root.first]);
+            first = closing_joint(ring ? ring_matrix(floating) : held.z11, open_response(floating, ring), at_first.restricted);
         }
         joints.store(root.first, first);
-        if (root.tip == TipTo::nothing || !has_least_norm(first)) watch(root.first, first.factor, found);
+        if (root.tip == TipTo::nothing || !has_least_norm(first)) watch(at_first, first.factor, found);
         note(found);
         return first;
     }
 };
 
-/// action(i) for a part's bodies i of [begin, end) in turn, unrolled for the smallest handles: larger ones fill the instruction cache as
-/// they are.
-template <int K, class Action>
+/// Whether loops over a part's bodies are unrolled: with larger handles they would fill a GPU's instruction cache.
+template <int K>
+constexpr bool unrolled = K == 1;
+/// action(i) for a part's bodies i of [begin, end) in turn.
+template <bool unroll, class Action>
 CATENA_HD void each_body(int begin, int end, Action const& action) {
-    if constexpr (K == 1) {
+    if constexpr (unroll) {
         CATENA_UNROLL
         for (int i = 0; i < part_length; ++i)
             if (i >= begin && i < end) action(i);
@@ -100,6 +109,21 @@ CATENA_HD void each_body(int begin, int end, Action const& action) {
         for (int i = begin; i < end; ++i) action(i);
     }
 }
+/// From the last one to the first.
+template <bool unroll, class Action>
+CATENA_HD void each_body_back(int begin, int end, Action const& action) {
+    if constexpr (unroll) {
+        CATENA_UNROLL
+        for (int i = part_length - 1; i >= 0; --i)
+            if (i >= begin && i < end) action(i);
+    } else {
+        CATENA_NO_UNROLL
+        for (int i = end - 1; i >= begin; --i) action(i);
+    }
+}
+
+/// Of a part's bodies that are read one by one.
+struct NothingRead {};
 
 /// The matrices of every segment and joint.
 template <class Leaf>
@@ -108,38 +132,40 @@ struct MatrixSweep {
     using Sweeps = TreeSweeps<Leaf>;
     using Joint = typename Sweeps::Joint;
     using Segment = typename Sweeps::Matrices;
+    using Part = NothingRead;
     Sweeps s;
 
-    CATENA_HD Segment part(Run const& run, int p) const {
+    CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Lost found;
         Segment segment = s.leaf.matrix(begin);
-        each_body<Leaf::K>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
+        each_body<unrolled<Leaf::K>>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
             std::int64_t const k = begin + i;
-            append(segment, s.leaf.matrix(k), k, found);
+            append(segment, s.leaf.matrix(k), s.at(k), found);
         });
         s.note(found);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Lost found;
         Segment segment = inboard;
-        append(segment, outboard, k, found);
+        append(segment, outboard, at, found);
         s.note(found);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
     CATENA_HD void close(Root const& root, Segment const& floating) const {
-        s.fasten(root, floating, root.tip == TipTo::ground ? joined(floating, Segment::zero(), root.next) : floating);
+        s.fasten(root, floating, root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating);
     }
 
   private:
-    CATENA_HD void append(Segment& segment, Segment const& outboard, std::int64_t k, Lost& found) const {
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Lost& found) const {
         Joint joint;
-        dca::append(segment, outboard, s.restricted[k], joint);
-        s.joints.store(k, joint);
-        s.watch(k, joint.factor, found);
+        dca::append(segment, outboard, at.restricted, joint);
+        s.joints.store(at.k, joint);
+        s.watch(at, joint.factor, found);
     }
 };
 
@@ -151,40 +177,41 @@ struct BiasSweep {
     using Segment = typename Sweeps::Biases;
     using Directions = typename Sweeps::Directions;
     using Node = typename Sweeps::Node;
+    using Part = NothingRead;
     Sweeps s;
     LoadsView loads;
     AccelerationsView out;
 
-    CATENA_HD Segment part(Run const& run, int p) const {
+    CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.bias(loads, begin);
-        each_body<Leaf::K>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
+        each_body<unrolled<Leaf::K>>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
             std::int64_t const k = begin + i;
             append(segment, s.leaf.bias(loads, k), k);
         });
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, std::int64_t k) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Segment segment = inboard;
-        append(segment, outboard, k);
+        append(segment, outboard, at.k);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
     /// Ground is a segment with zeta = 0: its acceleration stands in the biases of the joints to it.
     CATENA_HD void close(Root const& root, Segment const& floating) const {
-        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), root.next) : floating;
+        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.joints.load(root.first), held);
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
-    struct NothingYet {};
-    CATENA_HD NothingYet read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
-    CATENA_HD void down(Run const& run, int p, NothingYet, Directions const& first, Directions next) const {
+    template <bool /*unroll*/>
+    CATENA_HD void down(Run const& run, int p, Part, Directions const& first, Directions next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
-        each_body<Leaf::K>(0, static_cast<int>(end - begin), [&](int passed) {
+        each_body<unrolled<Leaf::K>>(0, static_cast<int>(end - begin), [&](int passed) {
             std::int64_t const k = end - 1 - passed;
             Directions const at_k = k == begin ? first : force(node(k), first, next);
             s.leaf.accelerate(loads, k, at_k, next, out);
@@ -204,13 +231,17 @@ struct BiasSweep {
 /// A run's parts join one after the other.
 template <class Sweep>
 CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
-    auto segment = sweep.part(run, 0);
-    for (int p = 1; p < parts_of(run); ++p) segment = sweep.joined(segment, sweep.part(run, p), begin_of(run, p));
+    typename Sweep::Segment segment;
+    CATENA_NO_UNROLL
+    for (int p = 0; p < parts_of(run); ++p) {
+        auto const part = sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p)));
+        segment = p == 0 ? part : sweep.joined(segment, part, sweep.s.at(begin_of(run, p)));
+    }
     sweep.store(run.slot, segment);
 }
 template <class Sweep>
 CATENA_HD void climb_merge(Sweep const& sweep, Merge const& m) {
-    sweep.store(m.slot, sweep.joined(sweep.load(m.inboard), sweep.load(m.outboard), m.joint));
+    sweep.store(m.slot, sweep.joined(sweep.load(m.inboard), sweep.load(m.outboard), sweep.s.at(m.joint)));
 }
 template <class Sweep>
 CATENA_HD void descend_merge(Sweep const& sweep, Merge const& m, typename Sweep::Node const& node) {
@@ -220,24 +251,13 @@ template <class Sweep>
 CATENA_HD void close_root(Sweep const& sweep, Root const& root) {
     sweep.close(root, sweep.load(root.slot));
 }
-/// Part p alone, from the forces at the run's ends: those at its own follow part after part from the far end.
-template <class Sweep>
-CATENA_HD void descend_part(Sweep const& sweep, Run const& run, int p, typename Sweep::Directions const& first,
-                            typename Sweep::Directions next) {
-    if (p >= parts_of(run)) return;
-    auto bodies = sweep.read(begin_of(run, p), end_of(run, p));
-    CATENA_NO_UNROLL
-    for (int q = parts_of(run) - 1; q > p; --q) next = sweep.force(sweep.node(begin_of(run, q)), first, next);
-    sweep.down(run, p, bodies, p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next), next);
-}
 template <class Sweep>
 CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     auto const first = sweep.s.forces.load(run.body);
     auto next = sweep.s.forces.load(run.next);
     for (int p = parts_of(run) - 1; p >= 0; --p) {
         auto const at_begin = p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next);
-        auto bodies = sweep.read(begin_of(run, p), end_of(run, p));
-        sweep.down(run, p, bodies, at_begin, next);
+        sweep.template down<true>(run, p, sweep.read(begin_of(run, p), end_of(run, p)), at_begin, next);
         next = at_begin;
     }
 }

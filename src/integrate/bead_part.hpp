@@ -177,7 +177,7 @@ class BeadPart {
                 return dca::bead_matrix(inverse_mass_[i + 1][0], direction_[i + 1], outboard_direction(i), Directions{});
             },
             [&](int i) { return sweeps_.restricted[place_.body_there(i)]; },
-            [&](int i, Symmetric<double, K> const& factor) { sweeps_.watch(place_.body + i, factor, lost); });
+            [&](int i, Symmetric<double, K> const& factor) { sweeps_.watch(sweeps_.at(place_.body + i), factor, lost); });
         sweeps_.note(lost);
     }
     CATENA_HD_IN_PLACE dca::SegmentBias<double, K> bias_of(Vec3 const& force, int i) const {

@@ -9,6 +9,13 @@ namespace {
 
 class Stages : public ::testing::TestWithParam<std::vector<std::int64_t>> {};
 
+/// Directions of every joint, so that they tell one from the other.
+std::vector<std::uint8_t> restricted(Schedule const& s) {
+    std::vector<std::uint8_t> all(static_cast<std::size_t>(s.joints));
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = static_cast<std::uint8_t>(k % 251);
+    return all;
+}
+
 /// Climbs and descends the stages as a device does. A segment is the joints at its ends, a force the joint that it belongs to.
 class Walk {
   public:
@@ -16,7 +23,7 @@ class Walk {
          StageSizes const& sizes)
         : runs_(runs),
           sizes_(sizes),
-          plan_(plan_stages(runs, levels, roots, s.slots, sizes)),
+          plan_(plan_stages(runs, levels, roots, s.slots, restricted(s), sizes)),
           segment_(index(s.slots)),
           around_(index(s.joints)),
           inner_(index(s.joints), 0),
@@ -80,6 +87,7 @@ class Walk {
                 StageMerge const& m = stage.merges[i];
                 Ends &inboard = own.at(index(m.inboard)), &outboard = own.at(index(m.outboard));
                 EXPECT_GE(inboard.first, 0);
+                EXPECT_EQ(m.restricted, m.joint % 251);
                 EXPECT_EQ(inboard.next, m.joint);
                 EXPECT_EQ(outboard.first, m.joint);
                 inboard.next = outboard.next;
@@ -201,7 +209,7 @@ TEST(Stages, OneLaunchForSmallChainsAndFiveForAny) {
     auto const launches = [](std::vector<std::int64_t> const& lengths, int directions) {
         StageSizes const sizes = stage_sizes(directions, 232448, 8);
         Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
-        StagePlan const plan = plan_stages(s.runs, s.levels, s.roots, s.slots, sizes);
+        StagePlan const plan = plan_stages(s.runs, s.levels, s.roots, s.slots, restricted(s), sizes);
         bool const together = plan.stages.size() > 1 && plan.stages[plan.stages.size() - 2].blocks() <= sizes.together;
         return 2 * (std::ssize(plan.stages) - (together ? 2 : 1) + (plan.runs_apart ? 1 : 0)) + 1;
     };

@@ -1,4 +1,5 @@
 // Whole runs on the GPU, on one rank and on several that share it, end in the bits of the host's.
+#include "error.hpp"
 #include "tests/integrate/whole_run.hpp"
 #include "tests/support/gpu.hpp"
 
@@ -8,9 +9,21 @@ namespace {
 class GpuRun : public WholeRun {
   protected:
     void SetUp() override { need_gpu(catena::testing::world()); }
+    /// Whether the scene is one for the host, which then refuses the GPU in one line.
+    bool is_refused(Backend backend) {
+        if (parse_scene(GetParam().text, "scene.yaml").dynamics.why_host_alone().empty()) return false;
+        try {
+            run(catena::testing::world(), "refused", 40, "", backend);
+            ADD_FAILURE() << "not refused";
+        } catch (InputError const& refusal) {
+            EXPECT_NE(std::string(refusal.what()).find("host (solver.backend: "), std::string::npos) << refusal.what();
+        }
+        return true;
+    }
 };
 
 TEST_P(GpuRun, EndsInTheBitsOfTheHost) {
+    if (is_refused(Backend::cuda)) return;
     Communicator const& world = catena::testing::world();
     run(world, "all", 40, "", Backend::cuda);
     run(world, "restarted", 20, "", Backend::cuda);
@@ -23,6 +36,7 @@ TEST_P(GpuRun, EndsInTheBitsOfTheHost) {
 }
 
 TEST_P(GpuRun, LevelsEndInTheBitsOfThePairwiseTree) {
+    if (is_refused(Backend::cuda_levels)) return;
     run(catena::testing::world(), "levels", 40, "", Backend::cuda_levels);
     if (catena::testing::world().rank() != 0) return;
     run(*serial_communicator(), "pairs", 40, "", Backend::serial);

@@ -15,7 +15,7 @@ namespace catena::test {
 struct StagedGpu {
     dca::StageSizes sizes;
     bool runs_apart = false;               // also where they are few
-    std::int64_t threads = sizes.threads;  // of a block at most: fewer than planned take what they have to do in turns
+    std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
 };
 /// In launches so far.
 struct StagesSeen {
@@ -36,13 +36,17 @@ class StageSpace : public HostSpace {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, int directions)
+             std::int64_t slots, std::span<std::uint8_t const> restricted, int directions)
             : runs_(runs), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, dca::stage_threads(directions));
-            plan_ = dca::plan_stages(runs, levels, roots, slots, sizes_);
+            plan_ = dca::plan_stages(runs, levels, roots, slots, restricted, sizes_);
             if (gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
+            }
+            for (dca::Stage const& stage : plan_.stages) {
+                blocks_.push_back(dca::blocks_of(stage));
+                level_ends_.push_back(dca::level_ends_of(stage));
             }
         }
 
@@ -52,6 +56,8 @@ class StageSpace : public HostSpace {
         dca::StageSizes sizes_;
         int threads_;
         dca::StagePlan plan_;
+        std::vector<std::vector<dca::StageBlock>> blocks_;  // of every stage
+        std::vector<std::vector<std::int32_t>> level_ends_;
     };
 
     template <class Sweep>
@@ -76,6 +82,7 @@ class StageSpace : public HostSpace {
 
   private:
     static cuda::kernels::DeviceStage view(Tree const& tree, dca::Stage const& stage) {
+        auto const which = static_cast<std::size_t>(&stage - tree.plan_.stages.data());
         return {static_cast<unsigned>(stage.blocks()),
                 stage.levels,
                 static_cast<int>(stage.width),
@@ -86,14 +93,12 @@ class StageSpace : public HostSpace {
                 stage.roots.data(),
                 stage.segments_up.data(),
                 stage.forces_down.data(),
-                stage.item.data(),
-                stage.merge.data(),
-                stage.root.data(),
-                stage.up.data(),
-                stage.down.data()};
+                tree.blocks_[which].data(),
+                tree.level_ends_[which].data()};
     }
     static int threads_for(Tree const& tree, dca::Stage const& stage) {
-        return std::min(dca::threads_for(stage, tree.sizes_), tree.threads_);
+        int const wanted = dca::threads_for(stage, tree.sizes_);
+        return stage.of_runs ? wanted : std::min(wanted, tree.threads_);
     }
     template <class Sweep>
     static std::size_t numbers(cuda::kernels::DeviceStage const& stage, int of_threads) {
@@ -121,8 +126,7 @@ class StageSpace : public HostSpace {
     template <class Sweep>
     static void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) {
         if (tree.plan_.runs_apart)
-            over_runs(tree, sweep, cuda::kernels::SharedRecords<typename Sweep::Segment>::size(cuda::kernels::threads),
-                      cuda::kernels::climb_runs<Sweep>);
+            over_runs(tree, sweep, cuda::kernels::grid_of_climb<Sweep>(std::ssize(tree.runs_)), cuda::kernels::climb_runs<Sweep>);
         ++(tree.plan_.runs_apart ? seen.runs_apart : seen.runs_in_stages);
         seen.most_stages = std::max(seen.most_stages, tree.plan_.stages.size());
         for (std::size_t i = 0; i < stages; ++i) launch_stage(cuda::kernels::climb<Sweep>, tree, tree.plan_.stages[i], sweep);
@@ -130,14 +134,13 @@ class StageSpace : public HostSpace {
     template <class Sweep>
     static void descend_below(Tree const& tree, std::size_t stages, Sweep const& sweep) {
         for (std::size_t i = stages; i-- > 0;) launch_stage(cuda::kernels::descend<Sweep>, tree, tree.plan_.stages[i], sweep);
-        if (tree.plan_.runs_apart) over_runs(tree, sweep, 0, cuda::kernels::descend_runs<Sweep>);
+        if (tree.plan_.runs_apart)
+            over_runs(tree, sweep, cuda::kernels::grid_of_descent<Sweep>(std::ssize(tree.runs_)), cuda::kernels::descend_runs<Sweep>);
     }
     template <class Sweep>
-    static void over_runs(Tree const& tree, Sweep const& sweep, std::size_t numbers, void (*kernel)(dca::Run const*, std::int64_t, Sweep)) {
-        std::int64_t const count = std::ssize(tree.runs_), in_groups = (count + 31) / 32 * 32;
-        unsigned const threads = cuda::kernels::threads;
-        auto const blocks = static_cast<unsigned>((in_groups * dca::parts_of_run + threads - 1) / threads);
-        cuda_on_host::launch({blocks, threads, numbers}, kernel, tree.runs_.data(), count, sweep);
+    static void over_runs(Tree const& tree, Sweep const& sweep, cuda::kernels::RunsGrid const& grid,
+                          void (*kernel)(dca::Run const*, std::int64_t, Sweep)) {
+        cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_.data(), grid.runs, sweep);
     }
 };
 

@@ -162,7 +162,7 @@ class RunsSideBySide {
         auto bodies = bodies_.walk(begin_);
         Segment body;
         Node node;
-        each_body<K>(0, part_length, [&](int i) {
+        each_body<unrolled<K>>(0, part_length, [&](int i) {
             ::new (i == 0 ? &segment : &body) Segment(bodies_.segment(bodies.body(i)));
             if (i > 0) append(segment, body, node, runs, p * part_length + i);
         });
@@ -189,7 +189,7 @@ class RunsSideBySide {
         auto bodies = bodies_.walk(begin_);
         Symmetric<Real, K> z22;
         Directions b2;
-        each_body<K>(0, part_length, [&](int i) {
+        each_body<unrolled<K>>(0, part_length, [&](int i) {
             Segment const segment = take(bodies, i, kept);
             if (i == 0) {
                 z22 = segment.matrix.z22;
@@ -206,7 +206,7 @@ class RunsSideBySide {
         Kept kept[part_length];
         auto bodies = bodies_.walk(begin_);
         Segment segment, outboard;
-        each_body<K>(0, part_length, [&](int i) {
+        each_body<unrolled<K>>(0, part_length, [&](int i) {
             ::new (i == 0 ? &segment : &outboard) Segment(take(bodies, i, kept));
             if (i == 0) return;
             node[i].template append<false>(segment, outboard);
@@ -222,7 +222,7 @@ class RunsSideBySide {
     /// From the last body, whose outboard joint's force is `next`; force(i) is that at body i's inboard joint.
     template <class Force>
     void back(Kept const* kept, Directions const& first, Directions& next, Force const& force) {
-        each_body<K>(0, part_length, [&](int from_end) {
+        each_body<unrolled<K>>(0, part_length, [&](int from_end) {
             int const i = part_length - 1 - from_end;
             Directions const at_i = i == 0 ? first : force(i);
             give(kept[i], i, at_i, next);

@@ -1,0 +1,140 @@
+// What the threads of a block do with a few runs of a sweep, up and down: a thread a part, in shared memory what passes between them. A
+// host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+#pragma once
+
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::cuda::kernels {
+
+__device__ inline std::int64_t thread() { return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x; }
+
+extern __shared__ double shared_numbers[];
+
+/// Records in a block's shared memory, number after number: neither neighbouring threads nor those a power of two apart meet in a bank.
+template <class T>
+struct SharedRecords {
+    static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double));
+    static constexpr __host__ __device__ int pitch_for(int count) { return count + count / 16 + 1; }
+    static constexpr __host__ __device__ std::size_t size(int count) { return static_cast<std::size_t>(numbers) * pitch_for(count); }
+    double* origin;
+    int pitch;
+    __device__ void store(int i, T const& record) const {
+        auto const values = __builtin_bit_cast(Numbers, record);
+        double* const first = origin + i + i / 16;
+        CATENA_UNROLL
+        for (int n = 0; n < numbers; ++n) first[n * pitch] = values[n];
+    }
+    __device__ T load(int i) const {
+        Numbers values;
+        double const* const first = origin + i + i / 16;
+        CATENA_UNROLL
+        for (int n = 0; n < numbers; ++n) values[n] = first[n * pitch];
+        return __builtin_bit_cast(T, values);
+    }
+
+  private:
+    using Numbers = Vector<double, numbers>;
+};
+
+/// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
+/// warp's threads walk side by side.
+struct RunPart {
+    std::int64_t run;
+    int part;
+    __device__ RunPart(std::int64_t thread, int lanes)
+        : run(thread / (lanes * dca::parts_of_run) * lanes + thread % lanes), part(static_cast<int>(thread / lanes % dca::parts_of_run)) {}
+};
+__device__ inline int lanes_of_block() {
+    int const of_part = static_cast<int>(blockDim.x) / dca::parts_of_run;
+    return of_part < 32 ? of_part : 32;
+}
+
+/// Each in the place of the part's segment.
+template <class Sweep>
+using NodesOfParts = SharedRecords<typename Sweep::Sweeps::Node>;
+/// The segments of runs `first` + RunPart(...).run, as many as the block's threads do at once: take(run, segment) by one thread each. All
+/// threads of a block must come here; `memory`: for a segment a thread; `part`: what a thread read of its bodies. `nodes_stay`: a sweep that
+/// keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
+template <bool nodes_stay, class Sweep, class Take>
+__device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
+                                typename Sweep::Part& part, Take const& take) {
+    using Segment = typename Sweep::Segment;
+    SharedRecords<Segment> const parts{memory, SharedRecords<Segment>::pitch_for(static_cast<int>(blockDim.x))};
+    int const lanes = lanes_of_block();
+    RunPart const mine(threadIdx.x, lanes);
+    std::int64_t const i = first + mine.run;
+    dca::Run run;
+    if (i < end) run = runs[i];
+    int const count = i < end ? dca::parts_of(run) : 0;
+    unsigned restricted = 0;  // a byte each, read before it is needed
+    CATENA_UNROLL
+    for (int p = 1; p < dca::parts_of_run; ++p)
+        if (p < count) restricted |= static_cast<unsigned>(sweep.s.restricted[dca::begin_of(run, p)]) << (8 * p);
+    Segment segment;
+    if (mine.part < count) {
+        part = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
+        segment = sweep.part(run, mine.part, part);
+    }
+    if (mine.part > 0 && mine.part < count) parts.store(static_cast<int>(threadIdx.x), segment);
+    __syncthreads();
+    if (mine.part == 0 && count > 0) {
+        CATENA_NO_UNROLL
+        for (int p = 1; p < count; ++p) {
+            int const there = static_cast<int>(threadIdx.x) + lanes * p;
+            dca::JointAt const at{dca::begin_of(run, p), static_cast<int>(restricted >> (8 * p) & 255)};
+            if constexpr (nodes_stay && Sweep::keeps_nodes) {
+                typename Sweep::Node node;
+                segment = sweep.joined(segment, parts.load(there), at, node);
+                NodesOfParts<Sweep>{memory, parts.pitch}.store(there, node);
+            } else {
+                segment = sweep.joined(segment, parts.load(there), at);
+            }
+        }
+        take(i, segment);
+    }
+    __syncthreads();
+}
+
+/// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
+/// those after it. `memory`: for a force a thread; `part`: as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
+template <bool unroll, bool nodes_stay, class Sweep, class OfFirst, class OfNext>
+__device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
+                                  typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
+    using Directions = typename Sweep::Sweeps::Directions;
+    SharedRecords<Directions> const at_part{memory, SharedRecords<Directions>::pitch_for(static_cast<int>(blockDim.x))};
+    int const lanes = lanes_of_block(), here = static_cast<int>(threadIdx.x);
+    RunPart const mine(threadIdx.x, lanes);
+    std::int64_t const i = first_run + mine.run;
+    dca::Run run;
+    if (i < end) run = runs[i];
+    int const count = i < end ? dca::parts_of(run) : 0;
+    typename Sweep::Part read;
+    typename Sweep::Sweeps::Node node;
+    Directions own, next;
+    if (mine.part < count) {  // all that is read before any of it is needed
+        if (!part) read = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
+        if constexpr (nodes_stay && Sweep::keeps_nodes) {
+            constexpr auto pitch = SharedRecords<typename Sweep::Segment>::pitch_for;
+            if (mine.part > 0) node = NodesOfParts<Sweep>{memory, pitch(static_cast<int>(blockDim.x))}.load(here);
+        } else {
+            if (mine.part > 0) node = sweep.node(dca::begin_of(run, mine.part));
+        }
+        own = of_first(run, i);
+        next = of_next(run, i);
+    }
+    if constexpr (nodes_stay && Sweep::keeps_nodes) __syncthreads();
+    CATENA_NO_UNROLL
+    for (int p = dca::parts_of_run - 1; p > 0; --p) {
+        if (mine.part == p && p < count) {
+            if (p + 1 < count) next = at_part.load(here + lanes);
+            own = sweep.force(node, own, next);
+            at_part.store(here, own);
+        }
+        __syncthreads();
+    }
+    if (mine.part >= count) return;
+    if (mine.part == 0 && count > 1) next = at_part.load(here + lanes);
+    sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next);
+}
+
+}  // namespace catena::cuda::kernels
