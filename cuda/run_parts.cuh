@@ -1,5 +1,5 @@
-// What the threads of a block do with a few runs of a sweep, up and down: a thread a part, in shared memory what passes between them. A
-// host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+// Records in a block's shared memory, and what its threads do with a few runs of a sweep, up and down: a thread a part. A host compiler
+// takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include "dca/tree_sweeps.hpp"
@@ -53,7 +53,7 @@ __device__ inline int lanes_of_block() {
 template <class Sweep>
 using NodesOfParts = SharedRecords<typename Sweep::Sweeps::Node>;
 /// The segments of runs `first` + RunPart(...).run, as many as the block's threads do at once: take(run, segment) by one thread each. All
-/// threads of a block must come here; `memory`: for a segment a thread; `part`: what a thread read of its bodies. `nodes_stay`: a sweep that
+/// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its bodies. `nodes_stay`: a sweep that
 /// keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
 template <bool nodes_stay, class Sweep, class Take>
 __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
@@ -66,10 +66,10 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
     dca::Run run;
     if (i < end) run = runs[i];
     int const count = i < end ? dca::parts_of(run) : 0;
-    unsigned restricted = 0;  // a byte each, read before it is needed
+    std::uint8_t restricted_of[dca::parts_of_run] = {};  // read now, looked at when parts join
     CATENA_UNROLL
     for (int p = 1; p < dca::parts_of_run; ++p)
-        if (p < count) restricted |= static_cast<unsigned>(sweep.s.restricted[dca::begin_of(run, p)]) << (8 * p);
+        if (p < count) restricted_of[p] = sweep.s.restricted[dca::begin_of(run, p)];
     Segment segment;
     if (mine.part < count) {
         part = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
@@ -78,6 +78,9 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
     if (mine.part > 0 && mine.part < count) parts.store(static_cast<int>(threadIdx.x), segment);
     __syncthreads();
     if (mine.part == 0 && count > 0) {
+        unsigned restricted = 0;  // a byte each: no array with a place that varies
+        CATENA_UNROLL
+        for (int p = 1; p < dca::parts_of_run; ++p) restricted |= static_cast<unsigned>(restricted_of[p]) << (8 * p);
         CATENA_NO_UNROLL
         for (int p = 1; p < count; ++p) {
             int const there = static_cast<int>(threadIdx.x) + lanes * p;

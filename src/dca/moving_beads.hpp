@@ -88,7 +88,7 @@ struct MovingBeads {
         return body;
     }
 
-    /// Of several beads side by side, none of which begins or ends a chain: as Part.
+    /// Of several beads side by side, none of which begins or ends a chain: one after the other.
     template <class Place>
     class Walk {
       public:

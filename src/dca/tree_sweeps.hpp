@@ -1,9 +1,10 @@
 // One item of every sweep over the canonical tree, host and device: a part of a run, a run, a merge, a root. Who calls them for which
 // items is the driver's business (tree_solver.hpp) and the space's.
 //
-// A sweep is an object with Segment (what travels upwards), Part (what read(begin, end) finds of a part's bodies), part(Run, p, Part),
-// joined(inboard, outboard, JointAt), load and store of slots, close(Root, segment) and, if it `descends`, node(joint),
-// force(node, first, next) and down(Run, p, Part, first, next) from the forces at the ends of part p.
+// A sweep is an object with its TreeSweeps `s`, Segment (what travels upwards), Part (what read(begin, end) finds of a part's bodies),
+// part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots, close(Root, segment) and, if it `descends`, node(joint),
+// force(node, first, next) and down<unroll>(Run, p, Part, first, next) from the forces at the ends of part p. One that `keeps_nodes` has
+// joined(..., node) and keep(joint, node) as well.
 #pragma once
 
 #include "dca/closure.hpp"
@@ -94,7 +95,7 @@ struct TreeSweeps {
     }
 };
 
-/// Whether loops over a part's bodies are unrolled: with larger handles they would fill a GPU's instruction cache.
+/// Whether loops over a part's bodies are unrolled in any case: with larger handles they fill a GPU's instruction cache.
 template <int K>
 constexpr bool unrolled = K == 1;
 /// action(i) for a part's bodies i of [begin, end) in turn.

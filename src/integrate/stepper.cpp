@@ -60,8 +60,7 @@ class JointStepper final : public Stepper {
     }
     void restore(Checkpoint const& c) override {
         set_time(c.step);
-        if (auto const kept = c.integers.find("corrections_of_tips"); kept != c.integers.end())
-            corrections_ = static_cast<int>(kept->second);
+        corrections_ = static_cast<int>(c.integers.at("corrections_of_tips"));
         if (integrator_->carries_rates())
             for (JointDynamics* const group : system_.joint()) group->carry_rates(system_.own_rates(group->group(), c.arrays));
         integrator_->restored(c);

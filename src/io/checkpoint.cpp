@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "error.hpp"
 #include "io/checksum.hpp"
@@ -190,13 +191,33 @@ Checkpoint read_verified(Place const& root, Arrays wish) {
     return checkpoint;
 }
 
-Checkpoint read(std::string const& file, Arrays wish) {
-    Quiet const quiet;
-    if (!std::filesystem::exists(file)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
-    std::string const previous = previous_of(file);
-    std::string const remedy = std::filesystem::exists(previous) ? "use the one before, " + previous : "start anew";
-    if (!has_seal(file)) throw InputError("not a checkpoint of Catena", file, "name the checkpoint.h5 of a run");
-    if (std::string const wrong = broken_seal(file); !wrong.empty()) throw InputError("the checkpoint is damaged, " + wrong, file, remedy);
+bool is_plain_hdf5(std::string const& file) {
+    std::string start(8, '\0');
+    std::ifstream(file, std::ios::binary).read(start.data(), std::ssize(start));
+    return start == "\x89HDF\r\n\x1a\n";
+}
+
+/// Throws InputError for what HDF5 had better not see.
+void require_seal(std::string const& file, bool has_previous, std::string const& remedy) {
+    std::string const name_one = "name the checkpoint.h5 of a run";
+    try {
+        if (has_seal(file)) {
+            if (std::string const wrong = broken_seal(file); !wrong.empty())
+                throw InputError("the checkpoint is damaged, " + wrong, file, remedy);
+            return;
+        }
+        if (is_plain_hdf5(file))
+            throw InputError("not a checkpoint of Catena, or one of an earlier version", file,
+                             "restart with the version that wrote it, or " + name_one);
+    } catch (InputError const&) {
+        throw;
+    } catch (std::exception const& error) {
+        throw InputError("the checkpoint cannot be read, " + std::string(error.what()), file, remedy);
+    }
+    throw InputError("not a checkpoint of Catena, or damaged", file, has_previous ? remedy : name_one);
+}
+
+Checkpoint read_sealed(std::string const& file, Arrays wish, std::string const& remedy) {
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
     if (!handle) throw InputError("not a checkpoint, " + cause(), file, remedy);
     Place const root{handle.get(), file, reading};
@@ -297,8 +318,8 @@ void CheckpointWriter::finish() {
         check(draft_->arrays.close(), file, writing);
         flush_to_disk(draft_->handle, file, writing);
         check(draft_->handle.close(), file, writing);
-        put_seal(name);
-        read(name, Arrays::only_check);
+        put_seal(name, file, writing);
+        read_sealed(name, Arrays::only_check, "");
         keep_previous(file);
         rename_file(name, file);
         draft_.reset();
@@ -316,6 +337,14 @@ void write_checkpoint(std::string const& file, Checkpoint const& checkpoint) {
     writer.finish();
 }
 
-Checkpoint read_checkpoint(std::string const& file) { return read(file, Arrays::keep); }
+Checkpoint read_checkpoint(std::string const& file) {
+    Quiet const quiet;
+    if (!std::filesystem::exists(file)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
+    std::string const previous = previous_of(file);
+    bool const has_previous = std::filesystem::exists(previous);
+    std::string const remedy = has_previous ? "use the one before, " + previous : "start anew";
+    require_seal(file, has_previous, remedy);
+    return read_sealed(file, Arrays::keep, remedy);
+}
 
 }  // namespace catena

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "error.hpp"
@@ -22,7 +23,9 @@ constexpr std::string_view name = "Catena, sealed file";
 
 class Descriptor {
   public:
-    Descriptor(std::string const& file, int flags) : file_(file), descriptor_(::open(file.c_str(), flags | O_CLOEXEC)) {
+    /// Messages say "cannot <doing> (<shown>)".
+    Descriptor(std::string const& file, int flags, std::string shown, std::string doing)
+        : shown_(std::move(shown)), doing_(std::move(doing)), descriptor_(::open(file.c_str(), flags | O_CLOEXEC)) {
         if (descriptor_ < 0) fail();
     }
     ~Descriptor() { ::close(descriptor_); }
@@ -54,10 +57,10 @@ class Descriptor {
 
   private:
     [[noreturn]] void fail() const {
-        throw ComputationError("cannot read or seal (" + file_ + "): " + std::generic_category().message(errno));
+        throw ComputationError("cannot " + doing_ + " (" + shown_ + "): " + std::generic_category().message(errno));
     }
 
-    std::string const& file_;
+    std::string shown_, doing_;
     int descriptor_;
 };
 
@@ -88,25 +91,25 @@ std::string first_bytes(Descriptor const& file) {
 
 }  // namespace
 
-void put_seal(std::string const& file) {
-    Descriptor const open(file, O_RDWR);
+void put_seal(std::string const& file, std::string const& shown, std::string const& doing) {
+    Descriptor const open(file, O_RDWR, shown, doing);
     std::string seal = seal_of(body_of(open));
     seal.resize(seal_size);
     open.write(seal, 0);
-    sync_to_disk(open.get(), file);
+    sync_to_disk(open.get(), shown);
 }
 
 bool has_seal(std::string const& file) {
-    return std::filesystem::is_regular_file(file) && first_bytes(Descriptor(file, O_RDONLY)).starts_with(name);
+    return std::filesystem::is_regular_file(file) && first_bytes(Descriptor(file, O_RDONLY, file, "read")).starts_with(name);
 }
 
 std::string broken_seal(std::string const& file) {
-    Descriptor const open(file, O_RDONLY);
+    Descriptor const open(file, O_RDONLY, file, "read");
     Body const body = body_of(open);
     std::string const seal = first_bytes(open);
-    std::int64_t const told = seal.size() > name.size() + 2 ? std::strtoll(seal.c_str() + name.size() + 2, nullptr, 10) : 0;
-    if (seal.size() < seal_size || body.size < told)
-        return fmt::format("cut short, {} of {} bytes", std::filesystem::file_size(file), told + seal_size);
+    std::uint64_t const told = seal.size() > name.size() + 2 ? std::strtoull(seal.c_str() + name.size() + 2, nullptr, 10) : 0;
+    if (seal.size() < seal_size || static_cast<std::uint64_t>(body.size) < told)
+        return fmt::format("cut short, {} of {} bytes", std::filesystem::file_size(file), told + std::uint64_t{seal_size});
     std::string expected = seal_of(body);
     expected.resize(seal_size);
     return seal == expected ? "" : "its checksum does not fit its contents";

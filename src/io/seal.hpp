@@ -9,9 +9,9 @@ namespace catena {
 
 constexpr std::int64_t seal_size = 512;
 
-/// Writes the seal over the first 512 bytes of a file that is otherwise complete, and syncs it. Throws ComputationError naming file and
-/// cause.
-void put_seal(std::string const& file);
+/// Writes the seal over the first 512 bytes of a file that is otherwise complete, and syncs it. Throws ComputationError "cannot <doing>
+/// (<shown>): <cause>".
+void put_seal(std::string const& file, std::string const& shown, std::string const& doing);
 
 bool has_seal(std::string const& file);
 /// What is wrong with a file that has one, in words ("cut short, ..."), empty for nothing. Throws ComputationError where it cannot be read.

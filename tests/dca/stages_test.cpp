@@ -43,6 +43,10 @@ class Walk {
         if (plan_.runs_apart)
             for (Run const& run : runs) segment_[index(run.slot)] = {run.body, run.next};
         for (Stage const& stage : plan_.stages)
+            if (stage.of_runs) {
+                EXPECT_GE(threads_for(stage, sizes_), parts_of_run * stage.width);
+            }
+        for (Stage const& stage : plan_.stages)
             for (std::int64_t b = 0; b < stage.blocks(); ++b) climb(stage, index(b));
         EXPECT_EQ(merged_, merges);
         EXPECT_EQ(closed_, roots.size());
@@ -203,6 +207,20 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Stages,
                                            std::vector<std::int64_t>{4099}, std::vector<std::int64_t>{1000001},
                                            std::vector<std::int64_t>{7, 300, 2, 1000}, std::vector<std::int64_t>(3000, 140),
                                            with_short_ones(4128, 8), with_short_ones(300000, 16)));
+
+/// With a segment a thread for the parts of runs.
+TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
+    for (std::int64_t const shared_bytes : {65536, 101376, 166912, 232448})
+        for (int const k : {1, 2, 3, 4, 5, 6}) {
+            StageSizes const sizes = stage_sizes(k, shared_bytes, 8);
+            Schedule const s = make_schedule(Partition({100000}, false, 1), 0);
+            Stage const stage = plan_stages(s.runs, s.levels, s.roots, s.slots, restricted(s), sizes).stages.front();
+            ASSERT_TRUE(stage.of_runs);
+            std::int64_t const segment = 2 * k * k + 3 * k, threads = threads_for(stage, sizes);
+            EXPECT_GE(threads, parts_of_run * stage.width);
+            EXPECT_LE(8 * (segment * (threads + stage.width) + 2 * k * stage.width), shared_bytes) << k << " directions";
+        }
+}
 
 TEST(Stages, OneLaunchForSmallChainsAndFiveForAny) {
     /// Launches of a sweep up and down, on a GPU with clusters.

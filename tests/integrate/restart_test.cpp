@@ -76,18 +76,6 @@ TEST_P(Restart, WhereItWasAskedToStop) {
     EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
 }
 
-/// Checkpoints from before tips could be on joints do not say how often these are corrected.
-TEST_P(Restart, FromACheckpointWithoutCorrections) {
-    run("whole", 20);
-    run("parts", 10);
-    std::string const file = folder_ / "parts/checkpoint.h5";
-    Checkpoint old = read_checkpoint(file);
-    if (old.integers.erase("corrections_of_tips") == 0) GTEST_SKIP() << "NOT RUN: this integrator corrects no tips";
-    write_checkpoint(file, old);
-    run("parts", 20, file);
-    EXPECT_EQ(read_checkpoint(folder_ / "whole/checkpoint.h5").arrays, read_checkpoint(file).arrays);
-}
-
 TEST_P(Restart, FromTheStart) {
     run("whole", 10);
     run("parts", 0);

@@ -63,8 +63,21 @@ TEST(Checkpoint, DamageIsSeenBeforeHdf5) {
               "the checkpoint is damaged, cut short, 600 of " + std::to_string(good.size()) + " bytes (" + file + "): start anew");
     put_bytes(file, good.substr(0, 100));
     EXPECT_NE(refusal(file).find("cut short, 100 of"), std::string::npos) << refusal(file);
+    std::string seal = "Catena, sealed file: 99999999999999999999999 bytes, checksum 0";
+    seal.resize(512);
+    put_bytes(file, seal + good.substr(512));
+    EXPECT_NE(refusal(file).find("cut short"), std::string::npos) << refusal(file);
     put_bytes(file, good.substr(512));
-    EXPECT_NE(refusal(file).find("not a checkpoint of Catena"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("one of an earlier version"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("restart with the version that wrote it"), std::string::npos) << refusal(file);
+    put_bytes(file, std::string(4096, '\0'));
+    EXPECT_NE(refusal(file).find("not a checkpoint of Catena, or damaged"), std::string::npos) << refusal(file);
+    EXPECT_NE(refusal(file).find("name the checkpoint.h5 of a run"), std::string::npos) << refusal(file);
+    put_bytes(folder / "checkpoint.previous.h5", good);
+    for (std::string const& bytes : {std::string(4096, '\0'), std::string()}) {
+        put_bytes(file, bytes);
+        EXPECT_NE(refusal(file).find("use the one before, " + (folder / "checkpoint.previous.h5")), std::string::npos) << refusal(file);
+    }
 }
 
 TEST(Checkpoint, TwoFlippedSignsAreSeen) {
