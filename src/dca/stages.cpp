@@ -261,8 +261,8 @@ StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t t
 
 int threads_for(Stage const& stage, StageSizes const& sizes) {
     constexpr std::int64_t fewest = 32;
-    std::int64_t const wanted = stage.of_runs ? parts_of_run * stage.width : stage.width / 2;
-    return static_cast<int>(std::clamp(bit_ceil(wanted), fewest, sizes.threads));
+    if (stage.of_runs) return static_cast<int>(std::max(fewest, bit_ceil(parts_of_run * stage.width)));  // a thread a part
+    return static_cast<int>(std::clamp(bit_ceil(stage.width / 2), fewest, std::max(fewest, sizes.threads)));
 }
 
 BlockPlan plan_blocks(Schedule const& schedule, std::vector<std::int64_t> const& tip) {
