@@ -21,7 +21,7 @@ void check_names(std::vector<Draft> const& drafts) {
             fail(*draft.node, fmt::format("two chains are named `{}`", shown(draft.chain.name)), "give each its own `name`");
 }
 
-std::string const joint_integrators = "use `integrator: rk4` or `velocity-verlet`";
+std::string const joint_integrators = "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`";
 
 template <class Value>
 void refuse_at_body(Draft const& draft, std::vector<Value> const& values, bool (*acts)(Value const&), std::string const& what,

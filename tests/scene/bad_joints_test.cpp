@@ -186,7 +186,8 @@ TEST(BadIntegrators, name_the_joint_and_the_remedy) {
             "[1, 1, 1], joint: " +
             joint + more + "}]\ndynamics: {integrator: " + integrator + ", step: 1}" + forces);
     };
-    std::string const both = "use `integrator: rk4` or `velocity-verlet`", at = " (s.yaml: dynamics.integrator, line 2): ";
+    std::string const both = "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`",
+                      at = " (s.yaml: dynamics.integrator, line 2): ";
     std::string const moves = "integrator rattle moves chains of links or spherical joints, chain `a` has a ";
     EXPECT_EQ(refusal("{type: universal, axes: [[1, 0, 0], [0, 1, 0]]}}]", "", "rattle"), moves + "universal joint (joint 2)" + at + both);
     EXPECT_EQ(refusal("{type: weld}}]", "", "rattle"), moves + "weld joint (joint 2)" + at + both);

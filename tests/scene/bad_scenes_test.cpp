@@ -235,12 +235,12 @@ Refusal const together_cases[] = {
 dynamics: {integrator: rattle, step: 1})y",
      "integrator rattle moves chains of links or spherical joints, chain `arm` has a revolute joint (joint 2) (s.yaml: "
      "dynamics.integrator, line 2): "
-     "use `integrator: rk4` or `velocity-verlet`"},
+     "use `integrator: rk4`, `velocity-verlet` or `dormand-prince`"},
     {"g_baoab_of_revolute", R"y(chains: [{generator: {pendulum: {links: 3}}}]
 dynamics: {integrator: g-baoab, step: 1})y",
      "integrator g-baoab moves chains of links or spherical joints, chain `chain-1` has a revolute joint (joint 1) (s.yaml: "
      "dynamics.integrator, line "
-     "2): use `integrator: rk4` or `velocity-verlet`"},
+     "2): use `integrator: rk4`, `velocity-verlet` or `dormand-prince`"},
     {"rk4_of_links", R"y(chains: [{sequence: GGG, model: calvados2, name: asyn}]
 dynamics: {integrator: rk4, step: 1})y",
      "integrator rk4 works in joint coordinates, chain `asyn` has links (s.yaml: dynamics.integrator, line 2): use `integrator: rattle` or "
@@ -258,7 +258,8 @@ dynamics: {integrator: rattle, step: 1, temperature: 0, fixman: true})y",
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical}}
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, damping: 1}}
 dynamics: {integrator: rattle, step: 1})y",
-     "joint damping under integrator rattle (s.yaml: chains[0], body 2, line 2): use `integrator: rk4` or `velocity-verlet`, or set "
+     "joint damping under integrator rattle (s.yaml: chains[0], body 2, line 2): use `integrator: rk4`, `velocity-verlet` or "
+     "`dormand-prince`, or set "
      "`damping: 0` (g-baoab has "
      "`friction`)"},
     {"spring_along_one_coordinate", R"y(chains:
@@ -280,7 +281,8 @@ dynamics: {integrator: staggered, step: 1})y",
     bodies:
       - {mass: 1, inertia: [1, 1, 1], joint: {type: spherical, damping: 1}}
 dynamics: {integrator: implicit-baoab, step: 1})y",
-     "joint damping under integrator implicit-baoab (s.yaml: chains[0], body 1, line 2): use `integrator: rk4` or `velocity-verlet`, or "
+     "joint damping under integrator implicit-baoab (s.yaml: chains[0], body 1, line 2): use `integrator: rk4`, `velocity-verlet` or "
+     "`dormand-prince`, or "
      "set `damping: 0` (implicit-baoab has `friction`)"},
     {"joint_forces_of_implicit_joints", R"y(chains:
   - base: fixed
