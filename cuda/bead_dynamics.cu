@@ -5,7 +5,7 @@
 namespace catena::cuda {
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
-    DeviceSpace const space;
+    DeviceSpace const space(communicator);
     return std::make_unique<BeadDynamics<DeviceSpace>>(group, scene, space, communicator, make_device_solver(group, space, communicator));
 }
 

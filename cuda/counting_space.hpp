@@ -54,6 +54,21 @@ class CountingSpace : public HostAccess {
         T* data() const { return nullptr; }
         std::size_t size() const { return 0; }
     };
+    struct Direct {
+        explicit operator bool() const { return false; }
+    };
+    Direct connect(dca::Schedule const&, int) const { return {}; }
+    template <class Numbers>
+    void exchange(Direct const&, Numbers const&) const {}
+    template <int D>
+    void exchange(Communicator const&, ConstView<D>, std::int64_t, int, View<D>, std::int64_t, int) const {}
+    /// Of the host.
+    template <class T>
+    class HostArray {
+      public:
+        explicit HostArray(std::size_t) {}
+        T* data() const { return nullptr; }
+    };
     template <class T>
     class List : public Array<T> {
       public:
@@ -198,12 +213,6 @@ class CountingSpace : public HostAccess {
     }
     template <class T>
     void put(T*, T const&) const {}
-    template <class T>
-    T get(dca::RecordsView<T, dca::Order::plain>, std::int64_t) const {
-        return {};
-    }
-    template <class T>
-    void put(dca::RecordsView<T, dca::Order::plain>, std::int64_t, T const&) const {}
     template <int D>
     Vector<double, D> get(ConstView<D>, std::int64_t) const {
         return Vector<double, D>::zero();
@@ -226,7 +235,7 @@ class CountingSpace : public HostAccess {
     template <int D>
     void push(FieldOf<D>&, Mirror<D> const&) const {}
     template <class Action>
-    std::vector<double> time_chained(int, int, Action const&) const {
+    std::vector<double> time_chained(int, int, bool, Action const&) const {
         return {};
     }
     void wait() const {}

@@ -43,10 +43,14 @@ std::string version() {
 
 std::string device_name() { return properties().name; }
 
+int devices() {
+    int found = 0;
+    check(cudaGetDeviceCount(&found), "be counted");
+    return found;
+}
+
 std::string choose_device(Communicator const& communicator) {
-    int devices = 0;
-    check(cudaGetDeviceCount(&devices), "be counted");
-    cudaError_t status = cudaSetDevice(communicator.rank_on_host() % devices);
+    cudaError_t status = cudaSetDevice(communicator.rank_on_host() % devices());
     if (status == cudaSuccess) status = status_of_kernel_image();
     if (status == cudaSuccess) return "";
     cudaGetLastError();  // that it stays behind would fail the next call
@@ -57,11 +61,9 @@ std::string choose_device(Communicator const& communicator) {
 }
 
 std::int64_t free_memory(Communicator const& communicator) {
-    int devices = 0;
-    check(cudaGetDeviceCount(&devices), "be counted");
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all), "say how much memory is free");
-    int const sharing = (communicator.ranks_on_host() + devices - 1) / devices;
+    int const sharing = (communicator.ranks_on_host() + devices() - 1) / devices();
     return static_cast<std::int64_t>(free) / sharing;
 }
 

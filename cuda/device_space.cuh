@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <cstring>
 #include <memory>
+#include <optional>
 
 #include "cuda/device_blocks.cuh"
 #include "cuda/device_model.cuh"
 #include "cuda/kernel_image.hpp"
 #include "cuda/kernels.cuh"
+#include "cuda/peer_exchange.cuh"
 #include "dca/host_space.hpp"
 #include "dca/stages.hpp"
 
@@ -17,12 +19,19 @@ namespace catena::cuda {
 class DeviceSpace {
   public:
     static constexpr bool answers_at_once = false;
-    /// Copies share the stream and the place for answers: one thread at a time asks largest().
-    DeviceSpace() : stream_(std::make_shared<Stream>()), answer_(std::make_shared<Buffer<unsigned long long>>(1)) {}
+    /// Copies share the stream and the places for answers: one thread at a time asks largest() or get().
+    DeviceSpace()
+        : stream_(std::make_shared<Stream>()),
+          answer_(std::make_shared<Buffer<unsigned long long>>(1)),
+          letter_(std::make_shared<PinnedBuffer<double>>(most_numbers)) {}
+    /// With ways to other ranks' GPUs, where there are any. Collective.
+    explicit DeviceSpace(Communicator const& communicator) : DeviceSpace() { peers_ = Peers(communicator); }
     cudaStream_t stream() const { return stream_->get(); }
 
     template <class T>
     using Array = Buffer<T>;
+    template <class T>
+    using HostArray = PinnedBuffer<T>;
     template <int D>
     using FieldOf = DeviceField<D>;
     using Directions = DeviceDirections;
@@ -204,31 +213,36 @@ class DeviceSpace {
         check(cudaMemcpyAsync(place, &value, sizeof(T), cudaMemcpyHostToDevice, stream()), "take a value");
         wait();  // the source may go
     }
-    template <class T>
-    T get(dca::RecordsView<T, dca::Order::plain> records, std::int64_t i) const {
-        T record;
-        copy_columns(reinterpret_cast<double*>(&record), 1, records.origin + i, records.pitch, 1, records.numbers, cudaMemcpyDeviceToHost,
-                     stream());
-        wait();
-        return record;
-    }
-    template <class T>
-    void put(dca::RecordsView<T, dca::Order::plain> records, std::int64_t i, T const& record) const {
-        copy_columns(records.origin + i, records.pitch, reinterpret_cast<double const*>(&record), 1, 1, records.numbers,
-                     cudaMemcpyHostToDevice, stream());
-        wait();
-    }
     template <int D>
     Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
-        Vector<double, D> value;
-        copy_columns(value.data, 1, field.origin + gpu_order::place(k), field.pitch, 1, D, cudaMemcpyDeviceToHost, stream());
+        static_assert(D <= most_numbers);
+        for_each(D, kernels::TakeNumbers{field.origin + gpu_order::place(k), field.pitch, letter_->data()});
         wait();
+        Vector<double, D> value;
+        std::copy_n(letter_->data(), D, value.data);
         return value;
     }
     template <int D>
     void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
-        copy_columns(field.origin + gpu_order::place(k), field.pitch, value.data, 1, 1, D, cudaMemcpyHostToDevice, stream());
-        wait();
+        for_each(D, kernels::PutNumbers<D>{field.origin + gpu_order::place(k), field.pitch, value});
+    }
+    template <int D>
+    void exchange(Communicator const& communicator, ConstView<D> from, std::int64_t i, int to, View<D> into, std::int64_t j,
+                  int source) const {
+        if (!peers_) return exchange_by_host(*this, communicator, from, i, to, into, j, source);
+        Traffic message;
+        message.exchanges = 1;
+        message.sent_bytes = to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
+        communicator.tally(message);
+        exchange(peers_.to_and_from(to, source, D),
+                 kernels::BodyNumbers{from.origin + gpu_order::place(i), from.pitch, into.origin + gpu_order::place(j), into.pitch});
+    }
+    using Direct = PeerCall;
+    Direct connect(dca::Schedule const& schedule, int width) const { return peers_.among_all(schedule, width); }
+    template <class Numbers>
+    void exchange(Direct const& direct, Numbers const& numbers) const {
+        kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers);
+        started();
     }
     template <int D>
     Field<D> read(DeviceField<D> const& field) const {
@@ -271,17 +285,19 @@ class DeviceSpace {
         field.upload(mirror.field.view(), stream());
     }
 
-    /// As one graph.
+    /// As one graph, unless the host has a part in it.
     template <class Action>
-    std::vector<double> time_chained(int chained, int repeat, Action const& action) const {
-        Graph const graph(stream(), [&] {
+    std::vector<double> time_chained(int chained, int repeat, bool asks_host, Action const& action) const {
+        auto const all = [&] {
             for (int i = 0; i < chained; ++i) action();
-        });
+        };
+        std::optional<Graph> graph;
+        if (!asks_host) graph.emplace(stream(), all);
         Event start(Event::For::clock), end(Event::For::clock);
         std::vector<double> seconds;
         for (int r = -1; r < repeat; ++r) {  // the first one warms up
             start.record(stream());
-            graph.launch(stream());
+            graph ? graph->launch(stream()) : all();
             end.record(stream());
             end.wait();
             if (r >= 0) seconds.push_back(end.seconds_since(start) / chained);
@@ -292,6 +308,7 @@ class DeviceSpace {
     int threads() const { return 1; }
 
   private:
+    static constexpr int most_numbers = 16;  // of a body that the host asks for
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
     static void started() { check(cudaGetLastError(), "start a kernel"); }
@@ -385,6 +402,8 @@ class DeviceSpace {
     }
     std::shared_ptr<Stream> stream_;
     std::shared_ptr<Buffer<unsigned long long>> answer_;  // of largest()
+    std::shared_ptr<PinnedBuffer<double>> letter_;        // of get()
+    Peers peers_;
 };
 
 }  // namespace catena::cuda

@@ -5,7 +5,7 @@
 namespace catena::cuda {
 
 std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
-    DeviceSpace const space;
+    DeviceSpace const space(communicator);
     return std::make_unique<JointDynamicsIn<DeviceSpace>>(group, scene, space, communicator,
                                                           make_device_solver(group, space, communicator));
 }

@@ -19,6 +19,21 @@ __global__ void over(Item const* items, std::int64_t count, Action action) {
     if (std::int64_t const i = thread(); i < count) action(items[i]);
 }
 
+/// Item i: number i of a body, between an array and memory that the host reaches.
+struct TakeNumbers {
+    double const* from;
+    std::int64_t pitch;
+    double* to;
+    __device__ void operator()(std::int64_t i) const { to[i] = from[i * pitch]; }
+};
+template <int D>
+struct PutNumbers {
+    double* to;
+    std::int64_t pitch;
+    Vector<double, D> value;
+    __device__ void operator()(std::int64_t i) const { to[i * pitch] = value[static_cast<int>(i)]; }
+};
+
 constexpr int most_in_one_block = 256;
 /// Levels that fit into one block each, one after the other: offset[l] to offset[l + 1], from level `first` on in steps of `step`.
 template <class Item, class Action>

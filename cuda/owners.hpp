@@ -87,6 +87,7 @@ template <class T>
 class PinnedBuffer {
   public:
     explicit PinnedBuffer(std::size_t count) {
+        if (count == 0) return;
         void* memory = nullptr;
         check(cudaHostAlloc(&memory, count * sizeof(T), cudaHostAllocMapped | cudaHostAllocPortable), "find memory of the host");
         data_ = static_cast<T*>(memory);

@@ -53,6 +53,8 @@ class Communicator {
     virtual std::int64_t rounds() const = 0;
     /// All of them so far; zero where nothing is counted.
     virtual Traffic traffic() const { return {}; }
+    /// Counts messages that ranks exchange by another way as if they had gone by this one.
+    virtual void tally(Traffic const&) const {}
     /// How all_gather goes; it changes no byte of what comes out.
     virtual GatherWay const& gather_way() const;
     /// Ends every rank at once: for an error that other ranks cannot know of.

@@ -93,6 +93,7 @@ class MpiCommunicator final : public Communicator {
     int rank_on_host() const override { return on_host_.rank; }
     std::int64_t rounds() const override { return rounds_; }
     Traffic traffic() const override { return traffic_; }
+    void tally(Traffic const& messages) const override { traffic_ += messages; }
     GatherWay const& gather_way() const override { return way_; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,

@@ -121,6 +121,16 @@ LocalTip local_tip(ChainGroup const&, ChainSpec const&, std::int64_t last);
 /// That the tips belong to, local, in their order.
 std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const&);
 
+/// Body i of `from` to rank `to` and from rank `source` into body j of `into`; a negative rank means nobody. By the host: `access` gets and
+/// puts bodies, wherever they are.
+template <int D, class Access>
+void exchange_by_host(Access const& access, Communicator const& communicator, ConstView<D> from, std::int64_t i, int to, View<D> into,
+                      std::int64_t j, int source) {
+    Vector<double, D> const send = access.get(from, i);
+    Vector<double, D> receive = send;
+    communicator.exchange(std::as_bytes(std::span(send.data)), to, std::as_writable_bytes(std::span(receive.data)), source);
+    if (source >= 0) access.put(into, j, receive);
+}
 /// Access to a field's bodies on the host.
 struct HostAccess {
     template <int D>
@@ -131,24 +141,24 @@ struct HostAccess {
     void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
         field.store(k, value);
     }
+    /// exchange_by_host(), or a shorter way.
+    template <int D>
+    void exchange(Communicator const& communicator, ConstView<D> from, std::int64_t i, int to, View<D> into, std::int64_t j,
+                  int source) const {
+        exchange_by_host(*this, communicator, from, i, to, into, j, source);
+    }
 };
 /// Fills halos of a field: entry size from the outboard neighbour's first body, entry -1 from the inboard neighbour's last one. `access`
 /// reads and writes bodies of the field, wherever it is.
 template <int D, class Access = HostAccess>
 void exchange_from_outboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    Vector<double, D> send = access.template get<D>(field, 0), receive = send;
-    communicator.exchange(std::as_bytes(std::span(send.data)), group.neighbour_inboard, std::as_writable_bytes(std::span(receive.data)),
-                          group.neighbour_outboard);
-    if (group.neighbour_outboard >= 0) access.template put<D>(field, group.size, receive);
+    access.template exchange<D>(communicator, field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard);
 }
 template <int D, class Access = HostAccess>
 void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    Vector<double, D> send = access.template get<D>(field, group.size - 1), receive = send;
-    communicator.exchange(std::as_bytes(std::span(send.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(receive.data)),
-                          group.neighbour_inboard);
-    if (group.neighbour_inboard >= 0) access.template put<D>(field, -1, receive);
+    access.template exchange<D>(communicator, field, group.size - 1, group.neighbour_outboard, field, -1, group.neighbour_inboard);
 }
 
 /// A canonical unit of the tree on this rank: what composes along a chain does so unit by unit, whatever the number of ranks.

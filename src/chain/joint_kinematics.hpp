@@ -6,6 +6,7 @@
 
 #include "chain/joint_scan.hpp"
 #include "dca/host_space.hpp"
+#include "dca/shared_units.hpp"
 
 namespace catena {
 
@@ -83,13 +84,12 @@ class JointKinematics {
           top_roots_(group.schedule.top_roots),
           from_top_(own_shared_),
           slot_(slot_of_body_),
-          shared_unit_(group.schedule.shared),
           rotation_(group.size),
           omega_(group.size),
           translation_(group.size),
           velocity_(group.size),
           next_meeting_(group.moving_meeting() ? 1 : 0),
-          shared_(std::ssize(group.schedule.shared)),
+          shared_(group.schedule, MotionNumbers::width, space, communicator),
           whole_(static_cast<std::size_t>(group.schedule.slots)),
           before_(static_cast<std::size_t>(group.schedule.slots)) {
         begin_at_ground();
@@ -114,8 +114,8 @@ class JointKinematics {
                 std::ssize(group_.drives)};
     }
     JointScan scan(StateView const& state, MotionView const& motion) {
-        return {joints(),         state,        motion,        rotation_.view(), omega_.view(),        translation_.view(),
-                velocity_.view(), slot_.data(), whole_.data(), before_.data(),   next_meeting_.view(), shared_.view()};
+        return {joints(),         state,        motion,        rotation_.view(), omega_.view(),       translation_.view(),
+                velocity_.view(), slot_.data(), whole_.data(), before_.data(),   next_meeting_.view()};
     }
 
     /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and velocity as well.
@@ -141,11 +141,9 @@ class JointKinematics {
     }
     template <bool positions>
     void sweep_shared(JointScan const& s) {
-        dca::SharedUnit const* const unit = shared_unit_.data();
-        std::int64_t const units = std::ssize(group_.schedule.shared);
-        space_.for_each(units, [s, unit] CATENA_LAMBDA(std::int64_t i) { s.show_unit(i, unit[i]); });
-        gather_shared();
-        space_.for_each(units, [s, unit] CATENA_LAMBDA(std::int64_t i) { s.take_unit(i, unit[i]); });
+        MotionNumbers const numbers{s.whole, shared_.own_units(), shared_.units()};
+        shared_.show(space_, numbers);
+        shared_.bring(space_, communicator_, numbers);
         space_.climb(top_levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); });
         space_.descend(top_levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); });
         space_.over(from_top_, [s] CATENA_LAMBDA(dca::TopCopy const& copy) { s.before[copy.to] = s.before[copy.from]; });
@@ -154,11 +152,8 @@ class JointKinematics {
     void exchange_meeting(JointScan const& s) {
         if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
-        Vector<double, 12> const send = space_.get(ConstView<12>(next_meeting_.view()), 0);
-        Vector<double, 12> receive = send;
-        communicator_.exchange(std::as_bytes(std::span(send.data)), group_.neighbour_inboard,
-                               std::as_writable_bytes(std::span(receive.data)), group_.neighbour_outboard);
-        space_.put(next_meeting_.view(), 1, receive);
+        View<12> const meeting = next_meeting_.view();
+        space_.template exchange<12>(communicator_, meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard);
     }
     void begin_at_ground() {
         Motion* const before = before_.data();
@@ -167,21 +162,6 @@ class JointKinematics {
     }
 
   private:
-    /// One collective: the units of chains that several ranks share, to all ranks.
-    void gather_shared() {
-        View<13> const units = space_.pull(shared_, shared_mirror_);
-        std::vector<Vector<double, 13>> own, all(group_.schedule.shared.size());
-        std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            dca::SharedUnit const& unit = group_.schedule.shared[i];
-            bytes[unit.owner] += sizeof(all[i]);
-            if (unit.source >= 0) own.push_back(units.load(static_cast<std::int64_t>(i)));
-        }
-        communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
-        for (std::size_t i = 0; i < all.size(); ++i) units.store(static_cast<std::int64_t>(i), all[i]);
-        space_.push(shared_, shared_mirror_);
-    }
-
     ChainGroup const& group_;
     Space space_;
     Communicator const& communicator_;
@@ -201,12 +181,10 @@ class JointKinematics {
     typename Space::template List<dca::Root> roots_, top_roots_;
     typename Space::template List<dca::TopCopy> from_top_;
     typename Space::template List<std::int32_t> slot_;
-    typename Space::template List<dca::SharedUnit> shared_unit_;
     FieldOf<4> rotation_;
     FieldOf<3> omega_, translation_, velocity_;
     FieldOf<12> next_meeting_;
-    FieldOf<13> shared_;
-    typename Space::template Mirror<13> shared_mirror_;
+    dca::SharedUnits<Space> shared_;
     typename Space::template Array<Motion> whole_, before_;
 };
 

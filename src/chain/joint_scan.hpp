@@ -9,6 +9,16 @@
 
 namespace catena {
 
+/// Wholes of units that several ranks share, on their way between ranks (dca::SharedUnits).
+struct MotionNumbers {
+    static constexpr int width = sizeof(Motion) / sizeof(double);
+    Motion* whole;  // by slot
+    dca::SharedUnit const *own, *all;
+    CATENA_HD double show(std::int64_t i) const { return number(own[i / width].source, i % width); }
+    CATENA_HD void take(std::int64_t i, double value) const { number(all[i / width].slot, i % width) = value; }
+    CATENA_HD double& number(std::int64_t slot, std::int64_t n) const { return reinterpret_cast<double*>(whole + slot)[n]; }
+};
+
 struct JointScan {
     JointsView joints;
     StateView state;
@@ -19,7 +29,6 @@ struct JointScan {
     Motion* whole = nullptr;             // by slot: against the body before the segment
     Motion* before = nullptr;            // by slot: of the body before the segment, against the ground
     View<12> next_meeting;               // {point, axes}: entry 1 of the joint after this rank's last body
-    View<13> shared;                     // wholes of shared chains' units, on their way between ranks
 
     template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> load(Place k) const {
@@ -103,12 +112,6 @@ struct JointScan {
         if (motion.axes2.origin && !joints.ends_chain(k)) set_meeting(k);
     }
 
-    CATENA_HD void show_unit(std::int64_t i, dca::SharedUnit const& unit) const {
-        if (unit.source >= 0) shared.store(i, as_numbers(whole[unit.source]));
-    }
-    CATENA_HD void take_unit(std::int64_t i, dca::SharedUnit const& unit) const {
-        whole[unit.slot] = as_motion(shared.load(i));
-    }
     CATENA_HD void show_first_meeting() const {
         Meeting const m = joints.meeting(state, std::int64_t{0});
         Vector<double, 12> numbers;

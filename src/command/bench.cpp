@@ -156,6 +156,7 @@ struct AtOnce {
     double residual = 0, bound = 0;
     int threads = 1;
     SimdLevel simd = SimdLevel::off;
+    bool direct_exchange = false;
 };
 AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
@@ -167,12 +168,13 @@ AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communica
     found.bound = system.residual_bound();
     found.threads = system.executor().threads();
     found.simd = system.executor().simd();
+    found.direct_exchange = system.solver_reports().front().direct_exchange;
     found.seconds = spread_of(system.absolute().front()->time_at_once(chained_for(scene.bodies()), repeat));
     return found;
 }
 
 /// Those that find matrices and biases in one sweep.
-std::vector<Backend> backends_at_once(Communicator const& communicator, BenchRequest const& request) {
+std::vector<Backend> backends_at_once(BenchRequest const& request) {
     for (std::string const& joint : request.joints)
         if (joint != "link" && joint != "spherical")
             throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
@@ -186,14 +188,12 @@ std::vector<Backend> backends_at_once(Communicator const& communicator, BenchReq
         if (backend == Backend::serial || backend == Backend::cuda_levels)
             throw InputError(std::string(name_of(backend)) + " takes one sweep after the other", "--backend",
                              "use segments, openmp or cuda");
-        if (backend == Backend::cuda && communicator.size() > 1)
-            throw InputError("a graph of evaluations cannot ask other ranks", "--backend cuda", "run it on one rank");
     }
     return chosen;
 }
 
 Outcome evaluation(Communicator const& communicator, BenchRequest const& request) {
-    std::vector<Backend> const backends = backends_at_once(communicator, request);
+    std::vector<Backend> const backends = backends_at_once(request);
     Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
     Outcome outcome = begun("evaluation", communicator);
     for (std::string const& joint : request.joints)
@@ -206,8 +206,8 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                 auto const n = static_cast<double>(scene.bodies());
                 Traffic const traffic = traffic_of(joint);
                 double const rate = n * (traffic.read + traffic.write) / found.seconds.median * 1e-9;
-                // Two sweeps over what is read, at what an H200's memory delivers.
-                double const floor = n * (2 * traffic.read + traffic.write) / 4.2e12 / found.seconds.median;
+                // Two sweeps over what is read, at what an H200's memory delivers, each rank's.
+                double const floor = n / communicator.size() * (2 * traffic.read + traffic.write) / 4.2e12 / found.seconds.median;
                 bool const gpu = backend == Backend::cuda;
                 table.add({joint, std::to_string(bodies), name_of(backend), std::to_string(found.threads),
                            fmt::format("{:.4g}", 1e6 * found.seconds.median), fmt::format("{:.3g}", 1e9 * found.seconds.median / n),
@@ -219,6 +219,7 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                      {"backend", name_of(backend)},
                      {"threads", found.threads},
                      {"simd", name_of(found.simd)},
+                     {"direct_exchange", found.direct_exchange},
                      {"chained", chained_for(bodies)},
                      {"repeat", found.seconds.count},
                      {"microseconds",

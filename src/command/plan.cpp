@@ -61,7 +61,8 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
     text.entry("units", fmt::format("{} (whole ones go to ranks; the tree above them is every rank's own)", tree.units));
     text.entry("bodies of the ranks", shares_text(shares));
     text.entry("collectives", rounds.shared ? fmt::format("matrices {} a sweep, biases {} a sweep, kinematics {}", rounds.matrices,
-                                                          rounds.biases, rounds.kinematics > 0 ? "1" : "none")
+                                                          rounds.biases, rounds.kinematics > 0 ? "1" : "none") +
+                                                  (report.direct_exchange ? "; from GPU to GPU" : "")
                                             : "none: no chain is shared by ranks");
     text.entry("solver's memory", bytes_text(static_cast<double>(report.memory_bytes)) + " on this rank");
     list.push_back({{"kind", group.kind()},
@@ -75,6 +76,7 @@ void add_group(Text& text, Json& list, ChainGroup const& group, SolverReport con
                     {"units", tree.units},
                     {"bodies_of_ranks", shares},
                     {"collectives", {{"matrices", rounds.matrices}, {"biases", rounds.biases}, {"kinematics", rounds.kinematics}}},
+                    {"direct_exchange", report.direct_exchange},
                     {"solver_memory_bytes", report.memory_bytes}});
 }
 

@@ -30,6 +30,18 @@ class HostSpace : public HostAccess {
     /// Memory of the space, zero at first.
     template <class T>
     using Array = std::vector<T>;
+    /// A way from this rank's memory to others' that leaves out the host, where there is one: exchange() brings numbers as
+    /// SharedUnits::bring() says. The same on all ranks.
+    struct Direct {
+        explicit operator bool() const { return false; }
+    };
+    Direct connect(dca::Schedule const&, int /*width*/) const { return {}; }
+    template <class Numbers>
+    void exchange(Direct const&, Numbers const&) const {}
+    using HostAccess::exchange;
+    /// Memory that loops and the host share: what one wrote the other finds after wait().
+    template <class T>
+    using HostArray = std::vector<T>;
     template <int D>
     using FieldOf = Field<D>;
     /// `size` bodies of K numbers, K known at run time.
@@ -154,14 +166,6 @@ class HostSpace : public HostAccess {
     void put(T* place, T const& value) const {
         *place = value;
     }
-    template <class T>
-    T get(dca::RecordsView<T, dca::Order::plain> records, std::int64_t i) const {
-        return records.load(i);
-    }
-    template <class T>
-    void put(dca::RecordsView<T, dca::Order::plain> records, std::int64_t i, T const& record) const {
-        records.store(i, record);
-    }
     // Body k of a field, halo included.
     using HostAccess::get, HostAccess::put;
     /// A whole field for the host to read.
@@ -186,9 +190,9 @@ class HostSpace : public HostAccess {
     template <int D>
     void push(Field<D>&, Mirror<D> const&) const {}
 
-    /// Seconds, `repeat` times the mean of `chained` calls one after the other.
+    /// Seconds, `repeat` times the mean of `chained` calls one after the other. `asks_host`: what they do is not the space's alone.
     template <class Action>
-    std::vector<double> time_chained(int chained, int repeat, Action const& action) const {
+    std::vector<double> time_chained(int chained, int repeat, bool /*asks_host*/, Action const& action) const {
         std::vector<double> seconds;
         for (int r = 0; r < repeat; ++r) {
             auto const start = std::chrono::steady_clock::now();

@@ -16,6 +16,13 @@ struct RecordsView {
     double* origin = nullptr;
     std::int64_t pitch = 0;  // from one number to the next, where they are apart
 
+    CATENA_HD double& number(std::int64_t i, int n) const {
+#if defined(__CUDA_ARCH__)
+        return origin[(order == Order::by_body ? place_of(i) : i) + n * pitch];
+#else
+        return origin[i * numbers + n];
+#endif
+    }
     CATENA_HD T load(std::int64_t i) const {
 #if defined(__CUDA_ARCH__)
         double const* const first = origin + (order == Order::by_body ? place_of(i) : i);

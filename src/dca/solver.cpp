@@ -10,7 +10,7 @@ namespace catena {
 std::vector<double> ChainSolver::time_evaluations(ConfigurationView const& configuration, LoadsView const& loads,
                                                   AccelerationsView const& out, int chained, int repeat) {
     auto const executor = serial_executor();
-    return HostSpace(*executor).time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
+    return HostSpace(*executor).time_chained(chained, repeat, true, [&] { assemble_and_solve(configuration, loads, out); });
 }
 
 void ChainSolver::invert(InverseView const& /*out*/) { throw ComputationError("this solver keeps nothing of the inverse of its matrix"); }

@@ -141,6 +141,7 @@ struct SolverReport {
     int directions = 0, threads = 1, ranks = 1;
     std::int64_t run_length = 0, depth = 0, merges = 0;
     std::int64_t memory_bytes = 0;
+    bool direct_exchange = false;  // ranks' GPUs write to each other's memory
     std::int64_t matrix_sweeps = 0, bias_sweeps = 0, evaluations = 0;  // of the latter each is both, matrices and biases together
     double matrix_seconds = 0, bias_seconds = 0, exchange_seconds = 0;
     SplitSeconds split;

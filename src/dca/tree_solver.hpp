@@ -9,6 +9,7 @@
 #include "dca/host_space.hpp"
 #include "dca/inverse_sweep.hpp"
 #include "dca/parts.hpp"
+#include "dca/shared_units.hpp"
 #include "dca/simd/side_by_side.hpp"
 
 namespace catena::dca {
@@ -37,6 +38,8 @@ class TreeSolver final : public ChainSolver {
           joints_(schedule_.joints),
           offsets_(schedule_.joints),
           forces_(schedule_.joints),
+          shown_matrices_(schedule_, RecordNumbers<typename Sweeps::Matrices>::width, space, communicator),
+          shown_biases_(schedule_, RecordNumbers<typename Sweeps::Biases>::width, space, communicator),
           lost_(1),
           sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
                   joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
@@ -57,7 +60,7 @@ class TreeSolver final : public ChainSolver {
             MatrixSweep<Leaf> const sweep{sweeps_};
             space_.climb(tree_, sweep);
             if (!schedule_.shared.empty()) {
-                gather_shared(matrices_);
+                gather(of_matrices());
                 space_.climb(top_, sweep);
             }
         }
@@ -67,7 +70,7 @@ class TreeSolver final : public ChainSolver {
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         Stopwatch const watch(*this, report_.bias_seconds);
-        up_and_down(tree_, BiasSweep<Leaf>{sweeps_, loads, out}, [&] { gather_shared(biases_); }, out);
+        up_and_down(tree_, BiasSweep<Leaf>{sweeps_, loads, out}, [&] { gather(of_biases()); }, out);
         ++report_.bias_sweeps;
     }
 
@@ -86,7 +89,7 @@ class TreeSolver final : public ChainSolver {
     bool at_once() const override { return Leaf::at_once && group_.partition.trees.front().run_length > 1; }
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
-        return space_.time_chained(chained, repeat, [&] { assemble_and_solve(configuration, loads, out); });
+        return space_.time_chained(chained, repeat, shown_matrices_.asks_host(), [&] { assemble_and_solve(configuration, loads, out); });
     }
 
     void invert(InverseView const& out) override {
@@ -141,6 +144,7 @@ class TreeSolver final : public ChainSolver {
         SolverReport r = report_;
         add_tree(group_, communicator_, r);
         r.threads = space_.threads();
+        r.direct_exchange = shown_matrices_.is_direct();
         r.memory_bytes = Sweeps::bytes(schedule_);
         if constexpr (has_lanes)
             if (aside_) {
@@ -194,10 +198,7 @@ class TreeSolver final : public ChainSolver {
     /// With runs and merges that go side by side where there are any, and the others of each level after them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
-        auto const gather = [&] {
-            gather_shared(matrices_);
-            gather_shared(biases_);
-        };
+        auto const gather_both = [&] { gather(of_matrices(), of_biases()); };
         if constexpr (has_lanes)
             if (aside_) {
                 RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
@@ -207,7 +208,7 @@ class TreeSolver final : public ChainSolver {
                     aside_->climb_level(space_, sweeps_, l);
                     space_.climb(rest_[1 + l], sweep);
                 }
-                up_and_down(rest_.back(), sweep, gather, out);
+                up_and_down(rest_.back(), sweep, gather_both, out);
                 for (std::size_t l = aside_->levels().size(); l-- > 0;) {
                     aside_->descend_level(space_, sweeps_, l);
                     space_.descend(rest_[1 + l], sweep);
@@ -215,7 +216,7 @@ class TreeSolver final : public ChainSolver {
                 space_.descend(rest_.front(), sweep);
                 return aside_->descend(space_, work);
             }
-        up_and_down(tree_, sweep, gather, out);
+        up_and_down(tree_, sweep, gather_both, out);
     }
 
     /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
@@ -251,20 +252,24 @@ class TreeSolver final : public ChainSolver {
             space_.for_each(1, ForceOfNextRank<Leaf>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
     }
 
-    /// One collective: the units of chains that several ranks share, to all ranks.
-    template <class Segment>
-    void gather_shared(Records<Segment, Order::plain>& segments) {
+    template <class T>
+    struct Shown {
+        SharedUnits<Space>& units;
+        RecordNumbers<T> numbers;
+    };
+    /// The shared units' records, to all ranks.
+    template <class... T>
+    void gather(Shown<T> const&... shown) {
         auto const start = Stopwatch::now();
-        std::vector<Segment> own;
-        std::vector<std::int64_t> bytes(static_cast<std::size_t>(communicator_.size()), 0);
-        for (SharedUnit const& unit : schedule_.shared) {
-            bytes[unit.owner] += sizeof(Segment);
-            if (unit.source >= 0) own.push_back(space_.get(segments.view(), unit.source));
-        }
-        std::vector<Segment> all(schedule_.shared.size());
-        communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
-        for (std::size_t i = 0; i < all.size(); ++i) space_.put(segments.view(), schedule_.shared[i].slot, all[i]);
+        (shown.units.show(space_, shown.numbers), ...);
+        (shown.units.bring(space_, communicator_, shown.numbers), ...);
         report_.exchange_seconds += Stopwatch::now() - start;
+    }
+    Shown<typename Sweeps::Matrices> of_matrices() {
+        return {shown_matrices_, {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
+    }
+    Shown<typename Sweeps::Biases> of_biases() {
+        return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
     }
 
     ChainGroup const& group_;
@@ -281,6 +286,7 @@ class TreeSolver final : public ChainSolver {
     Records<SegmentBias<double, K>, Order::plain> biases_;
     Records<JointMatrix<double, K>, Order::by_body> joints_;
     Records<Vector<double, K>, Order::by_body> offsets_, forces_;
+    SharedUnits<Space> shown_matrices_, shown_biases_;
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;

@@ -48,11 +48,8 @@ void JointDynamicsIn<Space>::set_ends() {
         JointedTip const& t = tip_[static_cast<std::size_t>(i)];
         if (t.neighbour < 0) continue;
         bool const has_last = t.body >= 0;
-        Vector<double, 13> const send = space_.get(ConstView<13>((has_last ? last_end_ : other_end_).view()), i);
-        Vector<double, 13> receive = send;
-        communicator_.exchange(std::as_bytes(std::span(send.data)), t.neighbour, std::as_writable_bytes(std::span(receive.data)),
-                               t.neighbour);
-        space_.put((has_last ? other_end_ : last_end_).view(), i, receive);
+        View<13> const own = (has_last ? last_end_ : other_end_).view(), other = (has_last ? other_end_ : last_end_).view();
+        space_.template exchange<13>(communicator_, own, i, t.neighbour, other, i, t.neighbour);
     }
     space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.set_meeting(i); });
 }
@@ -75,11 +72,8 @@ template <class Space>
 void JointDynamicsIn<Space>::exchange_ends(JointChains const& c) {
     if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
     space_.for_each(1, [c, last = group_.size - 1] CATENA_LAMBDA(std::int64_t) { c.outboard_end.store(0, c.outboard_end_of(last)); });
-    Vector<double, 4> const send = space_.get(ConstView<4>(outboard_end_.view()), 0);
-    Vector<double, 4> receive = send;
-    communicator_.exchange(std::as_bytes(std::span(send.data)), group_.neighbour_outboard, std::as_writable_bytes(std::span(receive.data)),
-                           group_.neighbour_inboard);
-    space_.put(outboard_end_.view(), -1, receive);
+    View<4> const end = outboard_end_.view();
+    space_.template exchange<4>(communicator_, end, 0, group_.neighbour_outboard, end, -1, group_.neighbour_inboard);
 }
 
 template <class Space>

@@ -56,11 +56,7 @@ class RingEnds {
   private:
     void exchange(std::int64_t i, LocalRing const& ring) {
         View<3> const own = (ring.first >= 0 ? first_ : last_).view(), other = (ring.first >= 0 ? last_ : first_).view();
-        Vec3 const send = space_.get(ConstView<3>(own), i);
-        Vec3 receive = send;
-        communicator_.exchange(std::as_bytes(std::span(send.data)), ring.neighbour, std::as_writable_bytes(std::span(receive.data)),
-                               ring.neighbour);
-        space_.put(other, i, receive);
+        space_.template exchange<3>(communicator_, own, i, ring.neighbour, other, i, ring.neighbour);
     }
 
     ChainGroup const& group_;

@@ -266,7 +266,8 @@ class Run {
                                {"chains", g.partition.chains()},
                                {"bodies", g.partition.bodies()},
                                {"run_length", r.run_length},
-                               {"depth", r.depth}});
+                               {"depth", r.depth},
+                               {"direct_exchange", r.direct_exchange}});
         }
         s["solver"] = {{"backend", name_of(system_.backend())}, {"tree_table", dca::tree_table_version}, {"groups", solvers}};
         s["solver"].update(stepper_->describe());

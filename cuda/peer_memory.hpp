@@ -1,0 +1,63 @@
+// Memory of GPUs that other ranks write to: what a handful of numbers a rank need to be everywhere takes a kernel then, and the host does
+// not wait. For ranks of one host, each on a GPU of its own, that reach each other's memory (NVLink, PCIe).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cuda/owners.hpp"
+#include "mpi/communicator.hpp"
+
+namespace catena::cuda {
+
+inline constexpr int most_peers = 16;
+
+/// For kernels: where each rank has what pairs of ranks exchange. Rank r keeps for every rank s: two boxes of `width` numbers that s fills
+/// in turns, how often s has filled one, and how often they have exchanged.
+struct PeerBoxes {
+    double* base[most_peers] = {};  // of each rank
+    int rank = 0, ranks = 0, width = 0;
+
+    static std::int64_t numbers(int ranks, int width) { return std::int64_t{2} * ranks * (width + 1); }
+#if defined(__CUDACC__)
+    /// Of rank `at`, filled by rank `from`.
+    __device__ double* box(int at, int from, unsigned long long times) const {
+        return base[at] + (2 * from + static_cast<int>(times & 1)) * static_cast<std::int64_t>(width);
+    }
+    __device__ unsigned long long* filled(int at, int from) const { return counters(at) + from; }
+    __device__ unsigned long long* exchanged(int with) const { return counters(rank) + ranks + with; }
+
+  private:
+    __device__ unsigned long long* counters(int at) const {
+        return reinterpret_cast<unsigned long long*>(base[at] + std::int64_t{2} * ranks * width);
+    }
+#endif
+};
+
+class PeerMemory {
+  public:
+    /// Collective: null on all ranks where some cannot reach another's, where there is one rank, or where CATENA_GPU_EXCHANGE is `host`.
+    static std::shared_ptr<PeerMemory> connect(Communicator const&);
+    ~PeerMemory();
+    PeerMemory(PeerMemory const&) = delete;
+    PeerMemory& operator=(PeerMemory const&) = delete;
+
+    int rank() const { return rank_; }
+    int ranks() const { return ranks_; }
+    /// Places for exchanges of up to `width` numbers a pair: all ranks ask for the same ones in the same order.
+    PeerBoxes boxes(int width);
+
+  private:
+    PeerMemory(int rank, int ranks);
+    bool open(Communicator const&);
+    bool open_all(std::vector<cudaIpcMemHandle_t> const&);
+
+    static constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB
+    int rank_, ranks_;
+    Buffer<double> own_;
+    std::vector<double*> base_;
+    std::int64_t used_ = 0;
+};
+
+}  // namespace catena::cuda
