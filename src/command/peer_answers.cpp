@@ -7,20 +7,15 @@
 #include "command/peer_chain.hpp"
 
 namespace catena::command {
-namespace {
-
-constexpr std::chrono::seconds most_set_up{20}, most_evaluation{2};  // a suite has many chains
-
-/// MuJoCo factors the joint-space inertia, whose condition is another question.
-std::vector<PeerProgram> programs() {
+std::vector<PeerProgram> peers_of_suite() {
     std::vector<PeerProgram> all = peer_programs();
     std::erase_if(all, [](PeerProgram const& p) { return p.name == "mujoco"; });
     return all;
 }
 
-}  // namespace
+Peer::Limits limits_of_suite() { return {std::chrono::seconds(20), std::chrono::seconds(2), memory_for_peers()}; }
 
-PeerAnswers::PeerAnswers() : peers_(programs(), {most_set_up, most_evaluation, memory_for_peers()}) {}
+PeerAnswers::PeerAnswers(std::vector<PeerProgram> programs, Peer::Limits limits) : peers_(std::move(programs), limits) {}
 
 std::vector<PeerAnswer> PeerAnswers::operator()(StabilityCase const& which, Scene const& scene) {
     std::string const why_not = not_for_peers(scene);

@@ -8,10 +8,15 @@
 
 namespace catena::command {
 
+/// Simbody and Pinocchio. MuJoCo factors the joint-space inertia, whose condition is another question.
+std::vector<PeerProgram> peers_of_suite();
+/// A suite has many chains.
+Peer::Limits limits_of_suite();
+
 /// One process a program, that takes one chain after the other; where it stops, another is started for the next case.
 class PeerAnswers {
   public:
-    PeerAnswers();
+    explicit PeerAnswers(std::vector<PeerProgram>, Peer::Limits);
     /// Those that are here; of a family in which one stopped, it is asked about no longer chain.
     std::vector<PeerAnswer> operator()(StabilityCase const&, Scene const&);
     Json json() const { return peers_.json(); }

@@ -130,7 +130,7 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
     if (request.quick)
         left_out.emplace_back("peers: Simbody and Pinocchio (--quick)");
     else
-        peers.emplace();
+        peers.emplace(peers_of_suite(), limits_of_suite());
     AskPeers const ask = [&](StabilityCase const& each, Scene const& scene) {
         return peers ? (*peers)(each, scene) : std::vector<PeerAnswer>{};
     };

@@ -17,11 +17,13 @@ double worst_error(StabilityStudy const& study) {
 
 double least_bound(StabilityStudy const& study) {
     double least = std::numeric_limits<double>::infinity();
-    for (StabilityPoint const& p : study.points) least = std::min(least, p.residual_bound * study.growth);
+    for (StabilityPoint const& p : study.points)
+        if (p.refused.empty()) least = std::min(least, p.residual_bound * study.growth);
     return least;
 }
 
-std::string or_dash(double value) { return std::isfinite(value) ? exponent(value) : "-"; }
+/// Empty where there is none: a bound of no answer, an answer of a peer that has none.
+std::string number(double value) { return std::isfinite(value) ? exponent(value) : ""; }
 
 /// How many cases each did, and in how many Catena's worst error is the smaller one.
 ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& peers) {
@@ -52,7 +54,7 @@ ReportSection stops(std::vector<StabilityStudy> const& studies) {
             std::string const key = p.name + "/" + study.family;
             if (p.why_not.empty() || std::find(said.begin(), said.end(), key) != said.end()) continue;
             said.push_back(key);
-            section.table.add({p.name, study.family, study.name, p.why_not});
+            section.table.add({p.name, study.family, study.name, p.why_not.size() > 100 ? p.why_not.substr(0, 100) + " ..." : p.why_not});
         }
     return section;
 }
@@ -76,9 +78,11 @@ ReportPart peers_part(std::vector<StabilityStudy> const& studies, Json peers) {
     columns.emplace_back("ratio");
     columns.emplace_back();
     for (StabilityStudy const& study : studies) {
-        std::vector<std::string> row{study.name, exponent(least_bound(study)), or_dash(worst_error(study)), or_dash(study.oracle_error)};
-        for (StabilityPeer const& p : study.peers) row.push_back(or_dash(p.error));
-        row.push_back(exponent(study.against_peers()));
+        double const worst = worst_error(study);
+        std::vector<std::string> row{study.name, number(least_bound(study)), std::isinf(worst) ? "refused" : exponent(worst),
+                                     number(study.oracle_error)};
+        for (StabilityPeer const& p : study.peers) row.push_back(number(p.error));
+        row.push_back(number(study.against_peers()));
         row.emplace_back(name_of(study.verdict()));
         part.section(study.family, Table(columns, {0, columns.size() - 1})).table.add(row);
     }
