@@ -7,6 +7,7 @@
 #include "command/peer_chain.hpp"
 
 namespace catena::command {
+
 std::vector<PeerProgram> peers_of_suite() {
     std::vector<PeerProgram> all = peer_programs();
     std::erase_if(all, [](PeerProgram const& p) { return p.name == "mujoco"; });

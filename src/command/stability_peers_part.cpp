@@ -25,22 +25,37 @@ double least_bound(StabilityStudy const& study) {
 /// Empty where there is none: a bound of no answer, an answer of a peer that has none.
 std::string number(double value) { return std::isfinite(value) ? exponent(value) : ""; }
 
-/// How many cases each did, and in how many Catena's worst error is the smaller one.
+/// In how many cases of a peer Catena's worst error is the smaller one.
+struct Score {
+    int ran = 0, within = 0, closer = 0;  // within: not BEYOND
+    int refined = 0, closer_refined = 0;  // within, where all points were refined
+
+    void add(StabilityStudy const& study, double error) {
+        ++ran;
+        if (study.verdict() == Verdict::beyond) return;
+        ++within;
+        closer += worst_error(study) < error ? 1 : 0;
+        double worst = 0;
+        for (StabilityPoint const& p : study.points) {
+            if (p.refined.empty()) return;
+            worst = larger(worst, p.refined.back().error);
+        }
+        ++refined;
+        closer_refined += worst < error ? 1 : 0;
+    }
+};
+
 ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& peers) {
-    ReportSection section{"peers", Table({"", "version", "cases", "not BEYOND", "Catena is closer"}, {0, 1}), {}};
+    ReportSection section{"peers", Table({"", "version", "cases", "not BEYOND", "Catena is closer", "refined twice"}, {0, 1}), {}};
     for (Json const& peer : peers) {
         if (peer.contains("not_run")) continue;
         std::string const name = peer.at("name");
-        int ran = 0, within = 0, closer = 0;
+        Score score;
         for (StabilityStudy const& study : studies)
-            for (StabilityPeer const& p : study.peers) {
-                if (p.name != name || !p.why_not.empty()) continue;
-                ++ran;
-                if (study.verdict() == Verdict::beyond) continue;
-                ++within;
-                closer += worst_error(study) < p.error ? 1 : 0;
-            }
-        section.table.add({name, peer.value("version", ""), std::to_string(ran), std::to_string(within), std::to_string(closer)});
+            for (StabilityPeer const& p : study.peers)
+                if (p.name == name && p.why_not.empty()) score.add(study, p.error);
+        section.table.add({name, peer.value("version", ""), std::to_string(score.ran), std::to_string(score.within),
+                           std::to_string(score.closer), fmt::format("{} of {}", score.closer_refined, score.refined)});
     }
     return section;
 }

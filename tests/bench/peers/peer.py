@@ -1,4 +1,4 @@
-"""What peers written in Python share: the table of a chain that `catena bench peers` writes, and its questions.
+"""What peers written in Python share: the table of a chain that Catena writes (`bench peers`, the stability suite), and its questions.
 
 The table: rows of 42 doubles. Row 0: columns, bodies, gravity (3, ground axes). Row k: body k and joint k, by which it hangs on body k-1
 (body 0: the ground): mass; com (from the joint, body axes); inertia about com (xx yy zz xy xz yz); joint type; axis (body axes); rotation
