@@ -103,8 +103,7 @@ ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
         "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both hold. BEYOND: 2^-53 growth is above 1e-3, so that "
         "these equations in double precision determine fewer than three digits; the answer is still that of a chain nearby, or refused. "
         "REFINED: both bounds hold after two steps of refinement alone (catena solve --refine 2). Unless BEYOND, the forward error must "
-        "also "
-        "be at most 4 times the best of all others' or its bound.",
+        "also be at most the larger of its bound and 4 times the best of others'.",
         {},
         Json::array()};
     for (StabilityStudy const& study : studies) {

@@ -81,10 +81,9 @@ ReportPart peers_part(std::vector<StabilityStudy> const& studies, Json peers) {
                     "",
                     "Stability suite by other programs",
                     "Forward errors, medians over the seeds. Catena: the worst of all backends and handle kinds, after two steps of "
-                    "refinement where the "
-                    "verdict is REFINED. Bound: 32 depth(tree) 2^-53 times the growth. Ratio: Catena's error over the larger of 4 times "
-                    "the best of the "
-                    "others, articulated bodies in double among them, and the bound; above 1 a case is INVALID unless it is BEYOND.",
+                    "refinement where the verdict is REFINED. Bound: 32 depth(tree) 2^-53 times the growth. Ratio: Catena's error over "
+                    "the larger of its bound and 4 times the best of the others, articulated bodies in double among them; above 1 a case "
+                    "is INVALID unless it is BEYOND.",
                     {scores(studies, peers)},
                     std::move(peers)};
     std::vector<std::string> columns{"case", "bound", "Catena", "articulated bodies"};
