@@ -18,7 +18,8 @@ from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.ticker import NullFormatter  # noqa: E402
 
 COLOURS = {"serial": "#0072B2", "segments": "#D55E00", "openmp": "#009E73", "cuda": "#CC79A7", "cuda-levels": "#E69F00",
-           "rk4": "#0072B2", "velocity-verlet": "#D55E00", "rattle": "#009E73", "g-baoab": "#CC79A7", "oracle": "#666666"}
+           "rk4": "#0072B2", "velocity-verlet": "#D55E00", "rattle": "#009E73", "g-baoab": "#CC79A7", "oracle": "#666666",
+           "simbody": "#56B4E9", "pinocchio, local": "#E69F00", "pinocchio, world": "#882255"}
 MARKERS = {"projected": "o", "full": "s"}
 FLOOR = 1e-17  # an error of zero still has a place
 
@@ -116,13 +117,17 @@ def forces(report, hardware):
 
 
 def stability(report, hardware):
-    """Forward error over growth, a dot a case, open ones after two steps of refinement."""
+    """Forward error over growth, a dot a case, open ones after two steps of refinement, crosses by other programs."""
     figure, (axes,) = panels(1, f"Stability suite: forward error over growth\n{hardware}", "growth of roundings", "forward error")
     figure.set_size_inches(8, 5.5)
-    backends = {}
+    backends, peers = {}, {}
     studies = [study for study in report["stability"] if study["growth"] is not None]
     for study in studies:
         axes.plot(study["growth"], shown(study["oracle"]["forward_error"]), "*", color=COLOURS["oracle"], markersize=6)
+        for peer in study["peers"]:
+            if not peer["why_not"]:
+                peers[peer["name"]] = True
+                axes.plot(study["growth"], shown(peer["forward_error"]), "x", color=COLOURS[peer["name"]], markersize=4)
         for point in study["points"]:
             if point["handles"] == "projected" and not point["refused"]:
                 backends[point["backend"]] = True
@@ -134,7 +139,7 @@ def stability(report, hardware):
     axes.plot(growths, [2.0**-53 * growth for growth in growths], "--", color="black", linewidth=0.8)
     entries = [entry(name) for name in backends] + [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]),
                                                     entry("2^-53 growth", "", linestyle="--"),
-                                                    entry("refined twice", fillstyle="none")]
+                                                    entry("refined twice", fillstyle="none")] + [entry(name, "x") for name in peers]
     figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
 

@@ -1,17 +1,14 @@
 // Forward dynamics by other programs beside Catena's: the same chains, in turns.
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <map>
 #include <memory>
 
 #include "command/commands.hpp"
 #include "command/generated.hpp"
 #include "command/peer_contest.hpp"
+#include "command/peers.hpp"
 #include "command/text.hpp"
 #include "command/version.hpp"
 #include "error.hpp"
@@ -21,30 +18,9 @@
 namespace catena::command {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr std::chrono::seconds most_set_up{120};
 constexpr std::chrono::seconds most_evaluation{2};
 constexpr std::int64_t most_bodies = 1000000;
-
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "catena-peers-XXXXXX").string();
-        if (!::mkdtemp(name.data())) throw ComputationError("no temporary folder for the peers' chains (" + name + ")");
-        path_ = name;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    TemporaryFolder(TemporaryFolder const&) = delete;
-    TemporaryFolder& operator=(TemporaryFolder const&) = delete;
-    std::string file(std::string const& name) const { return (path_ / name).string(); }
-
-  private:
-    fs::path path_;
-};
 
 void check(BenchRequest const& request, Communicator const& communicator) {
     if (communicator.size() > 1) throw InputError("peers run on one rank", "catena bench peers", "run it without mpirun");
@@ -57,32 +33,20 @@ void check(BenchRequest const& request, Communicator const& communicator) {
     if (!request.set.empty()) throw InputError("the peers' chains are given", "--set", "choose --sizes and --joints");
 }
 
-Peer::Limits limits() {
-    std::int64_t const memory = std::int64_t{::sysconf(_SC_PHYS_PAGES)} * ::sysconf(_SC_PAGESIZE);
-    return {most_set_up, most_evaluation, memory / 2};
-}
-
 Json json_of(Peer::Limits const& l) {
     return {{"set_up_seconds", l.set_up.count()}, {"evaluation_seconds", l.evaluation.count()}, {"memory_bytes", l.memory_bytes}};
 }
 
-void write_table(std::string const& file, std::vector<double> const& table) {
-    std::ofstream out(file, std::ios::binary);
-    out.write(reinterpret_cast<char const*>(table.data()), static_cast<std::streamsize>(table.size() * sizeof(double)));
-    if (!out.flush()) throw ComputationError("the chain cannot be written for the peers (" + file + "): is there room?");
-}
-
-/// The peers, those that are missing, and where the others stopped.
-class Peers {
+/// The peers in turn, and where they stopped.
+class Runners {
   public:
-    Peers() : programs_(peer_programs()) {}
     void add_to(PeerContest& contest, PeerStop const& here) {
-        write_table(folder_.file("chain"), contest.table());
-        for (PeerProgram const& program : programs_) {
+        peers_.write(contest.table());
+        for (PeerProgram const& program : peers_.programs()) {
             if (!program.missing.empty() || has_stopped(program.name, here.joint)) continue;
-            auto peer = std::make_unique<Peer>(program, folder_.file("chain"), folder_.file(program.name), limits());
+            std::unique_ptr<Peer> peer = peers_.start(program);
             if (peer->is_ready()) {
-                described_[program.name] = peer->description();
+                peers_.note(program, *peer);
                 contest.add(program.name, std::move(peer));
             } else {
                 stops_.push_back({program.name, here.joint, peer->stopped(), here.bodies});
@@ -91,16 +55,9 @@ class Peers {
     }
     void add(std::vector<PeerStop> const& stops) { stops_.insert(stops_.end(), stops.begin(), stops.end()); }
     void describe(Outcome& outcome) const {
-        for (PeerProgram const& program : programs_) {
-            Json json{{"name", program.name}};
-            if (!program.missing.empty()) {
-                json["not_run"] = program.missing;
-                outcome.text += fmt::format("NOT RUN: {}: {}\n", program.name, program.missing);
-            } else if (auto const found = described_.find(program.name); found != described_.end()) {
-                for (char const* const key : {"version", "method"}) json[key] = found->second.value(key, "");
-            }
-            outcome.json["peers"].push_back(json);
-        }
+        outcome.json["limits"] = json_of(peers_.limits());
+        outcome.json["peers"] = peers_.json();
+        for (std::string const& line : peers_.not_run()) outcome.text += line + "\n";
         for (PeerStop const& stop : stops_) {
             outcome.json["stops"].push_back({{"peer", stop.peer}, {"joint", stop.joint}, {"bodies", stop.bodies}, {"why", stop.why}});
             outcome.text += fmt::format("{} stops at {} bodies, {}: {}\n", stop.peer, stop.bodies, stop.joint, stop.why);
@@ -111,9 +68,7 @@ class Peers {
     bool has_stopped(std::string const& peer, std::string const& joint) const {
         return std::any_of(stops_.begin(), stops_.end(), [&](PeerStop const& s) { return s.peer == peer && s.joint == joint; });
     }
-    TemporaryFolder const folder_;
-    std::vector<PeerProgram> const programs_;
-    std::map<std::string, Json> described_;
+    Peers peers_{peer_programs(), {most_set_up, most_evaluation, memory_for_peers()}};
     std::vector<PeerStop> stops_;
 };
 
@@ -122,12 +77,11 @@ class Peers {
 Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
     check(request, communicator);
     std::sort(request.sizes.begin(), request.sizes.end());
-    Peers peers;
+    Runners peers;
     Table table({"joint", "bodies", "by", "threads", "ns a body", "of Catena's", "error", "bound", "residual", ""}, {0, 2, 9});
     Outcome outcome;
-    outcome.json = {
-        {"bench", "peers"},       {"build", version_json()},  {"hardware", hardware_json()}, {"ranks", 1}, {"limits", json_of(limits())},
-        {"peers", Json::array()}, {"results", Json::array()}, {"stops", Json::array()}};
+    outcome.json = {{"bench", "peers"}, {"build", version_json()}, {"hardware", hardware_json()}, {"ranks", 1},
+                    {"limits", Json()}, {"peers", Json()},         {"results", Json::array()},    {"stops", Json::array()}};
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
             PeerContest contest(random_scene(joint, bodies, overrides_of(request)), joint);

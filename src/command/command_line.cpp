@@ -139,7 +139,8 @@ void add_commands(CLI::App& app, Words& words) {
         ->type_name("");
     command
         ->add_option("--suite", words.suite,
-                     "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth of roundings, errors, bounds, verdicts")
+                     "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth of roundings, errors, bounds, verdicts; "
+                     "without --quick beside Simbody and Pinocchio where they are here (tests/bench/peers/README.md)")
         ->type_name("NAME");
     command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
     command->add_option("--output", words.output, "folder for report.html, report.json and pictures (default catena-report)")

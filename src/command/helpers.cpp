@@ -54,7 +54,7 @@ std::optional<fs::path> find_in_source_tree(std::string const& path) {
     return find_file(folders, path);
 }
 
-std::optional<fs::path> find_in_build_tree(std::string const& path) { return find_file({folders_above_program().front()}, path); }
+std::optional<fs::path> find_in_build_tree(std::string const& path) { return find_file(folders_above_program(), path); }
 
 std::optional<std::string> find_python(std::string const& module) {
     std::vector<std::string> candidates;

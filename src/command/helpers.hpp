@@ -13,7 +13,7 @@ int run_quietly(std::vector<std::string> words);
 
 /// A file by its path in the source tree the program was built in, or in the folder it is started from.
 std::optional<std::filesystem::path> find_in_source_tree(std::string const& path);
-/// A file by its path in the build tree, which is the program's own folder.
+/// A file by its path in the build tree, the program's own folder or one above it.
 std::optional<std::filesystem::path> find_in_build_tree(std::string const& path);
 
 /// A Python that can import a module: that of VIRTUAL_ENV, of a folder `venv` or `peers-venv` above the program, or on PATH.

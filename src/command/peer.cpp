@@ -95,10 +95,15 @@ bool Peer::is_ready() {
     return stopped_.empty();
 }
 
+bool Peer::is_ready_for_next() {
+    if (!stopped_.empty()) return false;
+    ask("next\n");
+    return is_ready();
+}
+
 double Peer::time(int evaluations) {
-    std::string const question = std::to_string(evaluations) + "\n";
     if (!stopped_.empty()) return -1;
-    ::send(talk_, question.data(), question.size(), MSG_NOSIGNAL);  // where nobody is left, no answer comes
+    ask(std::to_string(evaluations) + "\n");
     std::string const answer = line(evaluations * limits_.evaluation, "evaluating");
     return stopped_.empty() ? std::stod(answer) : -1;
 }
@@ -110,6 +115,9 @@ std::vector<double> Peer::accelerations() const {
     in.read(reinterpret_cast<char*>(found.data()), static_cast<std::streamsize>(found.size() * sizeof(double)));
     return found;
 }
+
+/// Where nobody is left, no answer comes.
+void Peer::ask(std::string const& question) const { ::send(talk_, question.data(), question.size(), MSG_NOSIGNAL); }
 
 /// The next line it says, within `patience`.
 std::string Peer::line(std::chrono::duration<double> patience, std::string const& doing) {

@@ -35,6 +35,8 @@ class Peer {
 
     /// Waits until the chain is built and evaluated once. False where it stopped instead.
     bool is_ready();
+    /// The same for what the chain's file holds by now.
+    bool is_ready_for_next();
     /// Seconds of so many evaluations; negative where it stopped.
     double time(int evaluations);
     /// Why it stopped; empty: it goes on.
@@ -45,6 +47,7 @@ class Peer {
 
   private:
     std::string line(std::chrono::duration<double> patience, std::string const& doing);
+    void ask(std::string const& question) const;
     void stop(std::string const& why);
     std::string how_it_ended();
 

@@ -1,10 +1,12 @@
 #include "command/peer_chain.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <tuple>
 
 #include "dca/rotation.hpp"
+#include "integrate/body_loads.hpp"
 
 namespace catena::command {
 namespace {
@@ -38,13 +40,46 @@ void append(std::vector<double>& table, PeerBody const& b) {
     for (Vec3 const& v : {b.qd, b.torque, b.wrench_torque, b.wrench_force}) append(table, v);
 }
 
+Vec3 entry(std::vector<Vec3> const& list, std::size_t k) { return list.empty() ? Vec3::zero() : list[k]; }
+
+Quat quaternion(std::array<double, 4> const& q) { return {q[0], q[1], q[2], q[3]}; }
+
+/// The joint's torque, its spring's and its damper's at the state.
+Vec3 torque_of(BodyArrays const& b, std::size_t k) {
+    Vec3 torque = entry(b.torque, k);
+    Vec3 const stiffness = entry(b.stiffness, k), damping = entry(b.damping, k);
+    bool const sprung = norm(stiffness) > 0;
+    if (b.joint[k] == JointType::revolute) {
+        torque[0] -= sprung ? stiffness[0] * (b.q[k][0] - (b.rest.empty() ? 0 : b.rest[k][0])) : 0;
+    } else if (sprung) {
+        Quat const rest = b.rest.empty() ? Quat::identity() : quaternion(b.rest[k]);
+        torque = torque + spherical_spring_torque(stiffness, rest, quaternion(b.q[k]));
+    }
+    for (int i = 0; i < 3; ++i) torque[i] -= damping[i] * b.qd[k][i];
+    return torque;
+}
+
 PeerBody body_of(BodyArrays const& bodies, std::size_t k) {
-    auto const or_zero = [k](std::vector<Vec3> const& list) { return list.empty() ? Vec3::zero() : list[k]; };
-    PeerBody b{bodies.mass[k],        bodies.com[k], bodies.inertia[k], PeerJoint::ball,        bodies.axis[k], bodies.rotation[k],
-               bodies.translation[k], bodies.q[k],   bodies.qd[k],      or_zero(bodies.torque), Vec3::zero(),   Vec3::zero()};
+    PeerBody b{bodies.mass[k],        bodies.com[k], bodies.inertia[k], PeerJoint::ball,      bodies.axis[k], bodies.rotation[k],
+               bodies.translation[k], bodies.q[k],   bodies.qd[k],      torque_of(bodies, k), Vec3::zero(),   Vec3::zero()};
     if (bodies.joint[k] == JointType::revolute) b.joint = PeerJoint::revolute;
     if (!bodies.wrench.empty()) std::tie(b.wrench_torque, b.wrench_force) = bodies.wrench[k];
+    if (bodies.joint[k] == JointType::free) b.rotation = Mat3::identity(), b.translation = b.torque = Vec3::zero();
     return b;
+}
+
+PeerBody slide_at(Vec3 const& position, Vec3 const& velocity, double mass) {
+    PeerBody slide;
+    slide.joint = PeerJoint::slide;
+    slide.mass = mass;
+    slide.translation = position;
+    slide.qd = velocity;
+    return slide;
+}
+
+void append(std::vector<double>& table, BodyArrays const& bodies) {
+    if (bodies.joint[0] == JointType::free) append(table, slide_at(bodies.free_position, bodies.free_velocity, 0));
+    for (std::size_t k = 0; k < bodies.size(); ++k) append(table, body_of(bodies, k));
 }
 
 /// A link as a rod: axes with z along it, at rest about z against the rod before.
@@ -84,12 +119,7 @@ Rod rod_of(BeadArrays const& beads, std::size_t k, Rod const& last) {
 }
 
 void append(std::vector<double>& table, BeadArrays const& beads) {
-    PeerBody first;
-    first.joint = PeerJoint::slide;
-    first.mass = beads.mass[0];
-    first.translation = beads.position[0];
-    first.qd = beads.velocity[0];
-    append(table, first);
+    append(table, slide_at(beads.position[0], beads.velocity[0], beads.mass[0]));
     Rod last;
     for (std::size_t k = 1; k < beads.size(); ++k) {
         Rod const rod = rod_of(beads, k, last);
@@ -122,30 +152,54 @@ std::vector<double> accelerations_of_beads(BeadArrays const& beads, std::vector<
     return list;
 }
 
+bool has_free_body(ChainSpec const& chain) { return !chain.is_beads() && chain.bodies.joint[0] == JointType::free; }
+
 std::size_t accelerations_of(ChainSpec const& chain) {
     if (chain.is_beads()) return 1 + 2 * chain.size();
     std::size_t count = 0;
-    for (JointType const joint : chain.bodies.joint) count += joint == JointType::revolute ? 1 : 3;
+    for (JointType const joint : chain.bodies.joint) count += joint == JointType::revolute ? 1 : joint == JointType::free ? 6 : 3;
     return count;
+}
+
+bool resists(std::vector<std::array<double, 2>> const& drag) {
+    return std::any_of(drag.begin(), drag.end(), [](auto const& d) { return d[0] != 0 || d[1] != 0; });
 }
 
 }  // namespace
 
+std::string not_for_peers(Scene const& scene) {
+    auto const among = [](JointType joint) {
+        return joint == JointType::revolute || joint == JointType::spherical || joint == JointType::free;
+    };
+    ForceSpec const& forces = scene.forces;
+    if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 || forces.angular_drag != 0)
+        return "not one chain alone without drag and OpenMM";
+    ChainSpec const& chain = scene.chains.front();
+    if (chain.tip != Tip::free) return "a closed chain";
+    if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
+    if (chain.is_beads()) return chain.base == Base::free ? "" : "beads that hang on the ground";
+    if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among)) return "joints neither revolute nor spherical";
+    return chain.bodies.driven.empty() && !resists(chain.bodies.drag) ? "" : "driven joints or drag";
+}
+
 std::vector<double> peer_table(ChainSpec const& chain, Vec3 const& gravity) {
-    std::vector<double> table{static_cast<double>(columns), static_cast<double>(chain.size()), gravity[0], gravity[1], gravity[2]};
-    table.reserve(columns * (chain.size() + 1));
+    std::size_t const bodies = chain.size() + (has_free_body(chain) ? 1 : 0);
+    std::vector<double> table{static_cast<double>(columns), static_cast<double>(bodies), gravity[0], gravity[1], gravity[2]};
+    table.reserve(columns * (bodies + 1));
     table.resize(columns, 0.0);
-    if (chain.is_beads()) {
+    if (chain.is_beads())
         append(table, chain.beads);
-        return table;
-    }
-    for (std::size_t k = 0; k < chain.size(); ++k) append(table, body_of(chain.bodies, k));
+    else
+        append(table, chain.bodies);
     return table;
 }
 
 std::vector<double> accelerations_of_peer(ChainSpec const& chain, std::vector<double> const& found) {
     if (found.size() != accelerations_of(chain)) return {};
-    return chain.is_beads() ? accelerations_of_beads(chain.beads, found) : found;
+    if (chain.is_beads()) return accelerations_of_beads(chain.beads, found);
+    std::vector<double> list = found;
+    if (has_free_body(chain)) std::rotate(list.begin(), list.begin() + 3, list.begin() + 6);  // the angular one comes first
+    return list;
 }
 
 }  // namespace catena::command

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "command/commands.hpp"
+#include "command/peer_answers.hpp"
 #include "command/picture.hpp"
 #include "command/report_parts.hpp"
 #include "command/values.hpp"
@@ -71,7 +73,7 @@ Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
         std::string const remark = draw_report(json, request.output);
         if (!remark.empty()) outcome.text += remark + "\n";
         for (ReportPart const& part : parts)
-            if (remark.empty()) outcome.text += "drew " + request.output + "/" + part.picture + ".png\n";
+            if (remark.empty() && !part.picture.empty()) outcome.text += "drew " + request.output + "/" + part.picture + ".png\n";
         outcome.text += outcome.valid ? "VALID\n" : "INVALID\n";
     });
     return outcome;
@@ -124,13 +126,26 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
         left_out.emplace_back("cuda: it has the bits of segments, and its solutions are not refined");
     if (backends.empty()) throw InputError("the stability suite on the GPU alone", "--backend", "take segments, which has the same bits");
     make_folder(communicator, request.output);
+    std::optional<PeerAnswers> peers;
+    if (request.quick)
+        left_out.emplace_back("peers: Simbody and Pinocchio (--quick)");
+    else
+        peers.emplace(peers_of_suite(), limits_of_suite());
+    AskPeers const ask = [&](StabilityCase const& each, Scene const& scene) {
+        return peers ? (*peers)(each, scene) : std::vector<PeerAnswer>{};
+    };
     std::vector<StabilityStudy> studies;
     for (StabilityCase const& each : stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick)) {
         int const seeds = each.bodies > 100000 ? 1 : 3;
-        studies.push_back(study_stability(each, backends, handles_of(request), seeds));
+        studies.push_back(study_stability(each, backends, handles_of(request), seeds, ask));
         spdlog::info("{}, {}: {}", each.family, each.name, name_of(studies.back().verdict()));
     }
-    return conclude("stability suite", {stability_part(studies)}, left_out, communicator, request);
+    std::vector<ReportPart> parts{stability_part(studies)};
+    if (peers) {
+        for (std::string const& line : peers->not_run()) left_out.push_back(line);
+        if (!studies.front().peers.empty()) parts.push_back(peers_part(studies, peers->json()));
+    }
+    return conclude("stability suite", parts, left_out, communicator, request);
 }
 
 }  // namespace catena::command

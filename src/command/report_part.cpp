@@ -2,9 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "io/html.hpp"
 
 namespace catena::command {
+
+ReportSection& ReportPart::section(std::string const& heading, Table const& empty) {
+    auto const found = std::find_if(sections.begin(), sections.end(), [&](ReportSection const& s) { return s.heading == heading; });
+    return found != sections.end() ? *found : sections.emplace_back(ReportSection{heading, empty, {}});
+}
 
 std::string text_of(ReportPart const& part) {
     std::string text = part.title + "\n" + part.note + "\n";

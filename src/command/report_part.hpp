@@ -17,12 +17,15 @@ struct ReportSection {
     std::vector<CurveFamily> pictures;  // on the page alone
 };
 struct ReportPart {
-    std::string key, picture;  // in the JSON, and of the picture that a script draws (without .png)
+    std::string key, picture;  // in the JSON, and of the picture that a script draws (without .png; empty: none)
     std::string title;
     std::string note;  // what the numbers mean
     std::vector<ReportSection> sections;
     Json json;
     bool valid = true;
+
+    /// Made at the end where there is none of that heading.
+    ReportSection& section(std::string const& heading, Table const& empty);
 };
 
 std::string text_of(ReportPart const&);

@@ -14,5 +14,7 @@ ReportPart solver_part(std::vector<SolverStudy> const&);
 ReportPart integrator_part(std::vector<IntegratorStudy> const&, std::vector<DriftStudy> const& drifts);
 ReportPart force_part(std::vector<ForceStudy> const&);
 ReportPart stability_part(std::vector<StabilityStudy> const&);
+/// The same cases by other programs; `peers`: their names and versions, or why they are missing.
+ReportPart peers_part(std::vector<StabilityStudy> const&, Json peers);
 
 }  // namespace catena::command

@@ -27,6 +27,8 @@ Json json_of(StabilityStudy const& study) {
                           {"refused", p.refused},
                           {"refined", refined}});
     }
+    Json peers = Json::array();
+    for (StabilityPeer const& p : study.peers) peers.push_back({{"name", p.name}, {"forward_error", p.error}, {"why_not", p.why_not}});
     return {{"family", study.family},
             {"name", study.name},
             {"bodies", study.bodies},
@@ -36,6 +38,9 @@ Json json_of(StabilityStudy const& study) {
             {"growth", study.growth},
             {"oracle", {{"name", "articulated bodies, double"}, {"forward_error", study.oracle_error}}},
             {"points", points},
+            {"peers", peers},
+            {"best_of_others", study.best_of_others()},
+            {"against_peers", study.against_peers()},
             {"verdict", name_of(study.verdict())}};
 }
 
@@ -72,6 +77,10 @@ CurveFamily picture(std::vector<StabilityStudy> const& studies) {
             curve.x.push_back(study.growth), curve.y.push_back(p.error);
         }
     }
+    std::map<std::string, NamedCurve> of_peers;
+    for (StabilityStudy const& study : studies)
+        for (StabilityPeer const& p : study.peers) of_peers[p.name].x.push_back(study.growth), of_peers[p.name].y.push_back(p.error);
+    curves.merge(of_peers);
     for (auto& [name, curve] : curves) family.curves.push_back({name, curve.x, curve.y, false, true, false});
     NamedCurve refined{"refined twice", {}, {}, false, true, false};
     for (StabilityStudy const& study : studies)
@@ -93,17 +102,14 @@ ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
         "and joint's equations change the answer; condition: of the joint-space inertia, or of the links' matrix. Bounds: of the residual "
         "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both hold. BEYOND: 2^-53 growth is above 1e-3, so that "
         "these equations in double precision determine fewer than three digits; the answer is still that of a chain nearby, or refused. "
-        "REFINED: both bounds hold after two steps of refinement alone (catena solve --refine 2).",
+        "REFINED: both bounds hold after two steps of refinement alone (catena solve --refine 2). Unless BEYOND, the forward error must "
+        "also be at most the larger of its bound and 4 times the best of others'.",
         {},
         Json::array()};
     for (StabilityStudy const& study : studies) {
         part.json.push_back(json_of(study));
         part.valid = part.valid && study.verdict() != Verdict::invalid;
-        auto section =
-            std::find_if(part.sections.begin(), part.sections.end(), [&](ReportSection const& s) { return s.heading == study.family; });
-        if (section == part.sections.end())
-            section = part.sections.insert(section, {study.family, Table(columns, {0, columns.size() - 1}), {}});
-        add_row(section->table, study);
+        add_row(part.section(study.family, Table(columns, {0, columns.size() - 1})).table, study);
     }
     if (!part.sections.empty()) part.sections.front().pictures = {picture(studies)};
     return part;

@@ -104,6 +104,24 @@ StabilityPoint point_of(Variant const& v) {
     return point;
 }
 
+/// One peer, over the seeds.
+struct PeerErrors {
+    std::string name, why_not;
+    std::vector<double> error;
+};
+
+void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution layout, ExactSolution const& exact) {
+    to.name = answer.name;
+    if (to.why_not.empty()) to.why_not = answer.why_not;
+    if (to.why_not.empty() && answer.acceleration.size() != exact.acceleration.size()) to.why_not = "its answer is of another length";
+    if (!to.why_not.empty()) return;
+    layout.acceleration = answer.acceleration;
+    to.error.push_back(largest_difference(scene, layout, exact.acceleration));
+    if (!std::isfinite(to.error.back())) to.why_not = "its answer is not finite";
+}
+
+StabilityPeer peer_of(PeerErrors const& p) { return {p.name, p.why_not.empty() ? median(p.error) : infinite, p.why_not}; }
+
 double error_in_double(Scene const& scene, Solution layout, ExactSolution const& exact) {
     try {
         layout.acceleration = oracle_accelerations<double>(scene, {});
@@ -128,11 +146,34 @@ char const* name_of(Verdict verdict) {
     }
 }
 
+double StabilityPoint::judged_error() const {
+    if (!refused.empty()) return infinite;
+    return !holds() && holds_refined() ? refined.back().error : error;
+}
+
+double StabilityStudy::best_of_others() const {
+    double best = std::isfinite(oracle_error) ? oracle_error : infinite;
+    for (StabilityPeer const& peer : peers)
+        if (peer.why_not.empty()) best = std::min(best, peer.error);
+    return best;
+}
+
+double StabilityStudy::against_peers() const {
+    double const allowed = 4 * best_of_others();
+    double worst = 0;
+    for (StabilityPoint const& p : points) {
+        double const error = p.judged_error();
+        if (error != 0) worst = larger(worst, error / std::max(allowed, p.residual_bound * growth));
+    }
+    return worst;
+}
+
 /// Beyond double precision an answer must still be the exact one of a chain nearby, or refused.
 Verdict StabilityStudy::verdict() const {
     bool const all_hold = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds(); });
     bool const nearby = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.of_residual_bound <= 1; });
     if (beyond()) return nearby ? Verdict::beyond : Verdict::invalid;
+    if (!(against_peers() <= 1)) return Verdict::invalid;
     if (all_hold) return Verdict::valid;
     bool const with_refinement =
         std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds() || p.holds_refined(); });
@@ -140,8 +181,9 @@ Verdict StabilityStudy::verdict() const {
 }
 
 StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends, std::vector<Handles> const& handles,
-                               int seeds) {
+                               int seeds, AskPeers const& peers) {
     StabilityStudy study{which.family, which.name, {}, which.bodies, seeds, {}, 1, 0, {}};
+    std::vector<PeerErrors> of_peers;
     std::vector<Variant> variants = variants_of(backends, handles);
     std::vector<double> condition, growth, in_double;
     for (int seed = 1; seed <= seeds; ++seed) {
@@ -152,12 +194,16 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
         growth.push_back(exact.growth);
         if (which.bodies <= largest_condition) condition.push_back(oracle::condition_estimate(scene.chains.front()));
         in_double.push_back(error_in_double(scene, layout, exact));
+        std::vector<PeerAnswer> const answers = peers ? peers(which, scene) : std::vector<PeerAnswer>{};
+        of_peers.resize(answers.size());
+        for (std::size_t i = 0; i < answers.size(); ++i) add(of_peers[i], answers[i], scene, layout, exact);
         for (Variant& variant : variants) add(variant, scene, exact);
     }
     study.growth = median(growth);
     if (!condition.empty()) study.condition = median(condition);
     study.oracle_error = median(in_double);
     for (Variant const& v : variants) study.points.push_back(point_of(v));
+    for (PeerErrors const& p : of_peers) study.peers.push_back(peer_of(p));
     return study;
 }
 

@@ -1,9 +1,11 @@
 // How far every backend can be trusted on a hard chain: backward and forward error beside their bounds, over several seeds.
 //
 // A backend has solved exactly a chain whose data and equations are off by its local residual; the answer is then off by the residual times
-// the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth.
+// the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth. Other
+// programs ("peers") may solve the same chains: where the best of them is above a quarter of that bound, 4 times its error is allowed.
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "report/stability_cases.hpp"
@@ -25,6 +27,23 @@ struct StabilityPoint {
     bool holds_refined() const {
         return refused.empty() && !refined.empty() && refined.back().of_residual_bound <= 1 && refined.back().of_bound <= 1;
     }
+    /// That of the refined answer where this alone holds; infinite where there is none.
+    double judged_error() const;
+};
+
+/// Another program's answer to a scene, laid out as Solution::acceleration, or why there is none.
+struct PeerAnswer {
+    std::string name;
+    std::vector<double> acceleration = {};
+    std::string why_not = {};
+};
+/// Asks each of them; their number and names are always the same.
+using AskPeers = std::function<std::vector<PeerAnswer>(StabilityCase const&, Scene const&)>;
+
+struct StabilityPeer {
+    std::string name;
+    double error = 0;          // median over the seeds
+    std::string why_not = {};  // of a seed without an answer; empty: all had one
 };
 
 enum class Verdict { valid, refined, beyond, invalid };
@@ -37,12 +56,18 @@ struct StabilityStudy {
     double growth = 1;                // median
     double oracle_error = 0;          // of articulated bodies in double; median; infinite where they find no answer
     std::vector<StabilityPoint> points;
+    std::vector<StabilityPeer> peers = {};
+    /// The least error of articulated bodies in double and of the peers that have one.
+    double best_of_others() const;
+    /// The worst judged_error() over the larger of 4 times best_of_others() and the bound; medians.
+    double against_peers() const;
     /// Beyond double precision: data rounded to 53 bits determine fewer than three digits of the answer, whoever computes it.
     bool beyond() const { return growth * 0x1p-53 > 1e-3; }
     Verdict verdict() const;
 };
 char const* name_of(Verdict);
 
-StabilityStudy study_stability(StabilityCase const&, std::vector<Backend> const&, std::vector<Handles> const&, int seeds);
+StabilityStudy study_stability(StabilityCase const&, std::vector<Backend> const&, std::vector<Handles> const&, int seeds,
+                               AskPeers const& peers = {});
 
 }  // namespace catena

@@ -23,11 +23,12 @@ def report(number):
     oracle = {"forward_error": number, "seconds": SECONDS}
     step = {"error": number, "energy_error": number, "seconds": SECONDS}
     case = {"backend": "segments", "handles": "projected", "refused": "", "forward_error": number, "refined": [{"forward_error": number}]}
+    peer = {"name": "simbody", "forward_error": number, "why_not": "" if number else "its answer is not finite"}
     return {"hardware": {"processor": "any"}, "ranks": 1,
             "studies": [{"title": "a", "condition": number, "points": [point], "oracle": oracle}],
             "integrators": {"scenes": [{"title": "a", "curves": [{"integrator": "rk4", "points": [step]}]}, {"title": "b", "curves": []}]},
             "forces": [{"title": "a", "beads": 1, "points": [{"platform": "CPU", "precision": "single", "error": number, "seconds": SECONDS}]}],
-            "stability": [{"growth": number, "oracle": oracle, "points": [case]}]}
+            "stability": [{"growth": number, "oracle": oracle, "points": [case], "peers": [peer]}]}
 
 
 for number in (1e-9, None):

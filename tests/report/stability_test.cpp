@@ -47,6 +47,7 @@ StabilityStudy study_of(double growth, double of_residual_bound, double of_bound
     StabilityStudy study;
     study.growth = growth;
     StabilityPoint point;
+    point.residual_bound = 1e-14;
     point.of_residual_bound = of_residual_bound;
     point.of_bound = of_bound;
     point.refused = refused;
@@ -85,6 +86,73 @@ TEST(Stability, MeasuredErrorsAboveTheirBoundAreInvalid) {
     ASSERT_GT(std::max(study.points.at(0).of_residual_bound, study.points[0].of_bound), 1);
     EXPECT_EQ(study.verdict(), Verdict::refined);
     study.points[0].refined.clear();
+    EXPECT_EQ(study.verdict(), Verdict::invalid);
+}
+
+StabilityStudy study_beside(std::vector<StabilityPeer> peers, double error, double bound) {
+    StabilityStudy study = study_of(1e3, 0.5, 0.5);
+    study.points[0].error = error;
+    study.points[0].residual_bound = bound / study.growth;
+    study.oracle_error = 1e-12;
+    study.peers = std::move(peers);
+    return study;
+}
+
+TEST(Stability, ErrorsAboveTheirBoundAreHeldToFourTimesTheBestOfOthers) {
+    StabilityStudy study = study_beside({{"a", 1e-13}, {"b", 1e-11}}, 3e-13, 1e-14);
+    EXPECT_DOUBLE_EQ(study.best_of_others(), 1e-13);
+    EXPECT_NEAR(study.against_peers(), 0.75, 1e-12);
+    EXPECT_EQ(study.verdict(), Verdict::valid);
+    study.peers[0].error = 1e-15;
+    EXPECT_NEAR(study.against_peers(), 30, 1e-9);
+    EXPECT_EQ(study.verdict(), Verdict::invalid);
+    study.peers[0].why_not = "takes more than 20 s";  // then articulated bodies are the best
+    EXPECT_NEAR(study.against_peers(), 3e-13 / 4e-12, 1e-12);
+    EXPECT_EQ(study.verdict(), Verdict::valid);
+    study.points[0].error = std::nan("");
+    EXPECT_EQ(study.verdict(), Verdict::invalid);
+    EXPECT_EQ(study_beside({{"a", 1e-16}}, 3e-13, 1e-12).verdict(), Verdict::valid);  // below the bound
+    study = study_beside({{"a", 1e-16}}, 1, 1e-12);
+    study.growth = 1e14;
+    EXPECT_EQ(study.verdict(), Verdict::beyond);
+}
+
+TEST(Stability, WhatHoldsAfterRefinementIsJudgedByIt) {
+    StabilityStudy study = study_beside({{"a", 1e-15}}, 1e-8, 1e-14);
+    study.points[0].of_bound = 1e6;
+    study.points[0].refined = {{1e-9, 0.5, 1.2, 1}, {2e-15, 0.5, 0.5, 1}};
+    EXPECT_NEAR(study.against_peers(), 0.2, 1e-12);
+    EXPECT_EQ(study.verdict(), Verdict::refined);
+    study.points[0].refined[1].error = 2e-14;
+    EXPECT_EQ(study.verdict(), Verdict::invalid);
+}
+
+/// A peer that knows the answer, one that has none, one that answers nonsense: of every seed.
+TEST(Stability, PeersAreAskedAboutEverySeed) {
+    StabilityCase const which = case_of("thin bodies, hinges", "1e8");
+    int asked = 0;
+    AskPeers const peers = [&](StabilityCase const& each, Scene const& scene) {
+        EXPECT_EQ(each.name, which.name);
+        ++asked;
+        std::vector<double> const exact = exact_solution(scene, layout_of(scene), 100, 1).acceleration;
+        std::vector<double> broken = exact;
+        if (asked == 2) broken[5] = std::nan("");
+        return std::vector<PeerAnswer>{
+            {"exact", exact, ""}, {"absent", {}, asked == 1 ? "no room" : ""}, {"broken", broken, ""}, {"short", {1, 2}, ""}};
+    };
+    StabilityStudy study = study_stability(which, {Backend::segments}, {Handles::projected}, 3, peers);
+    EXPECT_EQ(asked, 3);
+    ASSERT_EQ(study.peers.size(), 4U);
+    EXPECT_EQ(study.peers[0].error, 0);
+    EXPECT_EQ(study.peers[1].why_not, "no room");
+    EXPECT_EQ(study.peers[2].why_not, "its answer is not finite");
+    EXPECT_EQ(study.peers[3].why_not, "its answer is of another length");
+    EXPECT_EQ(study.best_of_others(), 0);
+    EXPECT_LE(study.against_peers(), 1);  // after refinement
+    EXPECT_EQ(study.verdict(), Verdict::refined);
+    study.points[0].refined.clear();
+    study.points[0].residual_bound = study.points[0].error / 2 / study.growth;
+    EXPECT_NEAR(study.against_peers(), 2, 1e-9);
     EXPECT_EQ(study.verdict(), Verdict::invalid);
 }
 

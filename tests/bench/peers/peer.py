@@ -1,4 +1,4 @@
-"""What peers written in Python share: the table of a chain that `catena bench peers` writes, and its questions.
+"""What peers written in Python share: the table of a chain that Catena writes (`bench peers`, the stability suite), and its questions.
 
 The table: rows of 42 doubles. Row 0: columns, bodies, gravity (3, ground axes). Row k: body k and joint k, by which it hangs on body k-1
 (body 0: the ground): mass; com (from the joint, body axes); inertia about com (xx yy zz xy xz yz); joint type; axis (body axes); rotation
@@ -34,9 +34,8 @@ class Chain:
         self.bodies = [Body(row) for row in table[1:]]
 
 
-def serve(name, version, method, build):
-    """`build(chain)` returns a function that evaluates once and returns the joint accelerations. Then: a line with a count comes in, the
-    seconds of so many evaluations go out, until the input ends."""
+def prepare(name, version, method, build):
+    """The function that evaluates, after it has done so once."""
     chain_file, accelerations_file = sys.argv[1:3]
     try:
         chain = Chain(chain_file)
@@ -50,7 +49,18 @@ def serve(name, version, method, build):
     np.asarray(accelerations, dtype=float).tofile(accelerations_file)
     print(json.dumps({"name": name, "version": version, "method": method, "set_up_seconds": ready,
                       "memory_bytes": 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}), flush=True)
+    return evaluate
+
+
+def serve(name, version, method, build):
+    """`build(chain)` returns a function that evaluates once and returns the joint accelerations. Then lines come in until the input ends: a
+    count, for which the seconds of so many evaluations go out, or `next`: the file holds another chain, everything begins anew."""
+    evaluate = prepare(name, version, method, build)
     for line in sys.stdin:
+        if line.strip() == "next":
+            evaluate = None   # its memory goes first
+            evaluate = prepare(name, version, method, build)
+            continue
         count = int(line)
         start = time.perf_counter()
         for _ in range(count):

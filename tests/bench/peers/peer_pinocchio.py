@@ -31,7 +31,7 @@ def build(chain):
     for k, body in enumerate(chain.bodies):
         joint, q_k = joint_of(body)
         added = model.addJoint(k, joint, pin.SE3(body.rotation, body.translation), f"joint {k}")
-        model.appendBodyToJoint(added, pin.Inertia(body.mass, body.com, body.inertia), pin.SE3.Identity())
+        model.inertias[added] = pin.Inertia(body.mass, body.com, body.inertia)   # what appends takes masses below 2^-52 for none
         q.append(q_k)
     data = model.createData()
     q, v, tau = (np.concatenate(parts) for parts in (q, [b.qd for b in chain.bodies], [b.torque for b in chain.bodies]))

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace {
@@ -113,27 +114,46 @@ class Chain {
     SimTK::State state_;
 };
 
+/// Builds the chain and evaluates it once.
+class Server {
+  public:
+    Server(char const* chain_file, char const* accelerations_file) : rows_(rows_of(chain_file, gravity_)) {
+        double const start = seconds_now();
+        chain_ = std::make_unique<Chain>(rows_, gravity_);
+        chain_->evaluate();
+        double const ready = seconds_now() - start;
+        std::vector<double> const found = chain_->accelerations();
+        std::ofstream(accelerations_file, std::ios::binary)
+            .write(reinterpret_cast<char const*>(found.data()), static_cast<std::streamsize>(found.size() * sizeof(double)));
+        rusage usage{};
+        getrusage(RUSAGE_SELF, &usage);
+        std::cout << R"({"name": "simbody", "version": ")" << SIMBODY_VERSION
+                  << R"(", "method": "realize(Acceleration) from positions on, C++",)"
+                  << R"( "set_up_seconds": )" << ready << R"(, "memory_bytes": )" << 1024.0 * static_cast<double>(usage.ru_maxrss) << "}"
+                  << std::endl;
+    }
+    double seconds_of(long evaluations) {
+        double const start = seconds_now();
+        for (long i = 0; i < evaluations; ++i) chain_->evaluate();
+        return seconds_now() - start;
+    }
+
+  private:
+    Vec3 gravity_;
+    std::vector<Row> rows_;
+    std::unique_ptr<Chain> chain_;
+};
+
 int serve(char const* chain_file, char const* accelerations_file) {
-    Vec3 gravity;
-    std::vector<Row> const rows = rows_of(chain_file, gravity);
-    double start = seconds_now();
-    Chain chain(rows, gravity);
-    chain.evaluate();
-    double const ready = seconds_now() - start;
-    std::vector<double> const found = chain.accelerations();
-    std::ofstream(accelerations_file, std::ios::binary)
-        .write(reinterpret_cast<char const*>(found.data()), static_cast<std::streamsize>(found.size() * sizeof(double)));
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
     std::cout.precision(17);
-    std::cout << R"({"name": "simbody", "version": ")" << SIMBODY_VERSION
-              << R"(", "method": "realize(Acceleration) from positions on, C++",)"
-              << R"( "set_up_seconds": )" << ready << R"(, "memory_bytes": )" << 1024.0 * static_cast<double>(usage.ru_maxrss) << "}"
-              << std::endl;
-    for (long count = 0; std::cin >> count;) {
-        start = seconds_now();
-        for (long i = 0; i < count; ++i) chain.evaluate();
-        std::cout << seconds_now() - start << std::endl;
+    auto server = std::make_unique<Server>(chain_file, accelerations_file);
+    for (std::string line; std::getline(std::cin, line);) {
+        if (line == "next") {
+            server.reset();  // its memory goes first
+            server = std::make_unique<Server>(chain_file, accelerations_file);
+        } else {
+            std::cout << server->seconds_of(std::stol(line)) << std::endl;
+        }
     }
     return 0;
 }
