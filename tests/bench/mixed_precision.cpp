@@ -24,7 +24,7 @@ using command::Table;
 
 struct Request {
     std::vector<std::string> joints{"link", "spherical", "revolute"};
-    std::vector<double> sizes{256, 2048, 16384, 131072};
+    std::vector<double> sizes{256, 2048, 8192, 16384, 32768, 131072};
     int repeat = 11;
     std::int64_t longest = 4096;  // of hard chains
     bool quick = false;
@@ -60,6 +60,15 @@ KernelTable table_of(SimdLevel level) {
 std::string exponent(double x) { return fmt::format("{:.0e}", x); }
 std::string nanoseconds(double x) { return x < 100 ? fmt::format("{:.1f}", x) : fmt::format("{:.0f}", x); }
 
+constexpr char const* meaning =
+    "  Over one evaluation in double. mixed: both sweeps in single precision and, a step of refinement, the residual in double and the "
+    "bias\n"
+    "  sweep in single; in half: were its sweeps to take half of double's time; bytes: were memory all that counts. steps, as needed: "
+    "until\n"
+    "  the error is at most twice that of double. over best: over the faster one of double and of the library's own evaluation, which "
+    "keeps\n"
+    "  no joints. States and loads in single precision are there: to write them is not counted.\n";
+
 /// Over one evaluation in double.
 struct Totals {
     std::vector<double> measured, halved, by_bytes;  // after 0, 1, ... steps
@@ -79,18 +88,24 @@ Totals totals_of(AllTimes const& t, ChainInArrays const& in_double, ChainInArray
     return totals;
 }
 
+/// To four digits.
+double rounded(double x) { return std::strtod(fmt::format("{:.3e}", x).c_str(), nullptr); }
+template <class Numbers>
+Json rounded(Numbers const& numbers, double factor = 1) {
+    Json list = Json::array();
+    for (double const x : numbers) list.push_back(rounded(factor * x));
+    return list;
+}
 Json json_of(Times const& t, std::int64_t bodies) {
     double const each = 1e9 / static_cast<double>(bodies);
-    Json evaluation = Json::array();
-    for (double const seconds : t.evaluation) evaluation.push_back(each * seconds);
-    return {{"matrix_sweep_ns", each * t.matrix},
-            {"bias_sweep_ns", each * t.bias},
-            {"double_residual_ns", each * t.defect},
-            {"evaluation_ns_after_steps", evaluation}};
+    return {{"matrix_sweep_ns", rounded(each * t.matrix)},
+            {"bias_sweep_ns", rounded(each * t.bias)},
+            {"double_residual_ns", rounded(each * t.defect)},
+            {"evaluation_ns_after_steps", rounded(t.evaluation, each)}};
 }
 Json json_of(Errors const& e) {
     if (!e.definite) return {{"definite", false}};
-    return {{"definite", true}, {"forward_error_after_steps", e.error}, {"residual_after_steps", e.residual}};
+    return {{"definite", true}, {"forward_error_after_steps", rounded(e.error)}, {"residual_after_steps", rounded(e.residual)}};
 }
 Json json_of(std::optional<int> const& steps) { return steps ? Json(*steps) : Json(); }
 
@@ -109,7 +124,7 @@ class Study {
                 for (SimdLevel const level : simd_levels()) rows.push_back(random_chain(problem, joint, bodies, level));
                 std::cout << "." << std::flush;
             }
-        std::cout << "\n" << times_.text() << "\n" << totals_.text() << "\n" << errors_.text() << std::endl;
+        std::cout << "\n" << times_.text() << "\n" << totals_.text() << meaning << "\n" << errors_.text() << std::endl;
         return rows;
     }
     Json hard_chains() {
@@ -174,17 +189,17 @@ class Study {
                 {"vectors", name_of(level)},
                 {"lanes_double", kernels(table, problem, false).lanes},
                 {"lanes_single", kernels(table, problem, true).lanes},
-                {"growth", problem.exact().growth},
+                {"growth", rounded(problem.exact().growth)},
                 {"residual_bound", problem.residual_bound()},
                 {"double", {{"time", json_of(d, bodies)}, {"error", json_of(wide)}}},
                 {"single", {{"time", json_of(s, bodies)}, {"error", json_of(narrow)}}},
-                {"library_evaluation_ns", each * times.library},
+                {"library_evaluation_ns", rounded(each * times.library)},
                 {"steps_needed", json_of(steps)},
                 {"over_double",
-                 {{"measured_after_steps", totals.measured},
-                  {"measured_over_best_after_steps", totals.of_best},
-                  {"sweeps_in_half_the_time_after_steps", totals.halved},
-                  {"bytes_after_steps", totals.by_bytes}}},
+                 {{"measured_after_steps", rounded(totals.measured)},
+                  {"measured_over_best_after_steps", rounded(totals.of_best)},
+                  {"sweeps_in_half_the_time_after_steps", rounded(totals.halved)},
+                  {"bytes_after_steps", rounded(totals.by_bytes)}}},
                 {"valid", good}};
     }
 
@@ -196,9 +211,10 @@ class Study {
         auto const errors = errors_of(wide, narrow, outcome(wide, narrow));
         row.insert(row.end(), errors.begin(), errors.end());
         hard_.add(row);
-        return {
-            {"family", hard.family},   {"name", hard.name},         {"bodies", hard.bodies},           {"growth", problem.exact().growth},
-            {"double", json_of(wide)}, {"single", json_of(narrow)}, {"outcome", outcome(wide, narrow)}};
+        return {{"family", hard.family},           {"name", hard.name},
+                {"bodies", hard.bodies},           {"growth", rounded(problem.exact().growth)},
+                {"double", json_of(wide)},         {"single", json_of(narrow)},
+                {"outcome", outcome(wide, narrow)}};
     }
     static std::vector<std::string> errors_of(Errors const& wide, Errors const& narrow, std::string const& last) {
         std::vector<std::string> row{wide.definite ? exponent(wide.error[0]) : "-", wide.definite ? exponent(wide.error[1]) : "-"};
@@ -246,6 +262,7 @@ int run(Request const& request) {
                       {"hardware", {{"processor", processor_name()}, {"threads", processor_threads()}}},
                       {"build", {{"compiler", compiler_name()}, {"instruction_set", instruction_set()}}},
                       {"repeat", request.repeat},
+                      {"clock", "processor time, medians, nanoseconds a body"},
                       {"random_chains", random},
                       {"hard_chains", hard},
                       {"hard_chains_left_out", study.left_out()},
@@ -265,7 +282,8 @@ int main(int argc, char** argv) {
     catena::precision::Request request;
     CLI::App app{"Single-precision sweeps with refinement in double beside double precision: times and errors, in turns on one core"};
     app.add_option("--joints", request.joints, "link,spherical,revolute (default: all)")->delimiter(',');
-    app.add_option("--sizes", request.sizes, "bodies of random chains, powers of two (default 256,2048,16384,131072)")->delimiter(',');
+    app.add_option("--sizes", request.sizes, "bodies of random chains, powers of two (default 256,2048,8192,16384,32768,131072)")
+        ->delimiter(',');
     app.add_option("--repeat", request.repeat, "timed rounds (default 11)")->check(CLI::Range(1, 10000));
     app.add_option("--longest", request.longest, "bodies of the longest hard chain (default 4096)")->check(CLI::Range(16, 1 << 20));
     app.add_flag("--quick", request.quick, "every other hard chain");

@@ -155,6 +155,7 @@ std::optional<int> steps_needed(Errors const& in_double, Errors const& in_single
 }
 
 std::string outcome(Errors const& in_double, Errors const& in_single) {
+    if (!in_double.definite) return "indefinite in double too";
     if (!in_single.definite) return "indefinite";
     if (auto const steps = steps_needed(in_double, in_single)) return std::to_string(*steps) + (*steps == 1 ? " step" : " steps");
     double const first = in_single.error.front(), last = in_single.error.back();

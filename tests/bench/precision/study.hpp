@@ -64,7 +64,7 @@ AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single
 /// Steps after which single precision's error is at most twice that of double precision without refinement (but for one rounding): their
 /// roundings differ.
 std::optional<int> steps_needed(Errors const& in_double, Errors const& in_single);
-/// What becomes of single precision's matrices: "1 step", "2 steps", "stalls", "diverges", "indefinite".
+/// What becomes of single precision's matrices: "1 step", "2 steps", "not within 3", "diverges", "indefinite".
 std::string outcome(Errors const& in_double, Errors const& in_single);
 
 }  // namespace catena::precision
