@@ -77,18 +77,18 @@ if(CATENA_CCACHE)
     endforeach()
 endif()
 
-# avx2.cpp and avx512.cpp of the folder that calls it, or no_levels.cpp. One source an instruction set; optimised in every build, so that
-# nothing of it is left over that the linker could give to others.
+# avx2.cpp and avx512.cpp of the folder that calls it, or no_levels.cpp, into `target`. One source an instruction set; optimised in every
+# build, so that nothing of it is left over that the linker could give to others.
 set(CATENA_HAVE_SIMD FALSE)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
     set(CATENA_HAVE_SIMD TRUE)
 endif()
-function(catena_add_simd_sources)
+function(catena_add_simd_sources target)
     if(NOT CATENA_HAVE_SIMD)
-        target_sources(catena PRIVATE no_levels.cpp)
+        target_sources(${target} PRIVATE no_levels.cpp)
         return()
     endif()
-    target_sources(catena PRIVATE avx2.cpp avx512.cpp)
+    target_sources(${target} PRIVATE avx2.cpp avx512.cpp)
     set(flags -O3)
     if(CATENA_SANITIZE)
         list(APPEND flags -fno-sanitize=all)  # whose checks are calls that stay
@@ -96,6 +96,6 @@ function(catena_add_simd_sources)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         list(APPEND flags -Wno-uninitialized -Wno-maybe-uninitialized)  # false alarms, in gcc's own headers too (GCC bug 105593)
     endif()
-    set_source_files_properties(avx2.cpp TARGET_DIRECTORY catena PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v3")
-    set_source_files_properties(avx512.cpp TARGET_DIRECTORY catena PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v4")
+    set_source_files_properties(avx2.cpp TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v3")
+    set_source_files_properties(avx512.cpp TARGET_DIRECTORY ${target} PROPERTIES COMPILE_OPTIONS "${flags};-march=x86-64-v4")
 endfunction()

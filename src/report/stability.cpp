@@ -67,6 +67,7 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
     scene.solver = to.solver;
     try {
         ChainSystem system(scene, Axes::joint, *communicator);
+        system.evaluate();  // the first one finds its memory
         double const evaluation = seconds_of([&] { system.evaluate(); });
         to.residual_bound.push_back(system.residual_bound());
         to.bound.push_back(system.residual_bound() * exact.growth);
