@@ -61,7 +61,7 @@ class CountingSpace : public HostAccess {
     template <class Numbers>
     void exchange(Direct const&, Numbers const&) const {}
     template <int D>
-    void exchange(Communicator const&, ConstView<D>, std::int64_t, int, View<D>, std::int64_t, int) const {}
+    void exchange(Communicator const&, BodyExchange<D> const&) const {}
     /// Of the host.
     template <class T>
     class HostArray {

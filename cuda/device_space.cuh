@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cuda/device_blocks.cuh"
+#include "cuda/device_lists.cuh"
 #include "cuda/device_model.cuh"
 #include "cuda/kernel_image.hpp"
 #include "cuda/kernels.cuh"
@@ -41,40 +42,9 @@ class DeviceSpace {
     using Fixed = FixedField<D>;
     using Model = DeviceModel;
     template <class T>
-    class Levels {
-      public:
-        explicit Levels(std::vector<std::vector<T>> const& levels) : offset_{0} {
-            std::vector<T> all;
-            for (std::vector<T> const& level : levels) {
-                all.insert(all.end(), level.begin(), level.end());
-                offset_.push_back(std::ssize(all));
-            }
-            items_ = Buffer<T>(all);
-            device_offset_ = Buffer<std::int64_t>(offset_);
-        }
-        int count() const { return static_cast<int>(offset_.size()) - 1; }
-        std::int64_t size(int level) const { return offset_[level + 1] - offset_[level]; }
-        T const* begin(int level) const { return items_.data() + offset_[level]; }
-        T const* items() const { return items_.data(); }
-        std::int64_t const* offset() const { return device_offset_.data(); }
-
-      private:
-        std::vector<std::int64_t> offset_;
-        Buffer<T> items_;
-        Buffer<std::int64_t> device_offset_;
-    };
+    using Levels = DeviceLevels<T>;
     template <class T, dca::Order order>
-    class Records {
-      public:
-        explicit Records(std::int64_t count)
-            : pitch_(order == dca::Order::by_body ? gpu_order::padded(count) : (count + 31) / 32 * 32),
-              numbers_(static_cast<std::size_t>(pitch_ * dca::RecordsView<T, order>::numbers)) {}
-        dca::RecordsView<T, order> view() { return {numbers_.data(), pitch_}; }
-
-      private:
-        std::int64_t pitch_;
-        Buffer<double> numbers_;
-    };
+    using Records = DeviceRecords<T, order>;
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
@@ -216,7 +186,7 @@ class DeviceSpace {
     template <int D>
     Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
         static_assert(D <= most_numbers);
-        for_each(D, kernels::TakeNumbers{field.origin + gpu_order::place(k), field.pitch, letter_->data()});
+        for_each(D, kernels::TakeBody{field.origin + gpu_order::place(k), field.pitch, letter_->data()});
         wait();
         Vector<double, D> value;
         std::copy_n(letter_->data(), D, value.data);
@@ -224,18 +194,17 @@ class DeviceSpace {
     }
     template <int D>
     void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
-        for_each(D, kernels::PutNumbers<D>{field.origin + gpu_order::place(k), field.pitch, value});
+        for_each(D, kernels::PutBody<D>{field.origin + gpu_order::place(k), field.pitch, value});
     }
     template <int D>
-    void exchange(Communicator const& communicator, ConstView<D> from, std::int64_t i, int to, View<D> into, std::int64_t j,
-                  int source) const {
-        if (!peers_) return exchange_by_host(*this, communicator, from, i, to, into, j, source);
+    void exchange(Communicator const& communicator, BodyExchange<D> const& e) const {
+        if (!peers_) return exchange_by_host(*this, communicator, e);
         Traffic message;
         message.exchanges = 1;
-        message.sent_bytes = to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
+        message.sent_bytes = e.to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
         communicator.tally(message);
-        exchange(peers_.to_and_from(to, source, D),
-                 kernels::BodyNumbers{from.origin + gpu_order::place(i), from.pitch, into.origin + gpu_order::place(j), into.pitch});
+        exchange(peers_.to_and_from<D>(e.to, e.source), kernels::BodyNumbers{e.from.origin + gpu_order::place(e.i), e.from.pitch,
+                                                                             e.into.origin + gpu_order::place(e.j), e.into.pitch});
     }
     using Direct = PeerCall;
     Direct connect(dca::Schedule const& schedule, int width) const { return peers_.among_all(schedule, width); }

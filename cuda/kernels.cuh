@@ -19,15 +19,15 @@ __global__ void over(Item const* items, std::int64_t count, Action action) {
     if (std::int64_t const i = thread(); i < count) action(items[i]);
 }
 
-/// Item i: number i of a body, between an array and memory that the host reaches.
-struct TakeNumbers {
+/// Item i: number i of a body, between a field and memory that the host reaches or gave.
+struct TakeBody {
     double const* from;
     std::int64_t pitch;
     double* to;
     __device__ void operator()(std::int64_t i) const { to[i] = from[i * pitch]; }
 };
 template <int D>
-struct PutNumbers {
+struct PutBody {
     double* to;
     std::int64_t pitch;
     Vector<double, D> value;

@@ -13,7 +13,6 @@ std::string const& why_not() {
 std::string version() { return "none"; }
 std::string device_name() { throw ComputationError(why_not()); }
 
-int devices() { throw ComputationError(why_not()); }
 std::string choose_device(Communicator const&) { return why_not(); }
 std::int64_t free_memory(Communicator const&) { throw ComputationError(why_not()); }
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }

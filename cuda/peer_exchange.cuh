@@ -38,7 +38,9 @@ class Peers {
     }
     explicit operator bool() const { return memory_ != nullptr; }
     /// A body's numbers to one rank and from one; a negative rank means nobody.
-    PeerCall to_and_from(int to, int source, int numbers) const {
+    template <int numbers>
+    PeerCall to_and_from(int to, int source) const {
+        static_assert(numbers <= most_of_a_body);
         PeerCall call{of_bodies_};
         call.sent = numbers;
         if (to >= 0) call.add(to, 0, to == source ? numbers : 0);
@@ -88,7 +90,6 @@ __global__ void exchange(PeerCall call, Numbers numbers) {
     __syncthreads();
     if (t < call.peers) {
         using Counter = ::cuda::atomic_ref<unsigned long long, ::cuda::thread_scope_system>;
-        __threadfence_system();
         Counter(*boxes.filled(call.peer[t], boxes.rank)).store(times[t], ::cuda::std::memory_order_release);
         Counter const theirs(*boxes.filled(boxes.rank, call.peer[t]));
         while (theirs.load(::cuda::std::memory_order_acquire) < times[t]) {

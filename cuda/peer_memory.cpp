@@ -1,11 +1,9 @@
 #include "cuda/peer_memory.hpp"
 
-#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <span>
-
-#include "cuda/solver.hpp"
+#include <utility>
 
 namespace catena::cuda {
 namespace {
@@ -22,47 +20,82 @@ bool wanted(Communicator const& communicator) {
 
 bool agreed(Communicator const& communicator, bool here) { return communicator.sum(here ? 0 : 1) == 0; }
 
-/// Each rank on a GPU of its own.
-bool alone_on_gpus(Communicator const& communicator) {
-    return communicator.ranks_on_host() == communicator.size() && communicator.size() <= std::min(devices(), most_peers);
+/// One host, each rank on a GPU of its own, whatever each of them calls it.
+bool apart_on_one_host(Communicator const& communicator) {
+    if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers) return false;
+    int device = 0;
+    cudaDeviceProp gpu{};
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDeviceProperties(&gpu, device), "say what it is");
+    std::vector<cudaUUID_t> all(static_cast<std::size_t>(communicator.size()));
+    communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(all.size(), sizeof(cudaUUID_t)));
+    auto const equal = [](cudaUUID_t const& a, cudaUUID_t const& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; };
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (equal(all[i], all[j])) return false;
+    return true;
+}
+
+constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB; the widest segments of all ranks' units take three quarters of it
+
+/// Mapped memory that nobody uses now.
+std::vector<std::vector<double*>>& spare() {
+    static auto* const list = new std::vector<std::vector<double*>>;  // outlives what gives memory back
+    return *list;
+}
+
+/// Each rank's memory as this rank reaches it; empty where some rank does not reach some other.
+std::vector<double*> mapped(Communicator const& communicator) {
+    void* own = nullptr;
+    cudaIpcMemHandle_t handle{};
+    check(cudaMalloc(&own, capacity * sizeof(double)), "find memory");
+    bool const shown = cudaIpcGetMemHandle(&handle, own) == cudaSuccess;
+    std::vector<cudaIpcMemHandle_t> all(static_cast<std::size_t>(communicator.size()));
+    communicator.all_gather(std::as_bytes(std::span(&handle, 1)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(all.size(), sizeof(handle)));
+    std::vector<double*> base;
+    bool opened = agreed(communicator, shown);
+    for (std::size_t r = 0; opened && r < all.size(); ++r) {
+        void* there = own;
+        if (static_cast<int>(r) != communicator.rank())
+            opened = cudaIpcOpenMemHandle(&there, all[r], cudaIpcMemLazyEnablePeerAccess) == cudaSuccess;
+        if (opened) base.push_back(static_cast<double*>(there));
+    }
+    cudaGetLastError();  // what a failure leaves behind would fail the next call
+    if (agreed(communicator, opened)) return base;
+    for (double* const there : base)
+        if (there != own) cudaIpcCloseMemHandle(there);
+    communicator.barrier();
+    cudaFree(own);
+    return {};
 }
 
 }  // namespace
 
 std::shared_ptr<PeerMemory> PeerMemory::connect(Communicator const& communicator) {
-    if (communicator.size() == 1 || !wanted(communicator) || !agreed(communicator, alone_on_gpus(communicator))) return nullptr;
-    std::shared_ptr<PeerMemory> memory(new PeerMemory(communicator.rank(), communicator.size()));
-    return memory->open(communicator) ? memory : nullptr;
-}
-
-PeerMemory::PeerMemory(int rank, int ranks) : rank_(rank), ranks_(ranks), own_(capacity), base_(static_cast<std::size_t>(ranks), nullptr) {}
-
-PeerMemory::~PeerMemory() {
-    for (double* const base : base_)
-        if (base != nullptr && base != own_.data()) cudaIpcCloseMemHandle(base);
-}
-
-bool PeerMemory::open(Communicator const& communicator) {
-    cudaIpcMemHandle_t handle{};
-    bool shown = cudaIpcGetMemHandle(&handle, own_.data()) == cudaSuccess;
-    if (!agreed(communicator, shown)) return static_cast<void>(cudaGetLastError()), false;
-    std::vector<cudaIpcMemHandle_t> all(static_cast<std::size_t>(ranks_));
-    std::vector<std::int64_t> const bytes(all.size(), sizeof(handle));
-    communicator.all_gather(std::as_bytes(std::span(&handle, 1)), std::as_writable_bytes(std::span(all)), bytes);
-    bool const opened = open_all(all);
-    if (!opened) cudaGetLastError();  // what it left behind would fail the next call
-    return agreed(communicator, opened);
-}
-
-bool PeerMemory::open_all(std::vector<cudaIpcMemHandle_t> const& handles) {
-    for (int rank = 0; rank < ranks_; ++rank) {
-        auto const r = static_cast<std::size_t>(rank);
-        void* base = own_.data();
-        if (rank != rank_ && cudaIpcOpenMemHandle(&base, handles[r], cudaIpcMemLazyEnablePeerAccess) != cudaSuccess) return false;
-        base_[r] = static_cast<double*>(base);
+    if (communicator.size() == 1 || !wanted(communicator) || !agreed(communicator, apart_on_one_host(communicator))) return nullptr;
+    std::vector<double*> base;
+    auto const ranks = static_cast<std::size_t>(communicator.size());
+    if (agreed(communicator, !spare().empty() && spare().back().size() == ranks)) {
+        base = spare().back();
+        spare().pop_back();
+    } else {
+        base = mapped(communicator);
     }
-    return true;
+    if (base.empty()) return nullptr;
+    // What was to happen in it has happened, on all ranks.
+    check(cudaDeviceSynchronize(), "finish its work");
+    communicator.barrier();
+    double* const own = base[static_cast<std::size_t>(communicator.rank())];
+    check(cudaMemset(own, 0, capacity * sizeof(double)), "clear memory");
+    check(cudaDeviceSynchronize(), "clear memory");
+    communicator.barrier();
+    return std::shared_ptr<PeerMemory>(new PeerMemory(communicator.rank(), base));
 }
+
+PeerMemory::PeerMemory(int rank, std::vector<double*> base) : rank_(rank), ranks_(static_cast<int>(base.size())), base_(std::move(base)) {}
+PeerMemory::~PeerMemory() { spare().push_back(base_); }
 
 PeerBoxes PeerMemory::boxes(int width) {
     PeerBoxes boxes;

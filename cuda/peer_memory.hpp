@@ -35,9 +35,12 @@ struct PeerBoxes {
 #endif
 };
 
+/// Of a rank, as long as the object is there; what was mapped is kept for the next one, because memory that others have mapped is not to be
+/// freed.
 class PeerMemory {
   public:
-    /// Collective: null on all ranks where some cannot reach another's, where there is one rank, or where CATENA_GPU_EXCHANGE is `host`.
+    /// Collective: null on all ranks where some cannot reach another's, where ranks share GPUs, where there is one rank, or where
+    /// CATENA_GPU_EXCHANGE is `host`.
     static std::shared_ptr<PeerMemory> connect(Communicator const&);
     ~PeerMemory();
     PeerMemory(PeerMemory const&) = delete;
@@ -49,14 +52,10 @@ class PeerMemory {
     PeerBoxes boxes(int width);
 
   private:
-    PeerMemory(int rank, int ranks);
-    bool open(Communicator const&);
-    bool open_all(std::vector<cudaIpcMemHandle_t> const&);
+    PeerMemory(int rank, std::vector<double*> base);
 
-    static constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB
     int rank_, ranks_;
-    Buffer<double> own_;
-    std::vector<double*> base_;
+    std::vector<double*> base_;  // of each rank
     std::int64_t used_ = 0;
 };
 

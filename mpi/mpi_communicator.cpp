@@ -93,7 +93,11 @@ class MpiCommunicator final : public Communicator {
     int rank_on_host() const override { return on_host_.rank; }
     std::int64_t rounds() const override { return rounds_; }
     Traffic traffic() const override { return traffic_; }
-    void tally(Traffic const& messages) const override { traffic_ += messages; }
+    void tally(Traffic const& messages) const override {
+        rounds_ += messages.gathers + messages.exchanges;
+        traffic_ += messages;
+        if (messages.gathers > 0) traffic_ += way_.within_and_between_hosts(messages.gathered_bytes);
+    }
     GatherWay const& gather_way() const override { return way_; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,

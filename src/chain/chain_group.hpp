@@ -121,15 +121,23 @@ LocalTip local_tip(ChainGroup const&, ChainSpec const&, std::int64_t last);
 /// That the tips belong to, local, in their order.
 std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const&);
 
-/// Body i of `from` to rank `to` and from rank `source` into body j of `into`; a negative rank means nobody. By the host: `access` gets and
-/// puts bodies, wherever they are.
+/// Body i of `from` to rank `to`, and from rank `source` into body j of `into`; a negative rank means nobody.
+template <int D>
+struct BodyExchange {
+    ConstView<D> from;
+    std::int64_t i;
+    int to;
+    View<D> into;
+    std::int64_t j;
+    int source;
+};
+/// By the host: `access` gets and puts bodies, wherever they are.
 template <int D, class Access>
-void exchange_by_host(Access const& access, Communicator const& communicator, ConstView<D> from, std::int64_t i, int to, View<D> into,
-                      std::int64_t j, int source) {
-    Vector<double, D> const send = access.get(from, i);
+void exchange_by_host(Access const& access, Communicator const& communicator, BodyExchange<D> const& e) {
+    Vector<double, D> const send = access.get(e.from, e.i);
     Vector<double, D> receive = send;
-    communicator.exchange(std::as_bytes(std::span(send.data)), to, std::as_writable_bytes(std::span(receive.data)), source);
-    if (source >= 0) access.put(into, j, receive);
+    communicator.exchange(std::as_bytes(std::span(send.data)), e.to, std::as_writable_bytes(std::span(receive.data)), e.source);
+    if (e.source >= 0) access.put(e.into, e.j, receive);
 }
 /// Access to a field's bodies on the host.
 struct HostAccess {
@@ -143,9 +151,8 @@ struct HostAccess {
     }
     /// exchange_by_host(), or a shorter way.
     template <int D>
-    void exchange(Communicator const& communicator, ConstView<D> from, std::int64_t i, int to, View<D> into, std::int64_t j,
-                  int source) const {
-        exchange_by_host(*this, communicator, from, i, to, into, j, source);
+    void exchange(Communicator const& communicator, BodyExchange<D> const& e) const {
+        exchange_by_host(*this, communicator, e);
     }
 };
 /// Fills halos of a field: entry size from the outboard neighbour's first body, entry -1 from the inboard neighbour's last one. `access`
@@ -153,12 +160,12 @@ struct HostAccess {
 template <int D, class Access = HostAccess>
 void exchange_from_outboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    access.template exchange<D>(communicator, field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard);
+    access.exchange(communicator, BodyExchange<D>{field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard});
 }
 template <int D, class Access = HostAccess>
 void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
     if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    access.template exchange<D>(communicator, field, group.size - 1, group.neighbour_outboard, field, -1, group.neighbour_inboard);
+    access.exchange(communicator, BodyExchange<D>{field, group.size - 1, group.neighbour_outboard, field, -1, group.neighbour_inboard});
 }
 
 /// A canonical unit of the tree on this rank: what composes along a chain does so unit by unit, whatever the number of ranks.

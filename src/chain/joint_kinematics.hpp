@@ -153,7 +153,7 @@ class JointKinematics {
         if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
         View<12> const meeting = next_meeting_.view();
-        space_.template exchange<12>(communicator_, meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard);
+        space_.exchange(communicator_, BodyExchange<12>{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard});
     }
     void begin_at_ground() {
         Motion* const before = before_.data();

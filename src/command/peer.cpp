@@ -10,8 +10,10 @@
 
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 #include "command/helpers.hpp"
 #include "command/text.hpp"
@@ -19,6 +21,8 @@
 
 namespace catena::command {
 namespace {
+
+constexpr std::size_t longest_answer = 1 << 16;
 
 PeerProgram python_peer(std::string const& name, std::string const& module, std::string const& package,
                         std::vector<std::string> const& options) {
@@ -90,8 +94,11 @@ bool Peer::is_ready() {
     std::string const answer = line(limits_.set_up, "building the chain and evaluating it once");
     if (!stopped_.empty()) return false;
     description_ = Json::parse(answer, nullptr, false);
-    if (description_.is_object() && description_.contains("stops")) stop(description_.at("stops").get<std::string>());
-    if (!description_.is_object()) stop("it said what cannot be read: " + answer);
+    auto const is_text = [this](char const* key) { return !description_.contains(key) || description_.at(key).is_string(); };
+    if (!description_.is_object() || !is_text("stops") || !is_text("version") || !is_text("method"))
+        stop("it said what cannot be read: " + answer);
+    else if (description_.contains("stops"))
+        stop(description_.at("stops").get<std::string>());
     return stopped_.empty();
 }
 
@@ -105,7 +112,10 @@ double Peer::time(int evaluations) {
     if (!stopped_.empty()) return -1;
     ask(std::to_string(evaluations) + "\n");
     std::string const answer = line(evaluations * limits_.evaluation, "evaluating");
-    return stopped_.empty() ? std::stod(answer) : -1;
+    char* end = nullptr;
+    double const seconds = std::strtod(answer.c_str(), &end);
+    if (stopped_.empty() && (end == answer.c_str() || !(seconds >= 0))) stop("it said what is no time: " + answer);
+    return stopped_.empty() ? seconds : -1;
 }
 
 std::vector<double> Peer::accelerations() const {
@@ -116,8 +126,14 @@ std::vector<double> Peer::accelerations() const {
     return found;
 }
 
-/// Where nobody is left, no answer comes.
-void Peer::ask(std::string const& question) const { ::send(talk_, question.data(), question.size(), MSG_NOSIGNAL); }
+/// Where nobody is left, no answer comes. What was said before the question is no answer to it.
+void Peer::ask(std::string const& question) {
+    char some[100];
+    ssize_t const count = ::recv(talk_, some, sizeof(some), MSG_DONTWAIT | MSG_PEEK);
+    if (count > 0) rest_.append(some, static_cast<std::size_t>(count));
+    if (!rest_.empty()) stop("it said what nobody asked for: " + rest_.substr(0, 100));
+    ::send(talk_, question.data(), question.size(), MSG_NOSIGNAL);
+}
 
 /// The next line it says, within `patience`.
 std::string Peer::line(std::chrono::duration<double> patience, std::string const& doing) {
@@ -135,15 +151,19 @@ std::string Peer::line(std::chrono::duration<double> patience, std::string const
         char some[4096];
         ssize_t const count = ready > 0 ? ::read(talk_, some, sizeof(some)) : 0;
         if (count > 0) rest_.append(some, static_cast<std::size_t>(count));
+        if (rest_.size() > longest_answer) stop("it does not end its line: " + rest_.substr(0, 100));
         if (ready == 0) stop(fmt::format("{} takes more than {}", doing, duration_text(patience.count())));
         if (ready > 0 && count <= 0) stop(how_it_ended());
     }
     return "";
 }
 
+/// It does not speak any more; should it live on for a second, it is ended.
 std::string Peer::how_it_ended() {
     int status = 0;
-    while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
+    for (int tenths = 0; ::waitpid(child_, &status, WNOHANG) == 0; ++tenths) {
+        if (tenths == 10) return "it closed its output and went on";
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     child_ = -1;
     std::string const said = last_line(errors_file_);

@@ -47,7 +47,7 @@ class Peer {
 
   private:
     std::string line(std::chrono::duration<double> patience, std::string const& doing);
-    void ask(std::string const& question) const;
+    void ask(std::string const& question);
     void stop(std::string const& why);
     std::string how_it_ended();
 

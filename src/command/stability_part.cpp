@@ -100,10 +100,13 @@ ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
         "Stability suite",
         "Medians over the seeds, the worst of all backends and handle kinds. Growth: by how much roundings of the data and of each body's "
         "and joint's equations change the answer; condition: of the joint-space inertia, or of the links' matrix. Bounds: of the residual "
-        "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both hold. BEYOND: 2^-53 growth is above 1e-3, so that "
-        "these equations in double precision determine fewer than three digits; the answer is still that of a chain nearby, or refused. "
-        "REFINED: both bounds hold after two steps of refinement alone (catena solve --refine 2). Unless BEYOND, the forward error must "
-        "also be at most the larger of its bound and 4 times the best of others'.",
+        "32 depth(tree) 2^-53, of the forward error that times the growth. VALID: both hold. REFINED: they hold "
+        "after two steps of refinement alone (catena solve --refine 2). After these the error must also be at most the larger of 4 times "
+        "the best of others' (articulated bodies in double, other programs) and the residual's bound, else the case is INVALID. Where "
+        "2^-53 "
+        "growth is above 1e-3, the equations of joint forces in double determine fewer than three digits, and the answer is that of a "
+        "chain "
+        "nearby, or refused: BEYOND where others have none either, LOST where they do.",
         {},
         Json::array()};
     for (StabilityStudy const& study : studies) {

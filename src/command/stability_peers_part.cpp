@@ -9,12 +9,6 @@
 namespace catena::command {
 namespace {
 
-double worst_error(StabilityStudy const& study) {
-    double worst = 0;
-    for (StabilityPoint const& p : study.points) worst = larger(worst, p.judged_error());
-    return worst;
-}
-
 double least_bound(StabilityStudy const& study) {
     double least = std::numeric_limits<double>::infinity();
     for (StabilityPoint const& p : study.points)
@@ -25,28 +19,24 @@ double least_bound(StabilityStudy const& study) {
 /// Empty where there is none: a bound of no answer, an answer of a peer that has none.
 std::string number(double value) { return std::isfinite(value) ? exponent(value) : ""; }
 
-/// In how many cases of a peer Catena's worst error is the smaller one.
+/// In how many cases of a peer Catena's worst error is the smaller one, as it comes and after refinement.
 struct Score {
-    int ran = 0, within = 0, closer = 0;  // within: not BEYOND
+    int ran = 0, within = 0, closer = 0;  // within: neither BEYOND nor LOST
     int refined = 0, closer_refined = 0;  // within, where all points were refined
 
     void add(StabilityStudy const& study, double error) {
         ++ran;
-        if (study.verdict() == Verdict::beyond) return;
+        if (study.beyond()) return;
         ++within;
-        closer += worst_error(study) < error ? 1 : 0;
-        double worst = 0;
-        for (StabilityPoint const& p : study.points) {
-            if (p.refined.empty()) return;
-            worst = larger(worst, p.refined.back().error);
-        }
+        closer += study.worst(&StabilityPoint::plain_error) < error ? 1 : 0;
+        if (std::any_of(study.points.begin(), study.points.end(), [](StabilityPoint const& p) { return p.refined.empty(); })) return;
         ++refined;
-        closer_refined += worst < error ? 1 : 0;
+        closer_refined += study.worst(&StabilityPoint::last_error) < error ? 1 : 0;
     }
 };
 
 ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& peers) {
-    ReportSection section{"peers", Table({"", "version", "cases", "not BEYOND", "Catena is closer", "refined twice"}, {0, 1}), {}};
+    ReportSection section{"peers", Table({"", "version", "cases", "not beyond", "Catena is closer", "refined twice"}, {0, 1}), {}};
     for (Json const& peer : peers) {
         if (peer.contains("not_run")) continue;
         std::string const name = peer.at("name");
@@ -60,6 +50,13 @@ ReportSection scores(std::vector<StabilityStudy> const& studies, Json const& pee
     return section;
 }
 
+/// Without where in its own source a program says so.
+std::string shortened(std::string const& why) {
+    std::size_t const place = why.find(" thrown at "), text = place == std::string::npos ? place : why.find(": ", place + 11);
+    std::string const rest = text == std::string::npos ? why : why.substr(text + 2);
+    return rest.size() > 100 ? rest.substr(0, 100) + " ..." : rest;
+}
+
 /// The first case of a family that a peer did not do.
 ReportSection stops(std::vector<StabilityStudy> const& studies) {
     ReportSection section{"not done", Table({"", "family", "from", "why"}, {0, 1, 2, 3}), {}};
@@ -69,7 +66,7 @@ ReportSection stops(std::vector<StabilityStudy> const& studies) {
             std::string const key = p.name + "/" + study.family;
             if (p.why_not.empty() || std::find(said.begin(), said.end(), key) != said.end()) continue;
             said.push_back(key);
-            section.table.add({p.name, study.family, study.name, p.why_not.size() > 100 ? p.why_not.substr(0, 100) + " ..." : p.why_not});
+            section.table.add({p.name, study.family, study.name, shortened(p.why_not)});
         }
     return section;
 }
@@ -77,24 +74,26 @@ ReportSection stops(std::vector<StabilityStudy> const& studies) {
 }  // namespace
 
 ReportPart peers_part(std::vector<StabilityStudy> const& studies, Json peers) {
-    ReportPart part{"peers",
-                    "",
-                    "Stability suite by other programs",
-                    "Forward errors, medians over the seeds. Catena: the worst of all backends and handle kinds, after two steps of "
-                    "refinement where the verdict is REFINED. Bound: 32 depth(tree) 2^-53 times the growth. Ratio: Catena's error over "
-                    "the larger of its bound and 4 times the best of the others, articulated bodies in double among them; above 1 a case "
-                    "is INVALID unless it is BEYOND.",
-                    {scores(studies, peers)},
-                    std::move(peers)};
-    std::vector<std::string> columns{"case", "bound", "Catena", "articulated bodies"};
+    ReportPart part{
+        "peers",
+        "",
+        "Stability suite by other programs",
+        "Forward errors, medians over the seeds. Catena: the worst of all backends and handle kinds, as it comes and after two "
+        "steps of refinement. Ratio: the latter over the larger of 4 times the best of the others, articulated bodies in double "
+        "among them, and the residual's bound (where nothing is refined: Catena's error, the bound times the growth). Above 1 a "
+        "case is INVALID, unless these equations lose all digits: LOST where others keep them, else BEYOND.",
+        {scores(studies, peers)},
+        std::move(peers)};
+    std::vector<std::string> columns{"case", "bound", "Catena", "refined", "articulated bodies"};
     if (!studies.empty())
         for (StabilityPeer const& p : studies.front().peers) columns.push_back(p.name);
     columns.emplace_back("ratio");
     columns.emplace_back();
     for (StabilityStudy const& study : studies) {
-        double const worst = worst_error(study);
+        double const worst = study.worst(&StabilityPoint::plain_error);
+        bool const refined = std::all_of(study.points.begin(), study.points.end(), [](auto const& p) { return !p.refined.empty(); });
         std::vector<std::string> row{study.name, number(least_bound(study)), std::isinf(worst) ? "refused" : exponent(worst),
-                                     number(study.oracle_error)};
+                                     refined ? number(study.worst(&StabilityPoint::last_error)) : "", number(study.oracle_error)};
         for (StabilityPeer const& p : study.peers) row.push_back(number(p.error));
         row.push_back(number(study.against_peers()));
         row.emplace_back(name_of(study.verdict()));

@@ -157,7 +157,7 @@ class HostSpace : public HostAccess {
         return worst;
     }
 
-    /// One item of an array, from and to the host; done when they return.
+    /// One item of an array, from and to the host; get() and what the host gave to put() are done with when they return.
     template <class T>
     T get(T const* place) const {
         return *place;

@@ -263,6 +263,7 @@ class TreeSolver final : public ChainSolver {
         auto const start = Stopwatch::now();
         (shown.units.show(space_, shown.numbers), ...);
         (shown.units.bring(space_, communicator_, shown.numbers), ...);
+        if (measured_) space_.wait();
         report_.exchange_seconds += Stopwatch::now() - start;
     }
     Shown<typename Sweeps::Matrices> of_matrices() {

@@ -49,7 +49,7 @@ void JointDynamicsIn<Space>::set_ends() {
         if (t.neighbour < 0) continue;
         bool const has_last = t.body >= 0;
         View<13> const own = (has_last ? last_end_ : other_end_).view(), other = (has_last ? other_end_ : last_end_).view();
-        space_.template exchange<13>(communicator_, own, i, t.neighbour, other, i, t.neighbour);
+        space_.exchange(communicator_, BodyExchange<13>{own, i, t.neighbour, other, i, t.neighbour});
     }
     space_.for_each(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) { t.set_meeting(i); });
 }
@@ -73,7 +73,7 @@ void JointDynamicsIn<Space>::exchange_ends(JointChains const& c) {
     if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
     space_.for_each(1, [c, last = group_.size - 1] CATENA_LAMBDA(std::int64_t) { c.outboard_end.store(0, c.outboard_end_of(last)); });
     View<4> const end = outboard_end_.view();
-    space_.template exchange<4>(communicator_, end, 0, group_.neighbour_outboard, end, -1, group_.neighbour_inboard);
+    space_.exchange(communicator_, BodyExchange<4>{end, 0, group_.neighbour_outboard, end, -1, group_.neighbour_inboard});
 }
 
 template <class Space>

@@ -56,7 +56,7 @@ class RingEnds {
   private:
     void exchange(std::int64_t i, LocalRing const& ring) {
         View<3> const own = (ring.first >= 0 ? first_ : last_).view(), other = (ring.first >= 0 ? last_ : first_).view();
-        space_.template exchange<3>(communicator_, own, i, ring.neighbour, other, i, ring.neighbour);
+        space_.exchange(communicator_, BodyExchange<3>{own, i, ring.neighbour, other, i, ring.neighbour});
     }
 
     ChainGroup const& group_;

@@ -142,15 +142,15 @@ char const* name_of(Verdict verdict) {
             return "REFINED";
         case Verdict::beyond:
             return "BEYOND";
+        case Verdict::lost:
+            return "LOST";
         default:
             return "INVALID";
     }
 }
 
-double StabilityPoint::judged_error() const {
-    if (!refused.empty()) return infinite;
-    return !holds() && holds_refined() ? refined.back().error : error;
-}
+double StabilityPoint::plain_error() const { return refused.empty() ? error : infinite; }
+double StabilityPoint::last_error() const { return refused.empty() && !refined.empty() ? refined.back().error : plain_error(); }
 
 double StabilityStudy::best_of_others() const {
     double best = std::isfinite(oracle_error) ? oracle_error : infinite;
@@ -159,21 +159,28 @@ double StabilityStudy::best_of_others() const {
     return best;
 }
 
+double StabilityStudy::worst(double (StabilityPoint::*error)() const) const {
+    double worst = 0;
+    for (StabilityPoint const& p : points) worst = larger(worst, (p.*error)());
+    return worst;
+}
+
 double StabilityStudy::against_peers() const {
     double const allowed = 4 * best_of_others();
     double worst = 0;
     for (StabilityPoint const& p : points) {
-        double const error = p.judged_error();
-        if (error != 0) worst = larger(worst, error / std::max(allowed, p.residual_bound * growth));
+        double const bound = p.refined.empty() ? p.residual_bound * growth : p.residual_bound;
+        if (double const error = p.last_error(); error != 0) worst = larger(worst, error / std::max(allowed, bound));
     }
     return worst;
 }
 
-/// Beyond double precision an answer must still be the exact one of a chain nearby, or refused.
+/// Where the equations lose all digits an answer must still be the exact one of a chain nearby, or refused; whether others keep them is
+/// said.
 Verdict StabilityStudy::verdict() const {
     bool const all_hold = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds(); });
     bool const nearby = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.of_residual_bound <= 1; });
-    if (beyond()) return nearby ? Verdict::beyond : Verdict::invalid;
+    if (beyond()) return !nearby ? Verdict::invalid : best_of_others() <= 1e-3 ? Verdict::lost : Verdict::beyond;
     if (!(against_peers() <= 1)) return Verdict::invalid;
     if (all_hold) return Verdict::valid;
     bool const with_refinement =

@@ -1,8 +1,9 @@
 // How far every backend can be trusted on a hard chain: backward and forward error beside their bounds, over several seeds.
 //
 // A backend has solved exactly a chain whose data and equations are off by its local residual; the answer is then off by the residual times
-// the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth. Other
-// programs ("peers") may solve the same chains: where the best of them is above a quarter of that bound, 4 times its error is allowed.
+// the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth.
+// Articulated bodies in double and other programs ("peers") solve the same chains: after refinement, which brings back what the growth
+// took, the error may be 4 times the best of theirs, or that of the residual's bound alone.
 #pragma once
 
 #include <functional>
@@ -27,8 +28,9 @@ struct StabilityPoint {
     bool holds_refined() const {
         return refused.empty() && !refined.empty() && refined.back().of_residual_bound <= 1 && refined.back().of_bound <= 1;
     }
-    /// That of the refined answer where this alone holds; infinite where there is none.
-    double judged_error() const;
+    /// Of the answer as it comes, or of that after the last step of refinement; infinite where there is none.
+    double plain_error() const;
+    double last_error() const;
 };
 
 /// Another program's answer to a scene, laid out as Solution::acceleration, or why there is none.
@@ -46,7 +48,7 @@ struct StabilityPeer {
     std::string why_not = {};  // of a seed without an answer; empty: all had one
 };
 
-enum class Verdict { valid, refined, beyond, invalid };
+enum class Verdict { valid, refined, beyond, lost, invalid };
 
 struct StabilityStudy {
     std::string family, name, reference;
@@ -59,10 +61,13 @@ struct StabilityStudy {
     std::vector<StabilityPeer> peers = {};
     /// The least error of articulated bodies in double and of the peers that have one.
     double best_of_others() const;
-    /// The worst judged_error() over the larger of 4 times best_of_others() and the bound; medians.
+    /// The worst last_error() over what it may be: the larger of 4 times best_of_others() and the bound of the residual, where there is no
+    /// refinement that times the growth; medians.
     double against_peers() const;
-    /// Beyond double precision: data rounded to 53 bits determine fewer than three digits of the answer, whoever computes it.
+    /// The equations of joint forces in double determine fewer than three digits of the answer.
     bool beyond() const { return growth * 0x1p-53 > 1e-3; }
+    /// The worst over all points; infinite where one has no answer.
+    double worst(double (StabilityPoint::*error)() const) const;
     Verdict verdict() const;
 };
 char const* name_of(Verdict);

@@ -176,11 +176,8 @@ inline bool is_implicit(Integrator i) {
 }
 /// An implicit integrator's spring K acts within a step h as a rotor of inertia c h^2 K in its joint: c. 1/4 is the least that is stable
 /// where K is constant (formulas, "Implicit joint springs"), 1/2 leaves room for what bending and turning add to K. Under a thermostat the
-/// joint turns by its thermal angle / sqrt(c) in a step, and what is not harmonic within that shifts equilibrium: 2 has a quarter of it, 8 a
-/// sixteenth, for chains in absolute coordinates, whose joints turn as freely as their bodies (tests/physics/dna_rod.py).
-inline double rotor_of_spring(Integrator i) {
-    return i == Integrator::staggered ? 0.5 : i == Integrator::implicit_g_baoab ? 8.0 : 2.0;
-}
+/// joint turns by its thermal angle / sqrt(c) in a step, and what is not harmonic within that shifts equilibrium: 2 has a quarter of it.
+inline double rotor_of_spring(Integrator i) { return i == Integrator::staggered ? 0.5 : 2.0; }
 /// Whether it has a thermostat.
 inline bool is_langevin(Integrator i) { return i == Integrator::baoab || i == Integrator::implicit_baoab || i >= Integrator::g_baoab; }
 

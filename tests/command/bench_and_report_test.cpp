@@ -171,7 +171,7 @@ TEST(Report, TheStabilitySuiteGivesAVerdictForEveryCase) {
         EXPECT_EQ(verdict == "REFINED", thin) << each.dump();
         EXPECT_NE(verdict, "INVALID") << each.dump();
         EXPECT_GE(each.at("growth").get<double>(), 1);
-        if (verdict != "BEYOND") {
+        if (verdict != "BEYOND" && verdict != "LOST") {
             EXPECT_LE(each.at("against_peers").get<double>(), 1) << each.dump();  // of articulated bodies alone
         }
         EXPECT_TRUE(each.at("peers").empty());

@@ -117,5 +117,25 @@ TEST(PeerAnswers, OneThatIsTooSlowIsNotAskedAgain) {
     }
 }
 
+/// None ends the suite, or makes it wait for ever.
+TEST(PeerAnswers, NonsenseIsWhyThereIsNoAnswer) {
+    // The first one has said too much long before the second question: the deaf one takes a second.
+    PeerAnswers peers(
+        {made_up("hasty", R"(: > "$2"; echo '{"version": "0"}'; echo '{"version": "0"}'; exec sleep 60)"),
+         made_up("number", R"(echo '{"stops": 3}'; sleep 60)"), made_up("version", R"(echo '{"version": 4}'; sleep 60)"),
+         made_up("words", "echo hello; sleep 60"), made_up("deaf", "exec >&- <&-; sleep 60"), made_up("endless", "exec cat /dev/zero")},
+        limits_of_suite());
+    StabilityCase const first = case_of("coil", "16 bodies"), second = case_of("coil", "64 bodies");
+    std::vector<PeerAnswer> const answers = peers(first, first.scene(1));
+    ASSERT_EQ(answers.size(), 6U);
+    EXPECT_EQ(answers[0].why_not, "");
+    char const* const begins[] = {"it said what cannot be read", "it said what cannot be read", "it said what cannot be read",
+                                  "it closed its output", "it does not end its line"};
+    for (std::size_t i = 0; i < 5; ++i)
+        EXPECT_TRUE(answers[i + 1].why_not.starts_with(begins[i])) << answers[i + 1].name << ": " << answers[i + 1].why_not;
+    std::string const why_not = peers(second, second.scene(1)).at(0).why_not;
+    EXPECT_TRUE(why_not.starts_with("it said what nobody asked for")) << why_not;
+}
+
 }  // namespace
 }  // namespace catena::test

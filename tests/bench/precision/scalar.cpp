@@ -1,3 +1,5 @@
+#include "dca/host_space.hpp"
+#define CATENA_WHOLE_SWEEPS CATENA_WHOLE
 #include "tests/bench/precision/sweeps.hpp"
 
 namespace catena::precision {

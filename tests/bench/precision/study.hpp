@@ -50,7 +50,7 @@ class Problem {
     ExactSolution exact_;
 };
 
-/// Processor seconds, medians; in one run, in turns.
+/// Processor seconds, medians; in one run, in turns, each after one of its own that is not timed.
 struct Times {
     double matrix = 0, bias = 0, defect = 0;  // a sweep; what a step of refinement looks at
     std::array<double, most_steps + 1> evaluation{};
@@ -64,7 +64,8 @@ AllTimes times_of(ChainInArrays const& in_double, ChainInArrays const& in_single
 /// Steps after which single precision's error is at most twice that of double precision without refinement (but for one rounding): their
 /// roundings differ.
 std::optional<int> steps_needed(Errors const& in_double, Errors const& in_single);
-/// What becomes of single precision's matrices: "1 step", "2 steps", "not within 3", "diverges", "indefinite".
+/// What becomes of single precision's matrices: "1 step", "2 steps", "not within 3", "diverges", "not finite" (its error is
+/// infinite or not a number), "indefinite".
 std::string outcome(Errors const& in_double, Errors const& in_single);
 
 }  // namespace catena::precision

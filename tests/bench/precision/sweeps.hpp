@@ -4,6 +4,11 @@
 #include "tests/bench/precision/bodies.hpp"
 #include "tests/bench/precision/kernels.hpp"
 
+/// Vectors in every build: what is left over the linker could give to others.
+#if !defined(CATENA_WHOLE_SWEEPS)
+#define CATENA_WHOLE_SWEEPS [[gnu::flatten]]
+#endif
+
 namespace catena::precision {
 
 /// `Kind` in Real: Beads or Bodies; `Wide`: double, with as many lanes.
@@ -207,19 +212,19 @@ class Sweeps {
 };
 
 template <class Real, class Wide, class Kind>
-[[gnu::flatten]] bool assemble(Work const& work) {
+CATENA_WHOLE_SWEEPS bool assemble(Work const& work) {
     return Sweeps<Real, Wide, Kind>(work).assemble();
 }
 template <class Real, class Wide, class Kind>
-[[gnu::flatten]] void solve(Work const& work) {
+CATENA_WHOLE_SWEEPS void solve(Work const& work) {
     Sweeps<Real, Wide, Kind>(work).solve();
 }
 template <class Real, class Wide, class Kind>
-[[gnu::flatten]] void correct(Work const& work) {
+CATENA_WHOLE_SWEEPS void correct(Work const& work) {
     Sweeps<Real, Wide, Kind>(work).correct();
 }
 template <class Real, class Wide, class Kind>
-[[gnu::flatten]] void find_defect(Work const& work) {
+CATENA_WHOLE_SWEEPS void find_defect(Work const& work) {
     Sweeps<Real, Wide, Kind>(work).find_defect();
 }
 
