@@ -47,7 +47,7 @@ TEST(Bench, FiguresStandBesideTheChapters) {
         EXPECT_EQ(point.at("upload").is_null(), point.at("gpu_levels").is_null());
     }
     EXPECT_EQ(json.at("chapter").at("milliseconds").at("solve").at(0), Json({8, 0.1934, 0.1582, 1.033, 2.582, 2.585, 2.581}));
-    EXPECT_EQ(json.at("left_out").size() > 0, true);
+    EXPECT_FALSE(json.at("left_out").empty());
     for (char const* const picture : {"figure-2.3-full.svg", "figure-2.5-full.svg", "figure-2.6-projected.svg"})
         EXPECT_TRUE(std::filesystem::exists(folder / (std::string("figures/") + picture))) << picture;
     EXPECT_EQ(json.at("figure_2.3").at(0).at("levels").size(), 4U);
