@@ -63,7 +63,7 @@ std::string choose_device(Communicator const& communicator) {
 std::int64_t free_memory(Communicator const& communicator) {
     std::size_t free = 0, all = 0;
     check(cudaMemGetInfo(&free, &all), "say how much memory is free");
-    int const sharing = (communicator.ranks_on_host() + devices() - 1) / devices();
+    int const gpus = devices(), sharing = (communicator.ranks_on_host() + gpus - 1) / gpus;
     return static_cast<std::int64_t>(free) / sharing;
 }
 

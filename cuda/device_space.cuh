@@ -24,7 +24,7 @@ class DeviceSpace {
     DeviceSpace()
         : stream_(std::make_shared<Stream>()),
           answer_(std::make_shared<Buffer<unsigned long long>>(1)),
-          letter_(std::make_shared<PinnedBuffer<double>>(most_numbers)) {}
+          letter_(std::make_shared<PinnedBuffer<double>>(most_of_a_body)) {}
     /// With ways to other ranks' GPUs, where there are any. Collective.
     explicit DeviceSpace(Communicator const& communicator) : DeviceSpace() { peers_ = Peers(communicator); }
     cudaStream_t stream() const { return stream_->get(); }
@@ -185,7 +185,7 @@ class DeviceSpace {
     }
     template <int D>
     Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
-        static_assert(D <= most_numbers);
+        static_assert(D <= most_of_a_body);
         for_each(D, kernels::TakeBody{field.origin + gpu_order::place(k), field.pitch, letter_->data()});
         wait();
         Vector<double, D> value;
@@ -277,7 +277,6 @@ class DeviceSpace {
     int threads() const { return 1; }
 
   private:
-    static constexpr int most_numbers = 16;  // of a body that the host asks for
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
     static void started() { check(cudaGetLastError(), "start a kernel"); }

@@ -65,7 +65,6 @@ class Peers {
     }
 
   private:
-    static constexpr int most_of_a_body = 16;
     std::shared_ptr<PeerMemory> memory_;
     PeerBoxes of_bodies_;
 };

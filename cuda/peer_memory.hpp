@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "cuda/owners.hpp"
+#include "dca/host_device.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena::cuda {
 
 inline constexpr int most_peers = 16;
+inline constexpr int most_of_a_body = 16;  // numbers of a field
 
 /// For kernels: where each rank has what pairs of ranks exchange. Rank r keeps for every rank s: two boxes of `width` numbers that s fills
 /// in turns, how often s has filled one, and how often they have exchanged.
@@ -20,19 +22,17 @@ struct PeerBoxes {
     int rank = 0, ranks = 0, width = 0;
 
     static std::int64_t numbers(int ranks, int width) { return std::int64_t{2} * ranks * (width + 1); }
-#if defined(__CUDACC__)
     /// Of rank `at`, filled by rank `from`.
-    __device__ double* box(int at, int from, unsigned long long times) const {
+    CATENA_HD double* box(int at, int from, unsigned long long times) const {
         return base[at] + (2 * from + static_cast<int>(times & 1)) * static_cast<std::int64_t>(width);
     }
-    __device__ unsigned long long* filled(int at, int from) const { return counters(at) + from; }
-    __device__ unsigned long long* exchanged(int with) const { return counters(rank) + ranks + with; }
+    CATENA_HD unsigned long long* filled(int at, int from) const { return counters(at) + from; }
+    CATENA_HD unsigned long long* exchanged(int with) const { return counters(rank) + ranks + with; }
 
   private:
-    __device__ unsigned long long* counters(int at) const {
+    CATENA_HD unsigned long long* counters(int at) const {
         return reinterpret_cast<unsigned long long*>(base[at] + std::int64_t{2} * ranks * width);
     }
-#endif
 };
 
 /// Of a rank, as long as the object is there; what was mapped is kept for the next one, because memory that others have mapped is not to be

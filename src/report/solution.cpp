@@ -67,6 +67,15 @@ Solution solution_of(ChainSystem& system) {
     return s;
 }
 
+Solution layout_of(Scene const& scene) {
+    Solution s;
+    s.acceleration_offset.push_back(0);
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.size(); ++k)
+            s.acceleration_offset.push_back(s.acceleration_offset.back() + accelerations_of(chain, k));
+    return s;
+}
+
 double largest_difference(Scene const& scene, Solution const& found, std::vector<double> const& reference) {
     enum { angular, base, bead, sliding, classes };
     double difference[classes] = {}, largest[classes] = {};

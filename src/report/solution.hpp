@@ -27,6 +27,8 @@ struct Solution {
 
 /// Of the last evaluate(). Collective.
 Solution solution_of(ChainSystem&);
+/// Its acceleration_offset alone.
+Solution layout_of(Scene const&);
 
 /// Smallest handle kind that holds the chain.
 char const* kind_of(ChainSpec const&);

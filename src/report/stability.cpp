@@ -45,16 +45,6 @@ std::vector<Variant> variants_of(std::vector<Backend> const& backends, std::vect
     return all;
 }
 
-/// Where there is no layout yet, for chains of which a backend finds none.
-Solution layout_of(Scene const& scene) {
-    Solution s;
-    s.acceleration_offset.push_back(0);
-    for (ChainSpec const& chain : scene.chains)
-        for (std::size_t k = 0; k < chain.size(); ++k)
-            s.acceleration_offset.push_back(s.acceleration_offset.back() + accelerations_of(chain, k));
-    return s;
-}
-
 template <class Action>
 double seconds_of(Action const& action) {
     double const start = seconds_now();

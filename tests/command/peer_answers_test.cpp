@@ -38,21 +38,13 @@ Scene with_springs_and_dampers(Scene scene) {
     return scene;
 }
 
-Solution layout_of(Scene const& scene) {
-    Solution layout;
-    layout.acceleration_offset.push_back(0);
-    for (std::size_t k = 0; k < scene.chains[0].size(); ++k)
-        layout.acceleration_offset.push_back(layout.acceleration_offset.back() + accelerations_of(scene.chains[0], k));
-    return layout;
-}
-
 /// Free bodies, beads, springs, dampers, wrenches and torques go through the table and back, in a process that takes them all.
 TEST(PeerAnswers, ThoseThatAreHereAgree) {
     Peer::Limits limits = limits_of_suite();
     limits.memory_bytes = std::numeric_limits<std::int64_t>::max();  // a sanitizer takes what addresses there are
     PeerAnswers peers(peers_of_suite(), limits);
     for (std::string const& line : peers.not_run()) std::puts(line.c_str());
-    if (peers.not_run().size() == peers.json().size()) GTEST_SKIP() << "no peer is here";
+    if (peers.not_run().size() == peers.json().size()) GTEST_SKIP() << "NOT RUN: no peer is here";
     double const allowed = std::sqrt(0x1p-53);  // a mistake in the table changes more; roundings are a peer's own affair
     std::vector<Scene> scenes{random_chain("link", "free")};
     for (char const* const joint : {"revolute", "spherical"})

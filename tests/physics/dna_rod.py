@@ -75,7 +75,7 @@ def averages(turn, twist, stretches):
         frame = frame @ turn[:, k]
         axis[:, k + 1] = frame[:, :, 0]
     ends = np.concatenate([np.zeros_like(axis[:, :1]), LENGTH * np.cumsum(axis, axis=1)], axis=1)
-    found = {"<cos>": 1 - (axis[:, 1:] * axis[:, :-1]).sum(-1).mean(1), "twist": (twist**2).mean(1)}
+    found = {"1 - <cos>": 1 - (axis[:, 1:] * axis[:, :-1]).sum(-1).mean(1), "twist": (twist**2).mean(1)}
     return found | {f"<R^2> of {s}": ((ends[:, s:] - ends[:, :-s]) ** 2).sum(-1).mean(1) for s in stretches}
 
 
@@ -131,9 +131,8 @@ def expected(rotor, rods, stretches):
     """By name: the mean and how well it is known."""
     c, twist = exact()
     factors = weight(rotor, rods, stretches)
-    even = {"<cos>": 1 - c, "twist": twist} | {f"<R^2> of {s}": square_of(s, c) for s in stretches}
-    found = {name: (even[name] * factor, even[name] * error) for name, (factor, error) in factors.items()}
-    return found | {"<cos>": (1 - found["<cos>"][0], found["<cos>"][1])}
+    even = {"1 - <cos>": 1 - c, "twist": twist} | {f"<R^2> of {s}": square_of(s, c) for s in stretches}
+    return {name: (even[name] * factor, even[name] * error) for name, (factor, error) in factors.items()}
 
 
 def scene(chains, bodies, integrator, step, steps, every, backend):
@@ -194,7 +193,6 @@ def statistics(runs, step):
         chains = values.mean(axis=0)
         mean = (share * chains).sum()
         error = np.sqrt((share**2 * (chains - mean) ** 2).sum() * len(share) / (len(share) - 1))
-        mean = 1 - mean if key == "<cos>" else mean
         good &= check(f"implicit: {key}", mean, error, theory[key])
     return good
 
@@ -210,7 +208,7 @@ def cost(runs, name, integrator, step, picoseconds, rotor):
     for key, values in observed(folder, 1, stretches, rotor)[0].items():
         mean, error = values[:, 0].mean(), blocked_error(values[:, 0])
         needed[key] = seconds * (error / (0.01 * mean)) ** 2
-        good &= check(f"{name}: {key}", 1 - mean if key == "<cos>" else mean, error, theory[key])
+        good &= check(f"{name}: {key}", mean, error, theory[key])
     return good, needed
 
 

@@ -11,13 +11,6 @@ namespace {
 
 Scene scene_of(std::string const& text) { return parse_scene("units: si\n" + text, "scene.yaml", {}); }
 
-Solution layout_of(Scene const& scene) {
-    auto const communicator = serial_communicator();
-    ChainSystem system(scene, Axes::joint, *communicator);
-    system.evaluate();
-    return solution_of(system);
-}
-
 /// Beads on an arc between two fixed points give way by its square: a thousandth of the angle loses a million times as much.
 TEST(Growth, OfABridgeGoesWithTheInverseSquareOfItsAngle) {
     Solution of_beads;  // without a solution: there is none where the arc is flat

@@ -13,15 +13,6 @@
 namespace catena::precision {
 namespace {
 
-Solution layout_of(Scene const& scene) {
-    Solution s;
-    s.acceleration_offset.push_back(0);
-    for (ChainSpec const& chain : scene.chains)
-        for (std::size_t k = 0; k < chain.size(); ++k)
-            s.acceleration_offset.push_back(s.acceleration_offset.back() + accelerations_of(chain, k));
-    return s;
-}
-
 /// Of the processor: what else runs on the machine then counts for its caches alone.
 double seconds_of(std::function<void()> const& action, int times) {
     std::clock_t const start = std::clock();
