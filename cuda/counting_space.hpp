@@ -224,6 +224,7 @@ class CountingSpace : public HostAccess {
         return {};
     }
     DirectionsField read(Directions const&) const { return {}; }
+    void write(Directions&, DirectionsField const&) const {}
     template <int D, class Edit>
     void edit(FieldOf<D>&, Edit const&) const {}
     template <int D>

@@ -226,6 +226,10 @@ class DeviceSpace {
         wait();
         return host;
     }
+    void write(DeviceDirections& directions, DirectionsField const& host) const {
+        directions.upload(host.view(), stream());
+        wait();
+    }
     template <int D, class Edit>
     void edit(DeviceField<D>& field, Edit const& change) const {
         Field<D> host = read(field);

@@ -191,7 +191,7 @@ void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
 }
 
 int directions_of(ChainGroup const& group) {
-    if (group.handles == Handles::full) return group.beads || group.linked ? 3 : 6;
+    if (carries_all(group.handles)) return group.beads || group.linked ? 3 : 6;
     return group.smallest_directions;
 }
 
@@ -250,6 +250,10 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
             if (implicit)
                 group.implicit_joint[piece.local + i] = has_implicit_joint(scene.chains[group.chain[piece.chain]], piece.body + i);
         }
+    if (!group.pieces.empty() && !group.pieces.back().ends) {
+        dca::Piece const& last = group.pieces.back();
+        group.restricted_of_joint[s.halo] = restricted(last.chain, last.body + last.count);
+    }
     for (std::size_t i = 0; i < s.tip_chain.size(); ++i)
         if (!group.partition.is_split(s.tip_chain[i]))
             group.restricted_of_joint[s.first_tip() + static_cast<std::int64_t>(i)] =
@@ -342,7 +346,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
 int group_of(ChainSpec const& spec, Axes axes, Handles handles, bool implicit) {
     if (spec.is_beads()) return 0;
     if (spec.is_linked()) return 1;
-    if (handles == Handles::full || (implicit && scene::resists(spec))) return 6;
+    if (carries_all(handles) || (implicit && scene::resists(spec))) return 6;
     return axes == Axes::world ? 3 : smallest_directions(spec);
 }
 

@@ -178,7 +178,8 @@ std::vector<Backend> backends_at_once(BenchRequest const& request) {
     for (std::string const& joint : request.joints)
         if (joint != "link" && joint != "spherical")
             throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
-    if (request.handles == "full") throw InputError("full handles need a sweep after the other", "--handles", "use projected ones");
+    if (!request.handles.empty() && request.handles != name_of(Handles::projected))
+        throw InputError(request.handles + " handles need a sweep after the other", "--handles", "use projected ones");
     std::vector<Backend> chosen = request.backends;
     if (chosen.empty()) {
         chosen = cpu_backends();
@@ -241,6 +242,9 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
 }  // namespace
 
 Outcome run_bench(Communicator const& communicator, BenchRequest const& request) {
+    if (request.handles == name_of(Handles::articulated))
+        throw InputError("articulated handles are not among what is measured here", "--handles",
+                         "take projected or full; `catena report` shows them beside these");
     if (request.name == "list") return list();
     if (request.name == "figures") return bench_figures(communicator, request);
     if (request.name == "network") return bench_network(communicator, request);

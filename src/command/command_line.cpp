@@ -13,7 +13,7 @@ namespace catena::command {
 namespace {
 
 constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "error", "off"};
-constexpr std::string_view handle_names[] = {"projected", "full"};
+constexpr std::string_view handle_names[] = {"projected", "full", "articulated"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
 constexpr std::string_view suite_names[] = {"stability"};
@@ -43,7 +43,11 @@ void add_common(CLI::App& command, Words& words) {
     command.add_option("--set", c.set, "override a key of the scene, as in --set chains[0].count=10 (may be repeated)")
         ->type_name("KEY.PATH=VALUE")
         ->allow_extra_args(false);
-    command.add_option("--handles", c.handles, "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3)")
+    command
+        .add_option("--handles", c.handles,
+                    "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3) | articulated (open chains on "
+                    "joints: keeps "
+                    "the digits of badly conditioned ones)")
         ->type_name("KIND");
     command
         .add_option("--threads", c.threads,

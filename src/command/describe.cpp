@@ -115,7 +115,7 @@ std::string dynamics_text(Scene const& scene) {
 }
 
 Directions directions_of(Scene const& scene) {
-    bool const full = scene.solver.handles == Handles::full;
+    bool const full = carries_all(scene.solver.handles);
     Directions d;
     for (ChainSpec const& chain : scene.chains) {
         scene::HandleKind const kind = scene::handle_kind(chain);
@@ -131,6 +131,7 @@ Directions directions_of(Scene const& scene) {
 
 std::string block_text(bool beads, int directions, Handles handles) {
     std::string const size = fmt::format("{0}x{0}", directions);
+    if (handles == Handles::articulated) return size + ", every direction, inertias of what a joint carries";
     if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
     if (beads) return size + ", projected on the links";
     if (directions == 6) return size + ", every direction: welds, driven or implicit joints restrict them all";

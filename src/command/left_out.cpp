@@ -151,7 +151,7 @@ double seconds_without(Family const& family, std::int64_t bodies) {
 
 std::vector<LeftOut> left_out(Scene const& scene, ChainSystem const& system) {
     List list(forces_on_joints(scene));
-    bool const full_handles = scene.solver.handles == Handles::full;
+    bool const full_handles = carries_all(scene.solver.handles);
     std::vector<plan::Share> const shares = plan::shares_of(scene, axes_of(system), system.communicator().size());
     for (auto const& group : system.groups()) {
         std::size_t const share = share_of(shares, *group);
@@ -160,7 +160,7 @@ std::vector<LeftOut> left_out(Scene const& scene, ChainSystem const& system) {
         else
             list.add_bodies(*group, shares[share].family, share);
     }
-    if (full_handles) list.add("projection on the restricted directions: handles are full, as in the founding chapter");
+    if (full_handles) list.add(fmt::format("projection on the restricted directions: handles are {}", name_of(scene.solver.handles)));
     if (!scene.forces.openmm) list.add("OpenMM: forces.openmm is not in the scene");
     if (system.backend() != Backend::openmp && !(uses_gpu(system.backend()) && openmp_is_built()))
         list.add("threads: this backend has one a rank");

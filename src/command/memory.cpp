@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "command/describe.hpp"
+#include "dca/articulated.hpp"
 #include "dca/simd/runs.hpp"
 #include "dca/tree.hpp"
 
@@ -28,7 +29,12 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, double node) {
     int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
     return places + dca::parts_of_run * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
-SolverSizes sizes_for(int directions) {
+SolverSizes sizes_for(int directions, Handles handles) {
+    if (handles == Handles::articulated)
+        return {static_cast<double>(sizeof(dca::ArticulatedMatrix<double, 6>) + sizeof(dca::ArticulatedBias<double, 6>)),
+                static_cast<double>(sizeof(dca::ArticulatedJoint<double, 6>) + sizeof(dca::ArticulatedOffset<double, 6>) +
+                                    sizeof(dca::HandleState<double, 6>)),
+                0};
     switch (directions) {
         case 1:
             return sizes<1>();
@@ -74,7 +80,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         bool const links = chain.is_beads() || chain.is_linked();
         int const k = links ? directions.beads : directions.bodies;
         auto const n = static_cast<double>(chain.size());
-        SolverSizes const size = sizes_for(k);
+        SolverSizes const size = sizes_for(k, scene.solver.handles);
         dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()), dca::run_length_for(pairwise));
         double const numbers = chain.is_beads() ? bead_numbers
                                                 : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? joint_numbers : 0) +

@@ -43,8 +43,9 @@ std::vector<Backend> backends_of(ReportRequest const& request) {
 }
 
 std::vector<Handles> handles_of(ReportRequest const& request) {
-    if (request.handles.empty()) return {Handles::projected, Handles::full};
-    return {request.handles == "full" ? Handles::full : Handles::projected};
+    std::vector<Handles> all{Handles::projected, Handles::full, Handles::articulated};
+    if (!request.handles.empty()) std::erase_if(all, [&](Handles kind) { return request.handles != name_of(kind); });
+    return all;
 }
 
 /// Text and JSON, and on rank 0 the files.
@@ -120,11 +121,8 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
 Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
     if (communicator.size() > 1)
         throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"), "--suite", "run it without mpirun");
-    std::vector<Backend> backends = backends_of(request);
+    std::vector<Backend> const backends = backends_of(request);
     std::vector<std::string> left_out;
-    if (std::erase(backends, Backend::cuda) > 0)
-        left_out.emplace_back("cuda: it has the bits of segments, and its solutions are not refined");
-    if (backends.empty()) throw InputError("the stability suite on the GPU alone", "--backend", "take segments, which has the same bits");
     make_folder(communicator, request.output);
     std::optional<PeerAnswers> peers;
     if (request.quick)

@@ -174,6 +174,7 @@ class HostSpace : public HostAccess {
         return field;
     }
     Directions const& read(Directions const& directions) const { return directions; }
+    void write(Directions& directions, DirectionsField const& host) const { directions = host; }
     /// What the host does to a field.
     template <int D, class Edit>
     void edit(Field<D>& field, Edit const& change) const {

@@ -5,6 +5,7 @@ namespace dca {
 
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, Executor const&, Communicator const&);
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, Executor const&, Communicator const&);
+std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, Executor const&, Communicator const&);
 
 namespace {
 
@@ -17,6 +18,7 @@ std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const& group, Executor
 }  // namespace dca
 
 std::unique_ptr<ChainSolver> make_tree_solver(ChainGroup const& group, Executor const& executor, Communicator const& communicator) {
+    if (group.handles == Handles::articulated) return dca::make_articulated_solver(group, executor, communicator);
     if (group.beads) return dca::make_bead_solver(group, executor, communicator);
     if (group.axes == Axes::world) return dca::make_absolute_solver(group, executor, communicator);
     if (group.directions == 2) return dca::make_joint_solver<2>(group, executor, communicator);

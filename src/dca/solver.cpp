@@ -39,9 +39,12 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
         body = schedule.top_body_of_joint[joint - schedule.first_top_joint()];
     }
     bool const tip = body == group.partition.trees[chain].bodies;
+    bool const open = !group.beads && !group.linked && group.axes == Axes::joint && !group.has_tips();
+    bool const may = open && group.handles != Handles::articulated;
     throw ComputationError("the matrix of a joint is not positive definite (chain " + group.name[chain] +
                            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
-                           "): masses, inertias or positions there are extreme or not finite");
+                           "): masses, inertias or positions there are extreme or not finite" +
+                           (may ? "; `handles: articulated` keep more digits" : ""));
 }
 
 }  // namespace catena

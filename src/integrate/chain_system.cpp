@@ -33,11 +33,23 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
     throw Error(text, "solver.backend: " + backend, remedy);
 }
 
+/// Articulated handles hold open chains of rigid bodies in joint coordinates.
+void refuse_articulated(ChainGroup const& group, double implicit_step) {
+    std::string const why = group.beads || group.linked ? "chains of beads and of linked bodies have none"
+                            : group.axes == Axes::world ? "bodies in absolute coordinates have none"
+                            : group.has_tips()          ? "chains with jointed tips and rings have none"
+                            : implicit_step > 0         ? "implicit joints have none"
+                                                        : "";
+    if (!why.empty())
+        throw InputError("articulated handles are for open chains in joint coordinates: " + why, "solver.handles: articulated",
+                         "take projected or full");
+}
+
 }  // namespace
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (std::string const why = scene.dynamics.why_host_alone(); uses_gpu(asked) && !why.empty())
+    if (std::string const why = scene.why_host_alone(); uses_gpu(asked) && !why.empty())
         throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
@@ -75,6 +87,8 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     SimdLevel const simd = choose_simd_level(scene, communicator);
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
     groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, implicit_step > 0);
+    if (scene.solver.handles == Handles::articulated)
+        for (auto const& group : groups_) refuse_articulated(*group, implicit_step);
     if (uses_gpu(backend_)) require_gpu_memory();
     if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {
@@ -84,8 +98,6 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
             joint_.push_back(make_joint(*group));
     }
     if (openmm_) find_bead_hosts();
-    if (scene.solver.refine > 0 && backend_ == Backend::cuda && !joint_.empty())
-        throw InputError("solutions that stay on a GPU are not refined", "solver.refine", "take backend segments or openmp");
 }
 
 ChainSystem::~ChainSystem() { is_current(); }  // what it holds on the GPU is given back there

@@ -129,12 +129,8 @@ class JointDynamicsIn final : public JointDynamics {
         solver_->solve(loads(), found());
         exchange_ends();
     }
-    void refine() override {
-        if constexpr (std::is_same_v<Space, HostSpace>)
-            refine_on_host();
-        else
-            throw InputError("solutions that stay on a GPU are not refined", "solver.refine", "take backend segments or openmp");
-    }
+    /// What is lacking is looked for on the host.
+    void refine() override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
     JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
 
@@ -277,6 +273,7 @@ class JointDynamicsIn final : public JointDynamics {
     void set_ends();
     /// One Newton step: the solver with openings in the place of accelerations.
     void correct(bool velocities);
+    void add(std::int64_t count, DirectionsView const& found, DirectionsView const& to);
     void exchange_ends() { exchange_ends(chains()); }
     void exchange_ends(JointChains const&);
 
@@ -297,7 +294,6 @@ class JointDynamicsIn final : public JointDynamics {
         return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
     }
     AccelerationsView found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
-    void refine_on_host();
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
     JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }

@@ -77,24 +77,36 @@ void JointDynamicsIn<Space>::exchange_ends(JointChains const& c) {
 }
 
 template <class Space>
-void JointDynamicsIn<Space>::refine_on_host() {
+void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found, DirectionsView const& to) {
+    space_.for_each(count, [found, to, directions = group_.directions] CATENA_LAMBDA(std::int64_t k) {
+        for (int i = 0; i < directions; ++i) to.at(k, i) += found.at(k, i);
+    });
+}
+
+template <class Space>
+void JointDynamicsIn<Space>::refine() {
     if (!has_matrices_) assemble_matrices();
-    auto lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
-    std::int64_t const tips = group_.has_tips() ? group_.size : 0;
-    Field<3> alpha(group_.size), acceleration(group_.size);
-    DirectionsField force(group_.size + 1, group_.directions), tip_force(tips, group_.directions);
-    solver_->solve({lacking.torque.view(), lacking.force.view(), {}, lacking.bias.view(), of_tips(group_, lacking.tip_bias)},
-                   {alpha.view(), acceleration.view(), force.view(), of_tips(group_, tip_force)});
-    for (std::int64_t k = 0; k < group_.size; ++k) {
-        alpha_.set(k, alpha_[k] + alpha[k]);
-        acceleration_.set(k, acceleration_[k] + acceleration[k]);
-    }
-    for (int i = 0; i < group_.directions; ++i) {
-        for (std::int64_t k = 0; k <= group_.size; ++k) joint_force_.view().at(k, i) += force.view().at(k, i);
-        for (std::int64_t k = 0; k < tips; ++k)
-            if (group_.has_jointed_tip(k)) tip_force_.view().at(k, i) += tip_force.view().at(k, i);
-    }
+    auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
+    std::int64_t const size = group_.size, of_tip = group_.has_tips() ? size : 0;
+    int const directions = group_.directions;
+    FieldOf<3> torque(size), force(size), alpha(size), acceleration(size);
+    typename Space::Directions bias(size + 1, directions), joint_force(size + 1, directions), tip_bias(of_tip, directions),
+        tip_force(of_tip, directions);
+    fill(space_, torque, lacking.torque);
+    fill(space_, force, lacking.force);
+    space_.write(bias, lacking.bias);
+    space_.write(tip_bias, lacking.tip_bias);
+    solver_->solve({torque.view(), force.view(), {}, bias.view(), of_tips(group_, tip_bias)},
+                   {alpha.view(), acceleration.view(), joint_force.view(), of_tips(group_, tip_force)});
+    space_.for_each(size,
+                    [more = alpha.view(), sum = alpha_.view()] CATENA_LAMBDA(std::int64_t k) { sum.store(k, sum.load(k) + more.load(k)); });
+    space_.for_each(size, [more = acceleration.view(), sum = acceleration_.view()] CATENA_LAMBDA(std::int64_t k) {
+        sum.store(k, sum.load(k) + more.load(k));
+    });
+    add(size + 1, joint_force.view(), joint_force_.view());
+    add(of_tip, tip_force.view(), tip_force_.view());
     exchange_ends();
+    space_.wait();
 }
 
 }  // namespace catena

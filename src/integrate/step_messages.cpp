@@ -27,9 +27,11 @@ class Sum {
         traffic_.exchanges += times * cut_.ring_ends;
         traffic_.sent_bytes += times * bytes(cut_.ring_ends * numbers);
     }
-    /// Sweeps of the tree with K directions a handle (see segment.hpp).
-    void matrix_sweeps(std::int64_t times, std::int64_t k) { gathers(times, 2 * k * k + k); }
-    void bias_sweeps(std::int64_t times, std::int64_t k) { gathers(times, 2 * k); }
+    /// Sweeps of the tree with K directions a handle (segment.hpp, articulated.hpp).
+    void matrix_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) {
+        gathers(times, articulated ? 3 * k * k + k * (k + 1) / 2 : 2 * k * k + k);
+    }
+    void bias_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) { gathers(times, (articulated ? 3 : 2) * k); }
     Traffic const& traffic() const { return traffic_; }
 
   private:
@@ -58,6 +60,7 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     : integrator_(scene.dynamics.integrator),
       sweeps_(sweeps_a_step(scene.dynamics, has_tips(scene))),
       directions_(group.directions),
+      articulated_(group.handles == Handles::articulated),
       absolute_(group.beads || group.linked || group.axes == Axes::world),
       beads_(group.beads),
       implicit_(!group.implicit_joint.empty()),
@@ -108,8 +111,8 @@ Traffic StepMessages::joint(int corrections, Cut const& cut, SweepsAStep const& 
     sum.from_ring_ends(motions, 13);
     if (moving_meeting_) sum.from_outboard(motions, 12);
     if (joint_loads_) sum.from_outboard(biases, 4);
-    sum.matrix_sweeps(matrices + more, directions_);
-    sum.bias_sweeps(motions + refinements, directions_);
+    sum.matrix_sweeps(matrices + more, directions_, articulated_);
+    sum.bias_sweeps(motions + refinements, directions_, articulated_);
     sum.from_inboard(motions + refinements, 4);
     sum.from_inboard(refinements, 8);
     sum.from_ring_ends(refinements, 8);

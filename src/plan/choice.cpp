@@ -14,7 +14,7 @@ namespace {
 /// Why a GPU is not for `auto`, besides there being none.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
-    return scene.dynamics.why_host_alone();
+    return scene.why_host_alone();
 }
 /// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and the solver.
 bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {
@@ -86,8 +86,7 @@ Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
 Choice choose(Scene const& scene, Axes axes, Communicator const& communicator, std::string const& no_gpu) {
     Choice choice{{scene.solver.backend, scene.solver.threads}, scene.solver.levels_on_gpu(), "asked for"};
     if (!leaves_open(scene)) return choice;
-    bool const refined = no_gpu.empty() && scene.solver.refine > 0;
-    with_planner(communicator, scene.solver.threads, largest_at_start, refined ? "solutions on a GPU are not refined" : no_gpu,
+    with_planner(communicator, scene.solver.threads, largest_at_start, no_gpu,
                  [&](Planner& planner) { choice = choose(scene, axes, planner, communicator.size()); });
     share(communicator, choice);
     return choice;

@@ -65,6 +65,7 @@ std::string Family::name() const {
     if (linked) text += " with bodies";
     if (axes == Axes::world && joint != RandomJoint::link) text += ", ground axes";
     if (handles == Handles::full) text += ", full handles";
+    if (handles == Handles::articulated) text += ", articulated handles";
     return text;
 }
 
@@ -90,7 +91,7 @@ std::vector<Share> shares_of(Scene const& scene, Axes axes, int ranks) {
     for (ChainSpec const& chain : scene.chains) {
         Family const family = family_of(chain, axes, scene.solver.handles);
         // Full handles hold chains of every joint together: the most demanding one stands for them.
-        bool const together = scene.solver.handles == Handles::full && family.joint != RandomJoint::link;
+        bool const together = carries_all(scene.solver.handles) && family.joint != RandomJoint::link;
         Members& members = groups[together ? "bodies" : family.name()];
         HandleKind const kind = scene::handle_kind(chain);
         if (members.lengths.empty() || kind > members.largest) members.family = family;

@@ -1,11 +1,13 @@
 #include "report/solver_errors.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "error.hpp"
 #include "integrate/start_velocities.hpp"
 #include "report/oracle_accelerations.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena {
 namespace {
@@ -74,8 +76,10 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
     study.ranks = communicator.size();
     if (root && study.bodies <= largest_condition) study.condition = largest_condition_number(scene);
     Reference reference;
+    bool const takes_articulated = std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
+            if (kind == Handles::articulated && (uses_gpu(backend) || !takes_articulated)) continue;
             Scene variant = scene;
             variant.solver.backend = backend;
             variant.solver.handles = kind;

@@ -4,17 +4,19 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "error.hpp"
 #include "report/growth.hpp"
 #include "report/solver_errors.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena {
 namespace {
 
 constexpr std::int64_t largest_quad_here = 5000;
 constexpr std::int64_t few_nudges_above = 100000;
-constexpr int refinements = 2;
+constexpr int refinements = 2, most_refinements = 10;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 double median(std::vector<double> const& values) {
@@ -29,14 +31,17 @@ struct Variant {
     };
     SolverSpec solver;
     std::array<Errors, refinements + 1> after;  // so many steps of refinement
+    Errors settled;                             // as many as help
+    int steps = 0;                              // of these, the most
     std::vector<double> residual_bound, bound;
     std::string refused;
 };
 
-std::vector<Variant> variants_of(std::vector<Backend> const& backends, std::vector<Handles> const& handles) {
+std::vector<Variant> variants_of(ChainSpec const& chain, std::vector<Backend> const& backends, std::vector<Handles> const& handles) {
     std::vector<Variant> all;
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
+            if (kind == Handles::articulated && !scene::takes_articulated_handles(chain)) continue;
             Variant variant;
             variant.solver.backend = backend;
             variant.solver.handles = kind;
@@ -61,13 +66,29 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
         double const evaluation = seconds_of([&] { system.evaluate(); });
         to.residual_bound.push_back(system.residual_bound());
         to.bound.push_back(system.residual_bound() * exact.growth);
-        for (Variant::Errors& errors : to.after) {
-            bool const first = &errors == to.after.data();
-            if (!first && (system.joint().empty() || system.backend() == Backend::cuda)) break;
-            if (!first) errors.cost.push_back(seconds_of([&] { system.refine(); }) / evaluation);
+        auto const look = [&](Variant::Errors& errors) {
             errors.residual.push_back(system.residual());
             errors.error.push_back(largest_difference(scene, solution_of(system), exact.acceleration));
+            return errors.error.back();
+        };
+        double before = look(to.after.front()), error = before;
+        if (system.joint().empty()) return;
+        auto const refine = [&] { return seconds_of([&] { system.refine(); }) / evaluation; };
+        for (int step = 1; step <= refinements; ++step) {
+            Variant::Errors& errors = to.after[static_cast<std::size_t>(step)];
+            errors.cost.push_back(refine());
+            before = std::exchange(error, look(errors));
         }
+        int steps = refinements;
+        Variant::Errors settled{{to.after.back().residual.back()}, {error}, {}};
+        for (; steps < most_refinements && error > to.residual_bound.back() && error < before / 2; ++steps) {
+            settled.cost.push_back(refine());
+            before = std::exchange(error, look(settled));
+        }
+        to.settled.residual.push_back(settled.residual.back());
+        to.settled.error.push_back(error);
+        to.settled.cost.push_back(settled.cost.empty() ? to.after.back().cost.back() : settled.cost.back());
+        to.steps = std::max(to.steps, steps);
     } catch (ComputationError const& error) {
         to.refused = error.what();
     }
@@ -89,9 +110,13 @@ StabilityPoint point_of(Variant const& v) {
                          largest_ratio(plain.residual, v.residual_bound),
                          largest_ratio(plain.error, v.bound),
                          v.refused};
-    for (std::size_t i = 1; i < v.after.size() && !v.after[i].error.empty(); ++i)
-        point.refined.push_back({median(v.after[i].error), largest_ratio(v.after[i].residual, v.residual_bound),
-                                 largest_ratio(v.after[i].error, v.bound), median(v.after[i].cost)});
+    auto const refined = [&](Variant::Errors const& errors) {
+        return StabilityPoint::Refined{median(errors.error), largest_ratio(errors.residual, v.residual_bound),
+                                       largest_ratio(errors.error, v.bound), median(errors.cost)};
+    };
+    for (std::size_t i = 1; i < v.after.size() && !v.after[i].error.empty(); ++i) point.refined.push_back(refined(v.after[i]));
+    if (!v.settled.error.empty()) point.settled = refined(v.settled);
+    point.steps = v.steps;
     return point;
 }
 
@@ -130,6 +155,8 @@ char const* name_of(Verdict verdict) {
             return "VALID";
         case Verdict::refined:
             return "REFINED";
+        case Verdict::articulated:
+            return "ARTICULATED";
         case Verdict::beyond:
             return "BEYOND";
         case Verdict::lost:
@@ -140,7 +167,7 @@ char const* name_of(Verdict verdict) {
 }
 
 double StabilityPoint::plain_error() const { return refused.empty() ? error : infinite; }
-double StabilityPoint::last_error() const { return refused.empty() && !refined.empty() ? refined.back().error : plain_error(); }
+double StabilityPoint::last_error() const { return refused.empty() && settled ? settled->error : plain_error(); }
 
 double StabilityStudy::best_of_others() const {
     double best = std::isfinite(oracle_error) ? oracle_error : infinite;
@@ -151,38 +178,48 @@ double StabilityStudy::best_of_others() const {
 
 double StabilityStudy::worst(double (StabilityPoint::*error)() const) const {
     double worst = 0;
-    for (StabilityPoint const& p : points) worst = larger(worst, (p.*error)());
+    for (StabilityPoint const& p : points)
+        if (!p.is_articulated()) worst = larger(worst, (p.*error)());
     return worst;
 }
 
-double StabilityStudy::against_peers() const {
+double StabilityStudy::against_peers(bool articulated) const {
     double const allowed = 4 * best_of_others();
     double worst = 0;
     for (StabilityPoint const& p : points) {
-        double const bound = p.refined.empty() ? p.residual_bound * growth : p.residual_bound;
+        if (p.is_articulated() != articulated) continue;
+        double const bound = p.settled ? p.residual_bound : p.residual_bound * growth;
         if (double const error = p.last_error(); error != 0) worst = larger(worst, error / std::max(allowed, bound));
     }
     return worst;
 }
 
-/// Where the equations lose all digits an answer must still be the exact one of a chain nearby, or refused; whether others keep them is
-/// said.
+bool StabilityStudy::all(bool articulated, std::function<bool(StabilityPoint const&)> const& holds) const {
+    return std::all_of(points.begin(), points.end(),
+                       [&](StabilityPoint const& p) { return p.is_articulated() != articulated || holds(p); });
+}
+
+/// Where the equations of joint forces lose all digits an answer must still be the exact one of a chain nearby, or refused; whether
+/// articulated handles or others keep them is said.
 Verdict StabilityStudy::verdict() const {
-    bool const all_hold = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds(); });
-    bool const nearby = std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.of_residual_bound <= 1; });
-    if (beyond()) return !nearby ? Verdict::invalid : best_of_others() <= 1e-3 ? Verdict::lost : Verdict::beyond;
-    if (!(against_peers() <= 1)) return Verdict::invalid;
-    if (all_hold) return Verdict::valid;
-    bool const with_refinement =
-        std::all_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.holds() || p.holds_refined(); });
-    return with_refinement ? Verdict::refined : Verdict::invalid;
+    bool const has_articulated = std::any_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.is_articulated(); });
+    bool const articulated_good = all(true, &StabilityPoint::holds_refined) && against_peers(true) <= 1;
+    bool const good = all(false, &StabilityPoint::holds_refined) && against_peers(false) <= 1;
+    if (beyond()) {
+        if (!all(false, &StabilityPoint::is_nearby) || !all(true, &StabilityPoint::is_nearby)) return Verdict::invalid;
+        if (good && articulated_good) return Verdict::refined;
+        if (has_articulated && articulated_good) return Verdict::articulated;
+        return best_of_others() <= 1e-3 ? Verdict::lost : Verdict::beyond;
+    }
+    if (!good || !articulated_good) return Verdict::invalid;
+    return all(false, &StabilityPoint::holds) && all(true, &StabilityPoint::holds) ? Verdict::valid : Verdict::refined;
 }
 
 StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> const& backends, std::vector<Handles> const& handles,
                                int seeds, AskPeers const& peers) {
     StabilityStudy study{which.family, which.name, {}, which.bodies, seeds, {}, 1, 0, {}};
     std::vector<PeerErrors> of_peers;
-    std::vector<Variant> variants = variants_of(backends, handles);
+    std::vector<Variant> variants = variants_of(which.scene(1).chains.front(), backends, handles);
     std::vector<double> condition, growth, in_double;
     for (int seed = 1; seed <= seeds; ++seed) {
         Scene scene = which.scene(static_cast<std::uint64_t>(seed));

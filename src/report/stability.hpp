@@ -2,6 +2,7 @@
 //
 // A backend has solved exactly a chain whose data and equations are off by its local residual; the answer is then off by the residual times
 // the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth.
+// (Of articulated handles that is far too much: they are held to what follows.)
 // Articulated bodies in double and other programs ("peers") solve the same chains: after refinement, which brings back what the growth
 // took, the error may be 4 times the best of theirs, or that of the residual's bound alone.
 #pragma once
@@ -23,12 +24,16 @@ struct StabilityPoint {
         double error = 0, of_residual_bound = 0, of_bound = 0;
         double cost = 0;  // of the step, over that of an evaluation; median
     };
-    std::vector<Refined> refined = {};  // after one step, two, ...; empty: not for such chains or backends
+    std::vector<Refined> refined = {};    // after one step and after two; empty: not for such chains or backends
+    std::optional<Refined> settled = {};  // after as many as help, ten at most
+    int steps = 0;                        // of these, the most of the seeds
+    bool is_articulated() const { return handles == "articulated"; }
+    bool is_nearby() const { return of_residual_bound <= 1; }
     bool holds() const { return refused.empty() && of_residual_bound <= 1 && of_bound <= 1; }
     bool holds_refined() const {
-        return refused.empty() && !refined.empty() && refined.back().of_residual_bound <= 1 && refined.back().of_bound <= 1;
+        return holds() || (refused.empty() && settled && settled->of_residual_bound <= 1 && settled->of_bound <= 1);
     }
-    /// Of the answer as it comes, or of that after the last step of refinement; infinite where there is none.
+    /// Of the answer as it comes, or of that after as many steps of refinement as help; infinite where there is none.
     double plain_error() const;
     double last_error() const;
 };
@@ -48,7 +53,7 @@ struct StabilityPeer {
     std::string why_not = {};  // of a seed without an answer; empty: all had one
 };
 
-enum class Verdict { valid, refined, beyond, lost, invalid };
+enum class Verdict { valid, refined, articulated, beyond, lost, invalid };
 
 struct StabilityStudy {
     std::string family, name, reference;
@@ -61,13 +66,15 @@ struct StabilityStudy {
     std::vector<StabilityPeer> peers = {};
     /// The least error of articulated bodies in double and of the peers that have one.
     double best_of_others() const;
-    /// The worst last_error() over what it may be: the larger of 4 times best_of_others() and the bound of the residual, where there is no
-    /// refinement that times the growth; medians.
-    double against_peers() const;
+    /// The worst last_error() of the points with or without articulated handles over what it may be: the larger of 4 times best_of_others()
+    /// and the bound of the residual, where there is no refinement that times the growth; medians.
+    double against_peers(bool articulated = false) const;
     /// The equations of joint forces in double determine fewer than three digits of the answer.
     bool beyond() const { return growth * 0x1p-53 > 1e-3; }
-    /// The worst over all points; infinite where one has no answer.
+    /// The worst over the points without articulated handles; infinite where one has no answer.
     double worst(double (StabilityPoint::*error)() const) const;
+    /// Of the points with or without articulated handles.
+    bool all(bool articulated, std::function<bool(StabilityPoint const&)> const& holds) const;
     Verdict verdict() const;
 };
 char const* name_of(Verdict);

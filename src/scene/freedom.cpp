@@ -120,6 +120,8 @@ char const* name_of(HandleKind kind) {
     return names[static_cast<int>(kind)];
 }
 
+bool takes_articulated_handles(ChainSpec const& chain) { return chain.bodies.size() > 0 && chain.tip == Tip::free; }
+
 std::int64_t degrees_of_freedom(ChainSpec const& chain) {
     if (chain.is_beads() || chain.is_linked()) return freedom_of_links(chain);
     BodyArrays const& bodies = chain.bodies;

@@ -28,6 +28,9 @@ HandleKind handle_kind(ChainSpec const& chain);
 int directions_of(HandleKind kind);
 char const* name_of(HandleKind kind);
 
+/// Whether Handles::articulated hold it, in joint coordinates: an open chain of rigid bodies.
+bool takes_articulated_handles(ChainSpec const& chain);
+
 /// Coordinates of the joints, those that are driven left out, less what the tip's joint restricts; links: 6 a rigid body, 3 a bead, less
 /// one a link.
 std::int64_t degrees_of_freedom(ChainSpec const& chain);

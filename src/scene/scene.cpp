@@ -116,6 +116,11 @@ std::string DynamicsSpec::why_host_alone() const {
     return "";
 }
 
+std::string Scene::why_host_alone() const {
+    if (solver.handles == Handles::articulated) return "articulated handles are computed on the host";
+    return dynamics.why_host_alone();
+}
+
 char const* name_of(Integrator integrator) {
     switch (integrator) {
         case Integrator::rk4:
@@ -164,6 +169,8 @@ char const* name_of(Handles handles) {
             return "projected";
         case Handles::full:
             return "full";
+        case Handles::articulated:
+            return "articulated";
     }
     return "?";
 }

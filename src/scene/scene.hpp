@@ -199,7 +199,10 @@ struct DynamicsSpec {
 
 enum class Backend { automatic, serial, segments, openmp, cuda, cuda_levels };
 inline bool uses_gpu(Backend backend) { return backend == Backend::cuda || backend == Backend::cuda_levels; }
-enum class Handles { projected, full };
+/// Directions that handles carry: those that joints restrict, or all. articulated: all, of runs held at their inboard side
+/// (dca/articulated.hpp), where nothing cancels.
+enum class Handles { projected, full, articulated };
+inline bool carries_all(Handles handles) { return handles != Handles::projected; }
 
 /// Of the backend cuda-levels: how many of the tree's lowest levels of merges the GPU assembles (`up`) and disassembles (`down`); from 1 on
 /// the bodies themselves are the GPU's too. Numbers beyond the tree's levels mean all of them.
@@ -244,6 +247,8 @@ struct Scene {
 
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;
+    /// Why a GPU cannot compute it; empty where it can.
+    std::string why_host_alone() const;
 };
 
 /// Reads and validates a scene file. `overrides`: "key.path=value" with list indices as in "chains[0].count=10".

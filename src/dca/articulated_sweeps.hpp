@@ -1,0 +1,220 @@
+// The sweeps of articulated handles over the canonical tree, as tree_sweeps.hpp describes sweeps, for open chains in joint coordinates.
+#pragma once
+
+#include "dca/articulated.hpp"
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::dca {
+
+/// One body with its inboard joint. `sliding`: some joint is prismatic or helical.
+template <bool sliding>
+class ArticulatedLeaf {
+  public:
+    static constexpr int K = 6;
+    using Matrix6 = ArticulatedMatrix<double, K>;
+    using Bias6 = ArticulatedBias<double, K>;
+    using Vec6 = Vector<double, K>;
+    explicit ArticulatedLeaf(ChainGroup const& group)
+        : group_(group.view()), frames_(group_), mass_(group.mass.view()), inertia_(group.inertia.view()) {}
+    void set(ConfigurationView const& c) { frames_.set(c); }
+    GroupView const& group() const { return group_; }
+
+    /// A body held at its inboard joint in every direction, and what its handles see.
+    struct Held {
+        typename MeetingFrames<K, sliding>::template State<double> state;
+        HandlePair<Handle<double, K, sliding>> handles;
+        Matrix<double, 3, K> turning, shifting;  // angular acceleration and that of the centre for each direction of handle 1
+        Matrix6 matrix;
+    };
+    Held held(std::int64_t k) const {
+        Held b{frames_.state(k), {}, {}, {}, {}};
+        b.handles = frames_.handles(b.state, k);
+        Mat3 const e = transposed_times(to_matrix(as_quaternion(b.state.rotation)), as_matrix(b.state.axes1));
+        for (int i = 0; i < 3; ++i) {
+            b.turning.set_column(i, Vec3::zero());
+            b.shifting.set_column(i, e.column(i));
+            b.turning.set_column(3 + i, e.column(i));
+            b.shifting.set_column(3 + i, cross(b.state.r1, e.column(i)));
+        }
+        if constexpr (sliding) mix(group_.screw.load(k), b);
+        double const mass = mass_.load(k)[0];
+        Matrix<double, 3, K> const turned = full(as_symmetric(inertia_.load(k))) * b.turning;
+        for (int j = 0; j < K; ++j)
+            for (int i = j; i < K; ++i) {
+                double const shifted = mass * dot(b.shifting.column(i), b.shifting.column(j));
+                b.matrix.inertia(i, j) = shifted + dot(b.turning.column(i), turned.column(j));
+            }
+        b.matrix.tip = b.matrix.rest = Matrix<double, K, K>::zero();
+        for (int j = 0; j < K; ++j) b.matrix.carry.set_column(j, along(b.handles.h2, b.turning.column(j), b.shifting.column(j)));
+        return b;
+    }
+    /// With the directions that the joint leaves free released.
+    Matrix6 matrix(std::int64_t k, int restricted, Lost& found) const {
+        Matrix6 m = held(k).matrix;
+        for (int i = K - 1; i >= restricted; --i) found = release(i, m).own > 0 ? found : lower(found, k);
+        return m;
+    }
+    Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const { return released(loads, k, restricted).bias; }
+    void accelerate(LoadsView const& loads, std::int64_t k, int restricted, HandleState<double, K> const& inboard, int restricted_outboard,
+                    HandleState<double, K> const& outboard, AccelerationsView const& out) const {
+        if (!out.acceleration.origin) return;
+        Released const r = released(loads, k, restricted);
+        Vec6 const a = accelerations(r.body.matrix, r.bias, r.direction, inboard, restricted, outboard, restricted_outboard) - r.closure;
+        out.alpha.store(k, r.body.turning * a);
+        out.acceleration.store(k, r.body.shifting * a);
+    }
+
+  private:
+    struct Released {
+        Held body;
+        Vec6 closure;  // velocity terms of the joint and of handle 1
+        Bias6 bias;
+        ReleasedDirection<double> direction[K];
+    };
+    Released released(LoadsView const& loads, std::int64_t k, int restricted) const {
+        Released r{held(k), Vec6::zero(), {}, {}};
+        Vec3 const w = read_or_zero(loads.omega, k), force = read_or_zero(loads.force, k);
+        Vec3 torque = read_or_zero(loads.torque, k);
+        if (loads.gyroscopic) torque = torque - cross(w, as_symmetric(inertia_.load(k)) * w);
+        r.closure = along(r.body.handles.h1, Vec3::zero(), cross(w, cross(w, r.body.state.r1)));
+        if (loads.bias) r.closure = r.closure + loads.bias.load<K>(k);
+        Matrix6& m = r.body.matrix;
+        r.bias.p = -(m.inertia * r.closure) - transposed_times(r.body.turning, torque) - transposed_times(r.body.shifting, force);
+        r.bias.w = Vec6::zero();
+        r.bias.e = along(r.body.handles.h2, Vec3::zero(), cross(w, cross(w, r.body.state.r2))) - m.carry * r.closure;
+        for (int i = K - 1; i >= restricted; --i) {
+            r.direction[i] = release(i, m);
+            release(i, r.direction[i], r.bias);
+        }
+        return r;
+    }
+    static Lost lower(Lost found, std::int64_t k) {
+        found.joint = std::min(found.joint, static_cast<unsigned long long>(k));
+        return found;
+    }
+    /// As turn_to_screw.
+    static void mix(Vec3 const& screw, Held& b) {
+        auto const each = [&](Matrix<double, 3, K>& m) {
+            Vec3 const linear = m.column(2), angular = m.column(5);
+            m.set_column(2, screw[0] * linear - screw[1] * angular);
+            m.set_column(5, screw[1] * linear + screw[0] * angular);
+        };
+        each(b.turning), each(b.shifting);
+    }
+
+    GroupView group_;
+    MeetingFrames<K, sliding> frames_;
+    ConstView<1> mass_;
+    ConstView<6> inertia_;
+};
+
+template <class Leaf>
+struct ArticulatedSweeps {
+    static constexpr int K = Leaf::K;
+    using Matrices = ArticulatedMatrix<double, K>;
+    using Biases = ArticulatedBias<double, K>;
+    using Joint = ArticulatedJoint<double, K>;
+    using Offset = ArticulatedOffset<double, K>;
+    using State = HandleState<double, K>;
+    struct Node {
+        Joint joint;
+        Offset offset;
+    };
+
+    Leaf leaf;
+    std::uint8_t const* restricted = nullptr;      // as TreeSweeps
+    RecordsView<Matrices, Order::plain> matrices;  // by slot
+    RecordsView<Biases, Order::plain> biases;
+    RecordsView<Joint, Order::by_body> joints;  // by joint
+    RecordsView<Offset, Order::by_body> offsets;
+    RecordsView<State, Order::by_body> forces;
+    unsigned long long* lost = nullptr;
+
+    static std::int64_t bytes(Schedule const& schedule) {
+        return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
+               schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + sizeof(Offset) + sizeof(State));
+    }
+    JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
+    void note(Lost const& found) const {
+        if (found.joint != Lost{}.joint) lower_to(lost, found.joint);
+    }
+    Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
+};
+
+template <class Leaf>
+struct ArticulatedMatrixSweep {
+    using Sweeps = ArticulatedSweeps<Leaf>;
+    using Segment = typename Sweeps::Matrices;
+    using Part = NothingRead;
+    Sweeps s;
+
+    Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    Segment part(Run const& run, int p, Part) const {
+        Lost found;
+        std::int64_t const begin = begin_of(run, p);
+        Segment segment = s.leaf.matrix(begin, s.restricted[begin], found);
+        for (std::int64_t k = begin + 1; k < end_of(run, p); ++k)
+            segment = joined(segment, s.leaf.matrix(k, s.restricted[k], found), s.at(k));
+        s.note(found);
+        return segment;
+    }
+    Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+        typename Sweeps::Joint joint;
+        Segment const segment = join(inboard, outboard, at.restricted, joint);
+        s.joints.store(at.k, joint);
+        return segment;
+    }
+    Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
+    void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    void close(Root const& /*root*/, Segment const& /*whole*/) const {}
+};
+
+/// Biases, then the joints' states and accelerations, with the matrices assembled last. Bodies are computed anew rather than kept.
+template <class Leaf>
+struct ArticulatedBiasSweep {
+    using Sweeps = ArticulatedSweeps<Leaf>;
+    using Segment = typename Sweeps::Biases;
+    using State = typename Sweeps::State;
+    using Node = typename Sweeps::Node;
+    using Part = NothingRead;
+    Sweeps s;
+    LoadsView loads;
+    AccelerationsView out;
+
+    Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    Segment part(Run const& run, int p, Part) const {
+        std::int64_t const begin = begin_of(run, p);
+        Segment segment = s.leaf.bias(loads, begin, s.restricted[begin]);
+        for (std::int64_t k = begin + 1; k < end_of(run, p); ++k)
+            segment = joined(segment, s.leaf.bias(loads, k, s.restricted[k]), s.at(k));
+        return segment;
+    }
+    Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+        typename Sweeps::Offset offset;
+        Segment const segment = join(inboard, outboard, s.joints.load(at.k), offset);
+        s.offsets.store(at.k, offset);
+        return segment;
+    }
+    Segment load(std::int64_t slot) const { return s.biases.load(slot); }
+    void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
+    /// The ground's acceleration stands in the biases of the joints to it, and at a free tip there is no force.
+    void close(Root const& root, Segment const& whole) const { s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p}); }
+    Node node(std::int64_t joint) const { return s.node(joint); }
+    State force(Node const& node, State const& first, State const& next) const {
+        return state_between(node.joint, node.offset, first, next);
+    }
+    template <bool /*unroll*/>
+    void down(Run const& run, int p, Part, State const& first, State next) const {
+        std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
+        int restricted_outboard = s.restricted[end == run.body + run.count ? run.next : end];
+        for (std::int64_t k = end - 1; k >= begin; --k) {
+            State const at_k = k == begin ? first : force(node(k), first, next);
+            s.leaf.accelerate(loads, k, s.restricted[k], at_k, restricted_outboard, next, out);
+            restricted_outboard = s.restricted[k];
+            store_forces(s.leaf.group(), out, k, at_k.force, next.force);
+            next = at_k;
+        }
+    }
+};
+
+}  // namespace catena::dca
