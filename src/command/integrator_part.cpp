@@ -52,6 +52,7 @@ Json json_of(IntegratorStudy const& study) {
             {"reference", study.reference},
             {"reference_error", study.reference_error},
             {"no_energy_error", study.no_energy_error},
+            {"no_implicit", study.no_implicit},
             {"refine", study.refine},
             {"curves", curves},
             {"valid", study.valid()}};
@@ -139,6 +140,7 @@ ReportSection section_of(IntegratorStudy const& study) {
                                        : "which came to no end at so wide a step: INVALID";
     std::string heading =
         fmt::format("{}: {} bodies over {:g}; reference: {}, {}", study.title, study.bodies, study.time, study.reference, reference);
+    if (!study.no_implicit.empty()) heading += "; no integrators with implicit springs: " + study.no_implicit;
     if (study.refine > 0)
         heading += fmt::format("; solutions of rk4, dormand-prince and velocity-verlet refined {} (solver.refine)",
                                counted(study.refine, "time", "times"));

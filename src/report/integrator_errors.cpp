@@ -21,8 +21,8 @@ constexpr double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10
 
 int order_of(Integrator integrator) { return integrator == Integrator::rk4 ? 4 : 2; }
 
-/// Some joint has a spring, and every such one has what implicit integrators ask for.
-bool takes_springs_implicitly(Scene const& scene) {
+enum class Springs { none, implicit, on_gpu, uneven };
+Springs springs_of(Scene const& scene) {
     bool any = false;
     DynamicsSpec some;
     some.integrator = Integrator::staggered;
@@ -31,10 +31,16 @@ bool takes_springs_implicitly(Scene const& scene) {
         for (std::size_t k = 0; k < chain.bodies.size(); ++k) {
             if (!scene::resists(chain.bodies, k)) continue;
             scene::ImplicitInertias const inertias = scene::implicit_inertias(chain.bodies, k, some);
-            if (!inertias.are_definite() || !inertias.are_alike()) return false;
+            if (!inertias.are_definite() || !inertias.are_alike()) return Springs::uneven;
             any = true;
         }
-    return any && !uses_gpu(scene.solver.backend);
+    if (!any) return Springs::none;
+    return uses_gpu(scene.solver.backend) ? Springs::on_gpu : Springs::implicit;
+}
+std::string why_explicit_alone(Springs springs) {
+    if (springs == Springs::on_gpu) return "they work on the host";
+    if (springs == Springs::uneven) return "a joint has springs along some of its coordinates alone, or ten decades apart";
+    return "";
 }
 
 std::vector<Integrator> integrators_of(Scene const& scene) {
@@ -43,7 +49,7 @@ std::vector<Integrator> integrators_of(Scene const& scene) {
         joint = joint && chain.bodies.size() > 0;
         absolute = absolute && !scene::joint_without_absolute_coordinates(chain);
     }
-    bool const implicit = takes_springs_implicitly(scene);
+    bool const implicit = springs_of(scene) == Springs::implicit;
     std::vector<Integrator> all;
     if (joint) all = {Integrator::dormand_prince, Integrator::rk4, Integrator::velocity_verlet};
     if (joint && implicit) all.push_back(Integrator::staggered);
@@ -233,6 +239,7 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     study.time = time;
     bool const works = std::any_of(scene.chains.begin(), scene.chains.end(), works_on_bodies);
     if (works) study.no_energy_error = "torques or wrenches work on the bodies";
+    study.no_implicit = why_explicit_alone(springs_of(scene));
     std::vector<Integrator> const integrators = integrators_of(scene);
     bool const springs = std::any_of(integrators.begin(), integrators.end(), is_implicit);
     if (springs) finest += 2;

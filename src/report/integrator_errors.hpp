@@ -46,6 +46,7 @@ struct IntegratorStudy {
     double time = 0;
     double reference_error = 0;   // how far the reference is from itself at twice its step
     std::string no_energy_error;  // why the energy's change is no error; empty: it is one
+    std::string no_implicit;      // why joints have springs and no integrator takes them implicitly; empty: none has, or some do
     int refine = 0;               // solver.refine, of those integrators whose solutions are refined
     std::vector<IntegratorCurve> curves;
     bool valid() const;
