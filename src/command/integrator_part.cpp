@@ -93,7 +93,8 @@ CurveFamily picture(IntegratorStudy const& study, Quantity x, std::string const&
 
 /// A line where the last explicit integrator becomes unstable.
 CurveFamily picture_over_step(IntegratorStudy const& study) {
-    CurveFamily family = picture(study, step_of, "step", error_of, "error over the step");
+    CurveFamily family = picture(study, step_of, "step", error_of, "error");
+    family.title += " over the step";
     double limit = 0, least = HUGE_VAL, most = 0;
     for (IntegratorCurve const& c : study.curves) {
         if (c.scheme == Scheme::explicit_steps) limit = std::max(limit, c.unstable_from());

@@ -274,6 +274,8 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
         curve.too_stiff = springs && curve.scheme == Scheme::explicit_steps && stable < 2;
         study.curves.push_back(curve);
     }
+    // Last, so that pictures without it have the others in the same colours.
+    if (joint) std::rotate(study.curves.begin(), study.curves.begin() + 1, study.curves.end());
     for (IntegratorCurve& curve : study.curves) {
         double const limit = curve.scheme == Scheme::implicit_springs ? limit_beside(curve, study.curves) : 0;
         curve.slow = slow;

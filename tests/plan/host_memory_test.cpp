@@ -33,6 +33,10 @@ void* aligned(std::size_t size, std::align_val_t to) {
 
 void* operator new(std::size_t size) { return counted(std::malloc(size)); }
 void* operator new(std::size_t size, std::align_val_t to) { return aligned(size, to); }
+void* operator new(std::size_t size, std::nothrow_t const&) noexcept {
+    void* const place = std::malloc(size);
+    return place == nullptr ? nullptr : counted(place);
+}
 void operator delete(void* place) noexcept { give_back(place); }
 void operator delete(void* place, std::size_t) noexcept { give_back(place); }
 void operator delete(void* place, std::align_val_t) noexcept { give_back(place); }
