@@ -18,7 +18,8 @@ from matplotlib.lines import Line2D  # noqa: E402
 from matplotlib.ticker import NullFormatter  # noqa: E402
 
 COLOURS = {"serial": "#0072B2", "segments": "#D55E00", "openmp": "#009E73", "cuda": "#CC79A7", "cuda-levels": "#E69F00",
-           "rk4": "#0072B2", "velocity-verlet": "#D55E00", "rattle": "#009E73", "g-baoab": "#CC79A7", "oracle": "#666666",
+           "rk4": "#0072B2", "velocity-verlet": "#D55E00", "rattle": "#009E73", "g-baoab": "#CC79A7",
+           "dormand-prince": "#56B4E9", "staggered": "#E69F00", "implicit-g-baoab": "#882255", "oracle": "#666666",
            "simbody": "#56B4E9", "pinocchio, local": "#E69F00", "pinocchio, world": "#882255"}
 MARKERS = {"projected": "o", "full": "s"}
 FLOOR = 1e-17  # an error of zero still has a place
@@ -86,19 +87,39 @@ def solver(report, hardware):
     return figure
 
 
+def over_steps(axes, scene):
+    """Errors at the end over the step; grey where no explicit integrator of fixed steps has one."""
+    curves = [curve for curve in scene["curves"] if curve["scheme"] != "adaptive"]
+    for curve in curves:
+        known = [point for point in curve["points"] if not point["no_error"]]
+        axes.plot([point["step"] for point in known], [shown(point["error"]) for point in known], color=COLOURS[curve["integrator"]],
+                  marker="o", markersize=3)
+    limits = [curve["unstable_from"] for curve in curves if curve["scheme"] == "explicit"]
+    if limits and min(limits) > 0:
+        axes.set_xlim(axes.get_xlim())
+        axes.axvspan(max(limits), axes.get_xlim()[1], color="#eeeeee", zorder=0)
+        axes.text(max(limits), axes.get_ylim()[0], " explicit ones unstable", fontsize=7, va="bottom")
+    axes.set_xlabel("step", fontsize=9)
+    axes.set_title(f"{scene['title']}, over the step", fontsize=9)
+
+
 def integrators(report, hardware):
-    """Error at the end (solid) and of the energy (dashed) against the median time of the run."""
+    """Error at the end (solid) and of the energy (dotted) against the median time of the run; with implicit springs also over the step."""
     scenes = report["integrators"]["scenes"]
-    figure, all_axes = panels(len(scenes), f"Integrator error against run time\n{hardware}", "median time of the run / s", "relative error")
+    stiff = [scene for scene in scenes if any(curve["scheme"] == "implicit springs" for curve in scene["curves"])]
+    figure, all_axes = panels(len(scenes) + len(stiff), f"Integrator error against run time\n{hardware}", "median time of the run / s", "relative error")
     used = []
     for axes, scene in zip(all_axes, scenes):
         for curve in scene["curves"]:
-            name, points = curve["integrator"], curve["points"]
+            name = curve["integrator"]
+            known = [point for point in curve["points"] if not point["no_error"]]
             used += [name] if name not in used else []
-            times = [point["seconds"]["median"] for point in points]
+            times = [point["seconds"]["median"] for point in known]
             for key, line in (("error", "-"), ("energy_error", ":")):
-                axes.plot(times, [shown(point[key]) for point in points], line, color=COLOURS[name], marker="o", markersize=3)
+                axes.plot(times, [shown(point[key]) for point in known], line, color=COLOURS[name], marker="o", markersize=3)
         axes.set_title(scene["title"], fontsize=9)
+    for axes, scene in zip(all_axes[len(scenes):], stiff):
+        over_steps(axes, scene)
     entries = [entry(name) for name in used] + [entry("error at the end", "", linestyle="-"), entry("error of the energy", "", linestyle=":")]
     figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure

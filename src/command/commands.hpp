@@ -25,6 +25,7 @@ Outcome run_scene(Scene, Communicator const&, RunRequest const&);
 /// What `report` measures: the solver's error on all scenes, the integrators' and forces' on those that have them.
 struct ReportScenes {
     std::vector<Scene> solver, integrators, forces, drift;
+    std::vector<Scene> slow;            // of the integrators, whose stiff springs hardly vibrate
     double time = 0;                    // of the integrators; 0: 32 steps of each scene's own
     std::vector<std::string> left_out;  // what is measured of some scenes and not of others, and why
 };

@@ -28,6 +28,25 @@ Scene swinging_scene(std::string const& joint, std::vector<std::string> const& o
     return parse_scene(text, "swinging-" + joint, overrides);
 }
 
+Scene elastic_scene(std::vector<std::string> const& overrides) {
+    constexpr int rods = 8;
+    constexpr double stiffness = 5.3;  // its slowest mode takes 1.6 s, a quarter of that is where a run of half a second ends
+    constexpr double turning = 2.0;    // of the last rod
+    // Curvature of a clamped rod that bends under the weight of its own sag: all but the slowest mode's; u: 1 at the clamp, 0 at the end.
+    auto const bending = [](double u) { return u * u * (1.5 - u * (2.0 / 3 - u * u * u / 30)); };
+    std::string text = "title: clamped elastic rod, 8 rods\nunits: si\nchains:\n  - name: rod\n    base: fixed\n    bodies:\n";
+    double sum = 0;
+    for (int k = 0; k < rods; ++k) sum += bending(1 - static_cast<double>(k) / rods);
+    for (int k = 0; k < rods; ++k) {
+        double const rate = turning * bending(1 - static_cast<double>(k) / rods) / sum;
+        text += fmt::format(
+            "      - {{mass: 0.1, com: [0.05, 0, 0], inertia: [5e-6, 8.6e-5, 8.6e-5], joint: {{type: spherical, translation: [{}, 0, 0], "
+            "stiffness: [{}, {}, {}], qd: [0, {}, {}]}}}}\n",
+            k == 0 ? 0.0 : 0.1, stiffness, stiffness, stiffness, 0.5 * rate, rate);
+    }
+    return parse_scene(text, "elastic", overrides);
+}
+
 Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides) {
     std::string const text = fmt::format(
         "title: coil, {0} bodies\n"

@@ -15,6 +15,9 @@ Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<st
 /// Eight bodies that swing under gravity from a given start without losing energy. `joint`: revolute | spherical | mixed | link.
 Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides);
 
+/// Eight rods on spherical joints with stiff springs, clamped, straight and about to bend in their slowest mode.
+Scene elastic_scene(std::vector<std::string> const& overrides);
+
 /// Rods wound up into a helix, hanging at rest.
 Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides);
 

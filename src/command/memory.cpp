@@ -4,6 +4,7 @@
 #include "dca/articulated.hpp"
 #include "dca/simd/runs.hpp"
 #include "dca/tree.hpp"
+#include "scene/freedom.hpp"
 
 namespace catena::command {
 namespace {
@@ -55,6 +56,18 @@ SolverSizes sizes_for(int directions, Handles handles) {
 constexpr double bead_numbers = 3 + 7 * 3, body_numbers = 45 + 3 * 4 + 16 * 3;
 constexpr double embedded_numbers = 6 * 7;            // rates of stages
 constexpr double joint_numbers = 13 + 2 * 7 + 2 * 3;  // the scan; where a step starts and its sum; rates
+constexpr double noise_numbers = 2 * 3;               // a thermostat's forces in joint coordinates; what is at rest
+constexpr double yielding_numbers = 6 + 3;            // implicit joints' compliance; in joint coordinates what it does to rates
+constexpr double rotor_numbers = 6 + 2 * 3 + 4;       // in absolute ones rates, torques and flights of rotors (JointRotors)
+
+/// What an integrator keeps of a body beside the model and the state. `stands`: springs stand in the matrices of the body's group.
+double numbers_of(DynamicsSpec const& dynamics, bool stands) {
+    if (!uses_joint_coordinates(dynamics.integrator)) return stands ? rotor_numbers : 0;
+    double numbers = joint_numbers + (stands ? yielding_numbers : 0);
+    if (dynamics.integrator == Integrator::dormand_prince) numbers += embedded_numbers;
+    if (is_langevin(dynamics.integrator) && dynamics.friction > 0) numbers += noise_numbers;
+    return numbers;
+}
 
 double scene_bytes(ChainSpec const& chain) {
     BodyArrays const& b = chain.bodies;
@@ -75,6 +88,9 @@ double scene_bytes(ChainSpec const& chain) {
 Memory memory_of(Scene const& scene, int ranks) {
     Directions const directions = directions_of(scene);
     bool const pairwise = scene.solver.pairwise();
+    bool const implicit = scene.dynamics.given && is_implicit(scene.dynamics.integrator);
+    auto const resists = [](ChainSpec const& chain) { return scene::resists(chain); };
+    bool const together = scene.solver.handles == Handles::full && std::any_of(scene.chains.begin(), scene.chains.end(), resists);
     Memory m;
     for (ChainSpec const& chain : scene.chains) {
         bool const links = chain.is_beads() || chain.is_linked();
@@ -82,9 +98,8 @@ Memory memory_of(Scene const& scene, int ranks) {
         auto const n = static_cast<double>(chain.size());
         SolverSizes const size = sizes_for(k, scene.solver.handles);
         dca::ChainTree const tree(static_cast<std::int64_t>(chain.size()), dca::run_length_for(pairwise));
-        double const numbers = chain.is_beads() ? bead_numbers
-                                                : body_numbers + (uses_joint_coordinates(scene.dynamics.integrator) ? joint_numbers : 0) +
-                                                      (scene.dynamics.integrator == Integrator::dormand_prince ? embedded_numbers : 0);
+        bool const stands = implicit && (together || resists(chain));
+        double const numbers = chain.is_beads() ? bead_numbers : body_numbers + numbers_of(scene.dynamics, stands);
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;

@@ -82,11 +82,12 @@ Outcome conclude(std::string const& title, std::vector<ReportPart> const& parts,
 
 ReportPart integrators_of(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
     std::vector<IntegratorStudy> studies;
-    for (Scene const& scene : scenes.integrators) {
-        double const time = scenes.time > 0 ? scenes.time : integrator_steps * scene.dynamics.step;
-        studies.push_back(study_integrator_errors(scene, communicator, time, request.quick ? 8 : 10, request.repeat));
-        spdlog::info("integrators of {} done", scene.title);
-    }
+    for (auto const& [group, slow] : {std::pair{&scenes.integrators, false}, {&scenes.slow, true}})
+        for (Scene const& scene : *group) {
+            double const time = scenes.time > 0 ? scenes.time : integrator_steps * scene.dynamics.step;
+            studies.push_back(study_integrator_errors(scene, communicator, time, request.quick ? 8 : 10, request.repeat, slow));
+            spdlog::info("integrators of {} done", scene.title);
+        }
     std::vector<DriftStudy> drifts;
     for (Scene const& scene : scenes.drift)
         for (Integrator const integrator : {Integrator::rattle, Integrator::g_baoab})
@@ -105,6 +106,8 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
     }
     std::vector<ReportPart> parts;
     std::vector<std::string> left_out = scenes.left_out;
+    if (std::any_of(scenes.solver.begin(), scenes.solver.end(), [](Scene const& s) { return s.solver.refine > 0; }))
+        left_out.emplace_back("refinement (solver.refine) of the solver's errors and times: see catena solve --refine");
     if (communicator.rank() == 0) parts.push_back(solver_part(solver));
     if (communicator.size() > 1 && !(scenes.integrators.empty() && scenes.forces.empty()))
         left_out.emplace_back("integrators and forces: they are compared on one rank");

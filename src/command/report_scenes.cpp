@@ -16,6 +16,7 @@ ReportScenes generated_report(ReportRequest const& request) {
     scenes.time = 0.5;
     for (char const* const joint : {"revolute", "spherical", "mixed", "link"})
         scenes.integrators.push_back(swinging_scene(joint, overrides));
+    scenes.slow.push_back(elastic_scene(overrides));
     if (!request.quick)
         for (char const* const joint : {"spherical", "link"}) scenes.drift.push_back(swinging_scene(joint, overrides));
     if (!openmm_platforms().empty())

@@ -45,7 +45,7 @@ class Run {
           system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator,
                   is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0) {
         Integrator const integrator = scene_.dynamics.integrator;
-        if (scene_.solver.refine > 0 && integrator > Integrator::velocity_verlet)
+        if (scene_.solver.refine > 0 && !is_refined(integrator))
             throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
                              "leave it out, or take rk4, dormand-prince or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);

@@ -6,63 +6,42 @@
 #include <tuple>
 
 #include "error.hpp"
-#include "integrate/observables.hpp"
-#include "integrate/stepper.hpp"
+#include "report/trajectory.hpp"
 #include "scene/freedom.hpp"
 
 namespace catena {
 namespace {
 
 constexpr int samples_of_energy = 32, coarsest = 3;
-constexpr double constraint_tolerance = 1e-13;
 constexpr double rounding = 1e-11;  // of positions after thousands of steps, relative
+constexpr double too_wide = 0.01;   // an error from which on steps are too wide to show an order
+constexpr double unstable = 4;      // times the reference's largest kinetic energy: twice its speeds
 
-/// A scene's integrator, without files.
-class Trajectory {
-  public:
-    Trajectory(Scene scene, Communicator const& communicator, Integrator integrator, double step)
-        : scene_(with(std::move(scene), integrator, step)),
-          system_(scene_, uses_joint_coordinates(integrator) ? Axes::joint : Axes::world, communicator),
-          stepper_(make_stepper(system_, scene_.dynamics)) {
-        stepper_->prepare(nullptr);
-    }
-    void run(std::int64_t steps) {
-        for (std::int64_t i = 0; i < steps; ++i) {
-            stepper_->step(done_++, nullptr);
-            stepper_->prepare(nullptr);
-        }
-        system_.wait();
-    }
-    ChainSystem::Snapshot snapshot() {
-        stepper_->observe(false);
-        return system_.snapshot();
-    }
-    struct Energy {
-        double kinetic = 0, total = 0;
-    };
-    Energy energy() {
-        Energy e;
-        e.total = e.kinetic = kinetic_energy(scene_, snapshot());
-        for (EnergyTerm const& term : system_.potential_energy()) e.total += term.value;
-        return e;
-    }
-
-  private:
-    static Scene with(Scene scene, Integrator integrator, double step) {
-        scene.dynamics.given = true;
-        scene.dynamics.integrator = integrator;
-        scene.dynamics.step = step;
-        scene.dynamics.friction = 0;
-        scene.dynamics.constraint_tolerance = constraint_tolerance;
-        return scene;
-    }
-    Scene scene_;
-    ChainSystem system_;
-    std::unique_ptr<Stepper> stepper_;
-    std::int64_t done_ = 0;
-};
+constexpr double tolerances[] = {1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10};
 
 int order_of(Integrator integrator) { return integrator == Integrator::rk4 ? 4 : 2; }
+
+enum class Springs { none, implicit, on_gpu, uneven };
+Springs springs_of(Scene const& scene) {
+    bool any = false;
+    DynamicsSpec some;
+    some.integrator = Integrator::staggered;
+    some.step = 1;  // without dampers inertias are as unlike at any step
+    for (ChainSpec const& chain : scene.chains)
+        for (std::size_t k = 0; k < chain.bodies.size(); ++k) {
+            if (!scene::resists(chain.bodies, k)) continue;
+            scene::ImplicitInertias const inertias = scene::implicit_inertias(chain.bodies, k, some);
+            if (!inertias.are_definite() || !inertias.are_alike()) return Springs::uneven;
+            any = true;
+        }
+    if (!any) return Springs::none;
+    return uses_gpu(scene.solver.backend) ? Springs::on_gpu : Springs::implicit;
+}
+std::string why_explicit_alone(Springs springs) {
+    if (springs == Springs::on_gpu) return "they work on the host";
+    if (springs == Springs::uneven) return "a joint has springs along some of its coordinates alone, or ten decades apart";
+    return "";
+}
 
 std::vector<Integrator> integrators_of(Scene const& scene) {
     bool joint = true, absolute = true;
@@ -70,9 +49,12 @@ std::vector<Integrator> integrators_of(Scene const& scene) {
         joint = joint && chain.bodies.size() > 0;
         absolute = absolute && !scene::joint_without_absolute_coordinates(chain);
     }
+    bool const implicit = springs_of(scene) == Springs::implicit;
     std::vector<Integrator> all;
-    if (joint) all = {Integrator::rk4, Integrator::velocity_verlet};
+    if (joint) all = {Integrator::dormand_prince, Integrator::rk4, Integrator::velocity_verlet};
+    if (joint && implicit) all.push_back(Integrator::staggered);
     if (absolute) all.insert(all.end(), {Integrator::rattle, Integrator::g_baoab});
+    if (absolute && implicit) all.push_back(Integrator::implicit_g_baoab);
     return all;
 }
 
@@ -87,31 +69,48 @@ double distance(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     return largest / extent(b);
 }
 
-std::vector<Vec3> end_of(Scene const& scene, Communicator const& communicator, Integrator integrator, double time, std::int64_t steps) {
-    Trajectory trajectory(scene, communicator, integrator, time / static_cast<double>(steps));
-    trajectory.run(steps);
-    return trajectory.snapshot().position;
-}
-
-double energy_error(Scene const& scene, Communicator const& communicator, Integrator integrator, double time, std::int64_t steps) {
-    Trajectory trajectory(scene, communicator, integrator, time / static_cast<double>(steps));
+/// What a run's energies say, looked at a few times.
+struct RunResult {
+    double change = 0, kinetic = 0;  // the largest
+    std::vector<Vec3> end;
+};
+RunResult result_of(Scene const& scene, Communicator const& communicator, Stepping const& stepping, std::int64_t steps) {
+    Trajectory trajectory(scene, communicator, stepping);
     auto const start = trajectory.energy();
-    double worst = 0, kinetic = start.kinetic;
+    RunResult result{0, start.kinetic, {}};
     std::int64_t const each = std::max<std::int64_t>(1, steps / samples_of_energy);
     for (std::int64_t done = 0; done < steps; done += each) {
         trajectory.run(each);
         auto const now = trajectory.energy();
-        worst = larger(worst, std::abs(now.total - start.total));
-        kinetic = std::max(kinetic, now.kinetic);
+        result.change = larger(result.change, std::abs(now.total - start.total));
+        result.kinetic = larger(result.kinetic, now.kinetic);
     }
-    return worst / kinetic;
+    result.end = trajectory.snapshot().position;
+    return result;
 }
 
+/// Through logarithms, by least squares.
+double slope_of(std::vector<std::pair<double, double>> const& points) {
+    double x = 0, y = 0, xx = 0, xy = 0;
+    auto const count = static_cast<double>(points.size());
+    for (auto const& [a, b] : points) x += std::log(a) / count, y += std::log(b) / count;
+    for (auto const& [a, b] : points) xx += (std::log(a) - x) * (std::log(a) - x), xy += (std::log(a) - x) * (std::log(b) - y);
+    return xy / xx;
+}
 /// Errors below `floor` are not the integrator's.
 std::optional<double> finest_slope(std::vector<IntegratorPoint> const& points, double floor) {
-    for (std::size_t i = points.size(); i-- > 1;)
-        if (points[i].error > floor) return std::log(points[i - 1].error / points[i].error) / std::log(points[i - 1].step / points[i].step);
+    for (std::size_t i = points.size(); i-- > 1;) {
+        auto const &fine = points[i], &wide = points[i - 1];
+        if (fine.no_error.empty() && wide.no_error.empty() && fine.error > floor)
+            return slope_of({{wide.step, wide.error}, {fine.step, fine.error}});
+    }
     return std::nullopt;
+}
+std::optional<double> slope_from(double shortest, std::vector<IntegratorPoint> const& points, double floor) {
+    std::vector<std::pair<double, double>> errors;
+    for (IntegratorPoint const& p : points)
+        if (p.no_error.empty() && p.error > floor && p.error < too_wide && p.step >= shortest) errors.emplace_back(p.step, p.error);
+    return errors.size() < 2 ? std::nullopt : std::optional(slope_of(errors));
 }
 
 /// Joint torques and wrenches: what they do to the bodies is work, and the energy's change no error.
@@ -122,37 +121,99 @@ bool works_on_bodies(ChainSpec const& chain) {
            !std::all_of(wrench.begin(), wrench.end(), [&](auto const& w) { return is_zero(w.first) && is_zero(w.second); });
 }
 
-struct Course {
+/// With the reference, and how it is done.
+struct Comparison {
+    Scene const& scene;
+    Communicator const& communicator;
     double time;
-    std::int64_t steps;
     int repeat;
     bool keeps_energy;
+    std::vector<Vec3> end;
+    double kinetic;  // the largest
+    double floor;    // below it errors are not the integrator's
 };
-IntegratorPoint point_of(Scene const& scene, Communicator const& communicator, Integrator integrator, Course const& course,
-                         std::vector<Vec3> const& exact) {
-    IntegratorPoint point{course.time / static_cast<double>(course.steps), NAN, {}, {}};
+IntegratorPoint point_of(Comparison const& exact, Integrator integrator, std::int64_t steps, double tolerance = 0) {
+    IntegratorPoint point;
+    point.step = exact.time / static_cast<double>(steps);
+    point.error = NAN;
+    point.tolerance = tolerance;
+    Stepping const stepping{integrator, point.step, tolerance};
     try {
+        RunResult const result = result_of(exact.scene, exact.communicator, stepping, steps);
+        if (!(result.kinetic <= unstable * exact.kinetic)) {
+            point.no_error = "unstable";
+            return point;
+        }
+        point.error = distance(result.end, exact.end);
+        if (exact.keeps_energy) point.energy_error = result.change / result.kinetic;
         std::vector<double> seconds;
-        for (int i = 0; i < course.repeat; ++i) {
-            Trajectory trajectory(scene, communicator, integrator, point.step);
+        for (int i = 0; i < exact.repeat; ++i) {
+            Trajectory trajectory(exact.scene, exact.communicator, stepping);
             double const start = seconds_now();
-            trajectory.run(course.steps);
+            trajectory.run(steps);
             seconds.push_back(seconds_now() - start);
-            if (i == 0) point.error = distance(trajectory.snapshot().position, exact);
+            point.taken = trajectory.inner_steps().taken, point.rejected = trajectory.inner_steps().rejected;
         }
         point.seconds = spread_of(seconds);
-        if (course.keeps_energy) point.energy_error = energy_error(scene, communicator, integrator, course.time, course.steps);
     } catch (ComputationError const&) {
-        return {point.step, NAN, {}, {}, false};
+        point.no_error = "came to no end";
     }
     return point;
+}
+IntegratorCurve curve_of(Comparison const& exact, Integrator integrator, int last) {
+    IntegratorCurve curve;
+    curve.name = name_of(integrator);
+    curve.order = order_of(integrator);
+    if (is_implicit(integrator)) curve.scheme = Scheme::implicit_springs;
+    for (int k = coarsest; k <= last; ++k) curve.points.push_back(point_of(exact, integrator, std::int64_t{1} << k));
+    curve.slope = finest_slope(curve.points, exact.floor);
+    return curve;
+}
+IntegratorCurve adaptive_curve(Comparison const& exact) {
+    IntegratorCurve curve;
+    curve.name = name_of(Integrator::dormand_prince);
+    curve.scheme = Scheme::adaptive;
+    for (double const tolerance : tolerances) {
+        IntegratorPoint point = point_of(exact, Integrator::dormand_prince, std::int64_t{1} << coarsest, tolerance);
+        point.allowed = std::max(exact.floor, tolerance * static_cast<double>(point.taken));
+        curve.points.push_back(point);
+    }
+    return curve;
+}
+/// From where on the explicit integrator that steps as this one is unstable.
+double limit_beside(IntegratorCurve const& implicit, std::vector<IntegratorCurve> const& curves) {
+    bool const joint = implicit.name == name_of(Integrator::staggered);
+    std::string const counterpart = name_of(joint ? Integrator::velocity_verlet : Integrator::g_baoab);
+    auto const found = std::find_if(curves.begin(), curves.end(), [&](IntegratorCurve const& c) { return c.name == counterpart; });
+    return found->unstable_from();
 }
 
 }  // namespace
 
+bool IntegratorCurve::as_promised() const {
+    auto const has_error = [](IntegratorPoint const& p) { return p.no_error.empty(); };
+    auto const allowed = [](IntegratorPoint const& p) { return p.no_error.empty() && p.error <= p.allowed; };
+    auto const near = [&](double found) { return found > order - 0.1 && found < order + 0.1; };
+    if (exact || too_stiff) return true;
+    if (scheme == Scheme::adaptive) return std::all_of(points.begin(), points.end(), allowed);
+    bool const goes_on = scheme != Scheme::implicit_springs || std::all_of(points.begin(), points.end(), has_error);
+    return goes_on && slope && near(*slope) && (!slow || !slope_beyond || near(*slope_beyond));
+}
+
+double IntegratorCurve::unstable_from() const {
+    double shortest = 0;
+    for (IntegratorPoint const& p : points)
+        if (!p.no_error.empty() && (shortest == 0 || p.step < shortest)) shortest = p.step;
+    return shortest;
+}
+
+bool IntegratorStudy::has_implicit() const {
+    return std::any_of(curves.begin(), curves.end(), [](IntegratorCurve const& c) { return c.scheme == Scheme::implicit_springs; });
+}
+
 bool IntegratorStudy::valid() const {
     auto const finite = [](IntegratorPoint const& p) {
-        return !p.finished || (std::isfinite(p.error) && std::isfinite(p.energy_error.value_or(0)));
+        return !p.no_error.empty() || (std::isfinite(p.error) && std::isfinite(p.energy_error.value_or(0)));
     };
     return std::isfinite(reference_error) && std::all_of(curves.begin(), curves.end(), [&](IntegratorCurve const& c) {
                return c.as_promised() && std::all_of(c.points.begin(), c.points.end(), finite);
@@ -170,38 +231,55 @@ std::string why_integrators_cannot_be_compared(Scene const& scene) {
     return integrators_of(scene).empty() ? "no integrator has all its chains" : "";
 }
 
-IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& communicator, double time, int finest, int repeat) {
+IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& communicator, double time, int finest, int repeat,
+                                        bool slow) {
     IntegratorStudy study;
     study.title = scene.title;
     study.bodies = scene.bodies();
     study.time = time;
     bool const works = std::any_of(scene.chains.begin(), scene.chains.end(), works_on_bodies);
     if (works) study.no_energy_error = "torques or wrenches work on the bodies";
+    study.no_implicit = why_explicit_alone(springs_of(scene));
     std::vector<Integrator> const integrators = integrators_of(scene);
-    // Sixteen times finer than the finest of its own order: 1/256 of that one's error, or rounding.
+    bool const springs = std::any_of(integrators.begin(), integrators.end(), is_implicit);
+    if (springs) finest += 2;
+    // Of second order sixteen times finer than the finest: 1/256 of that one's error, or rounding. Of fifth order as fine; where springs
+    // may be stiff for that, four times finer.
     Integrator const judge = integrators.front();
-    std::int64_t const most = std::int64_t{1} << (judge == Integrator::rk4 ? finest : finest + 4);
+    bool const joint = uses_joint_coordinates(judge);
+    if (joint) study.refine = scene.solver.refine;
+    std::int64_t const most = std::int64_t{1} << (!joint ? finest + 4 : springs ? finest + 2 : finest);
     study.reference = std::string(name_of(judge)) + ", " + std::to_string(most) + " steps";
-    std::vector<Vec3> exact;
+    Comparison exact{scene, communicator, time, repeat, !works, {}, 0, 0};
     try {
-        exact = end_of(scene, communicator, judge, time, most);
-        study.reference_error = distance(end_of(scene, communicator, judge, time, most / 2), exact);
+        auto const run = [&](std::int64_t steps) {
+            return result_of(scene, communicator, {judge, time / static_cast<double>(steps)}, steps);
+        };
+        RunResult const found = run(most);
+        exact.end = found.end, exact.kinetic = found.kinetic;
+        study.reference_error = distance(run(most / 2).end, exact.end);
     } catch (ComputationError const&) {
         study.reference_error = std::numeric_limits<double>::infinity();
         return study;
     }
-    double const floor = std::max(20 * study.reference_error, rounding);
+    exact.floor = std::max(20 * study.reference_error, rounding);
     for (Integrator const integrator : integrators) {
-        IntegratorCurve curve{name_of(integrator), order_of(integrator), {}, {}, false};
-        int const last = integrator == Integrator::rk4 ? finest - 3 : finest;
-        for (int k = coarsest; k <= last; ++k) {
-            std::int64_t const steps = std::int64_t{1} << k;
-            curve.points.push_back(point_of(scene, communicator, integrator, {time, steps, repeat, !works}, exact));
-        }
-        curve.slope = finest_slope(curve.points, floor);
+        bool const early = integrator == Integrator::rk4 && !springs;
+        IntegratorCurve curve =
+            integrator == Integrator::dormand_prince ? adaptive_curve(exact) : curve_of(exact, integrator, early ? finest - 3 : finest);
+        auto const& points = curve.points;
         curve.exact =
-            floor == rounding && std::all_of(curve.points.begin(), curve.points.end(), [](auto const& p) { return p.error <= rounding; });
+            exact.floor == rounding && std::all_of(points.begin(), points.end(), [](auto const& p) { return p.error <= rounding; });
+        auto const stable = std::count_if(points.begin(), points.end(), [](auto const& p) { return p.no_error.empty(); });
+        curve.too_stiff = springs && curve.scheme == Scheme::explicit_steps && stable < 2;
         study.curves.push_back(curve);
+    }
+    // Last, so that pictures without it have the others in the same colours.
+    if (joint) std::rotate(study.curves.begin(), study.curves.begin() + 1, study.curves.end());
+    for (IntegratorCurve& curve : study.curves) {
+        double const limit = curve.scheme == Scheme::implicit_springs ? limit_beside(curve, study.curves) : 0;
+        curve.slow = slow;
+        if (limit > 0) curve.slope_beyond = slope_from(limit, curve.points, exact.floor);
     }
     return study;
 }
@@ -209,7 +287,7 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
 DriftStudy study_drift(Scene const& scene, Communicator const& communicator, Integrator integrator, double step, std::int64_t steps) {
     constexpr int blocks = 50, samples = 200;  // samples: of a block
     std::int64_t const each = std::max<std::int64_t>(1, steps / (blocks * samples));
-    Trajectory trajectory(scene, communicator, integrator, step);
+    Trajectory trajectory(scene, communicator, {integrator, step});
     std::vector<double> mean(blocks, 0.0);
     double kinetic = 0, sum = 0, squares = 0, first = trajectory.energy().total;
     for (double& block : mean)

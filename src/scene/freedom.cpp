@@ -1,6 +1,7 @@
 #include "scene/freedom.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace catena::scene {
@@ -98,6 +99,17 @@ bool resists(ChainSpec const& chain) {
     for (std::size_t body = 0; body < chain.bodies.size(); ++body)
         if (resists(chain.bodies, body)) return true;
     return false;
+}
+
+ImplicitInertias implicit_inertias(BodyArrays const& bodies, std::size_t body, DynamicsSpec const& dynamics) {
+    ImplicitInertias found{HUGE_VAL, 0};
+    for (int i = 0; i < coordinates_of(bodies.joint[body]); ++i) {
+        double const stiffness = bodies.stiffness.empty() ? 0 : bodies.stiffness[body][i];
+        double const damping = bodies.damping.empty() ? 0 : bodies.damping[body][i];
+        double const inertia = dynamics.step * (0.5 * damping + rotor_of_spring(dynamics.integrator) * dynamics.step * stiffness);
+        found.least = std::min(found.least, inertia), found.most = std::max(found.most, inertia);
+    }
+    return found;
 }
 
 bool axes_are_parallel(ChainSpec const& chain, std::size_t& first_odd) { return parallel_within(printed_digits, chain, first_odd); }

@@ -21,6 +21,16 @@ bool resists(BodyArrays const& bodies, std::size_t body);
 /// Whether some joint has.
 bool resists(ChainSpec const& chain);
 
+/// Of the inertias that an implicit integrator gives joint `body` along its coordinates (rotor_of_spring()), the least and the largest.
+/// Somewhere none, elsewhere one, is no definite matrix in the joint's axes, and of very different ones the smaller would be rounding.
+struct ImplicitInertias {
+    static constexpr double widest = 1e10;
+    double least = 0, most = 0;
+    bool are_definite() const { return least > 0; }
+    bool are_alike() const { return most <= widest * least; }
+};
+ImplicitInertias implicit_inertias(BodyArrays const& bodies, std::size_t body, DynamicsSpec const& dynamics);
+
 /// The smallest kind of handle that holds all joints of the chain.
 enum class HandleKind : std::uint8_t { link, planar, spherical, universal, revolute, full };
 HandleKind handle_kind(ChainSpec const& chain);

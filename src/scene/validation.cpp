@@ -47,29 +47,21 @@ void refuse_resistance(Node const& root, Scene const& scene, Draft const& draft)
         joint_integrators + ", or leave it out (" + thermostat + " has `friction`)");
 }
 
-/// An implicit joint carries an inertia along each coordinate (rotor_of_spring()): somewhere none, elsewhere one, is no definite matrix in
-/// the joint's axes, and of very different ones the smaller would be rounding.
 void check_implicit(DynamicsSpec const& dynamics, Draft const& draft) {
-    double constexpr widest = 1e10;
     BodyArrays const& bodies = draft.chain.bodies;
     for (std::size_t k = 0; k < bodies.size(); ++k) {
         if (!resists(bodies, k)) continue;
-        double least = HUGE_VAL, most = 0;
-        for (int i = 0; i < coordinates_of(bodies.joint[k]); ++i) {
-            double const stiffness = bodies.stiffness.empty() ? 0 : bodies.stiffness[k][i];
-            double const damping = bodies.damping.empty() ? 0 : bodies.damping[k][i];
-            double const inertia = dynamics.step * (0.5 * damping + rotor_of_spring(dynamics.integrator) * dynamics.step * stiffness);
-            least = std::min(least, inertia), most = std::max(most, inertia);
-        }
+        ImplicitInertias const inertias = implicit_inertias(bodies, k, dynamics);
         auto const body = static_cast<std::int64_t>(k) + 1;
         std::string const under = fmt::format(" under integrator {}", name_of(dynamics.integrator));
-        if (!(least > 0))
+        if (!inertias.are_definite())
             fail_at(*draft.node, "body", body, "a joint with springs or dampers along some of its coordinates alone" + under,
                     "give it some stiffness or damping along each, or none");
-        if (most > widest * least)
-            fail_at(*draft.node, "body", body,
-                    fmt::format("a joint {:.3g} times as stiff along one coordinate as along another{}", most / least, under),
-                    fmt::format("stay within {:g}", widest));
+        if (!inertias.are_alike())
+            fail_at(
+                *draft.node, "body", body,
+                fmt::format("a joint {:.3g} times as stiff along one coordinate as along another{}", inertias.most / inertias.least, under),
+                fmt::format("stay within {:g}", ImplicitInertias::widest));
     }
 }
 

@@ -130,9 +130,21 @@ TEST(Report, QuickComparesSolversIntegratorsAndForces) {
     Json const json = Json::parse(std::ifstream(folder / "r/report.json"));
     EXPECT_EQ(json.at("valid"), true);
     EXPECT_GE(json.at("studies").size(), 7U);
-    ASSERT_EQ(json.at("integrators").at("scenes").size(), 4U);
+    ASSERT_EQ(json.at("integrators").at("scenes").size(), 5U);
+    int implicit = 0;
     for (Json const& scene : json["integrators"]["scenes"])
-        for (Json const& curve : scene.at("curves")) EXPECT_NEAR(curve.at("slope").get<double>(), curve.at("order").get<double>(), 0.1);
+        for (Json const& curve : scene.at("curves")) {
+            EXPECT_EQ(curve.at("valid"), true) << curve.dump();
+            if (curve.at("scheme") == "adaptive") {
+                EXPECT_GT(curve.at("points").back().at("taken"), curve["points"].front().at("taken"));
+                continue;
+            }
+            EXPECT_NEAR(curve.at("slope").get<double>(), curve.at("order").get<double>(), 0.1);
+            if (curve.at("scheme") == "implicit springs") ++implicit;
+        }
+    EXPECT_EQ(implicit, 2);
+    for (Json const& curve : json["integrators"]["scenes"].back().at("curves"))
+        EXPECT_EQ(curve.at("unstable_from").get<double>() > 0, curve.at("scheme") == "explicit") << curve.dump();
     bool const openmm = json.at("build").at("openmm") != "none";
     EXPECT_EQ(json.contains("forces"), openmm);
     for (Json const& study : json.value("forces", Json::array()))
@@ -143,7 +155,7 @@ TEST(Report, QuickComparesSolversIntegratorsAndForces) {
     EXPECT_EQ(json.at("left_out").empty(), openmm);
     std::ifstream file(folder / "r/report.html");
     std::string const page{std::istreambuf_iterator<char>(file), {}};
-    EXPECT_GE(count(page, "<svg"), 8U);  // two of each kind of solver and of each integrators' scene
+    EXPECT_GE(count(page, "<svg"), 11U);  // two of each kind of solver and of each integrators' scene, errors over steps with springs
     EXPECT_EQ(count(page, "<svg"), count(page, "</svg>"));
     EXPECT_EQ(page.find("http://"), page.find("http://www.w3.org/2000/svg"));  // nothing is loaded
     EXPECT_EQ(page.find("<script"), std::string::npos);
@@ -154,7 +166,17 @@ TEST(Report, AUsersSceneIsComparedWithItsOwnIntegrators) {
     auto const json =
         catena({"report", input("pendulum.yaml"), "--repeat", "1", "--quick", "--output", folder / "r", "--json", "-"}).json();
     EXPECT_EQ(json.at("studies").size(), 1U);
-    EXPECT_EQ(json.at("integrators").at("scenes").at(0).at("curves").size(), 2U);  // rk4 and velocity-verlet
+    EXPECT_EQ(json.at("integrators").at("scenes").at(0).at("curves").size(), 3U);  // dormand-prince, rk4, velocity-verlet
+}
+
+TEST(Report, RefinementIsNamedWhereItCountsAndWhereNot) {
+    TemporaryFolder const folder;
+    Ended const e =
+        catena({"report", input("pendulum.yaml"), "--set", "solver.refine=1", "--repeat", "1", "--quick", "--output", folder / "r"});
+    Json const json = Json::parse(std::ifstream(folder / "r/report.json"));
+    EXPECT_EQ(json.at("integrators").at("scenes").at(0).at("refine"), 1);
+    EXPECT_NE(e.out.find("dormand-prince and velocity-verlet refined 1 time (solver.refine)"), std::string::npos) << e.out;
+    EXPECT_TRUE(json.at("left_out").at(0).get<std::string>().starts_with("refinement (solver.refine) of the solver's errors"));
 }
 
 TEST(Report, TheStabilitySuiteGivesAVerdictForEveryCase) {

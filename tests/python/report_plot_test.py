@@ -21,12 +21,15 @@ SECONDS = {"median": 1e-3}
 def report(number):
     point = {"backend": "segments", "handles": "projected", "residual": number, "forward_error": number, "seconds": SECONDS}
     oracle = {"forward_error": number, "seconds": SECONDS}
-    step = {"error": number, "energy_error": number, "seconds": SECONDS}
+    step = {"step": 0.1, "error": number, "energy_error": number, "seconds": SECONDS, "no_error": ""}
+    curves = [{"integrator": "rk4", "scheme": "explicit", "unstable_from": 0.2, "points": [step, {**step, "step": 0.2, "error": None, "no_error": "unstable"}]},
+              {"integrator": "dormand-prince", "scheme": "adaptive", "unstable_from": 0, "points": [step]},
+              {"integrator": "staggered", "scheme": "implicit springs", "unstable_from": 0, "points": [step]}]
     case = {"backend": "segments", "handles": "projected", "refused": "", "forward_error": number, "refined": [{"forward_error": number}]}
     peer = {"name": "simbody", "forward_error": number, "why_not": "" if number else "its answer is not finite"}
     return {"hardware": {"processor": "any"}, "ranks": 1,
             "studies": [{"title": "a", "condition": number, "points": [point], "oracle": oracle}],
-            "integrators": {"scenes": [{"title": "a", "curves": [{"integrator": "rk4", "points": [step]}]}, {"title": "b", "curves": []}]},
+            "integrators": {"scenes": [{"title": "a", "curves": curves}, {"title": "b", "curves": []}]},
             "forces": [{"title": "a", "beads": 1, "points": [{"platform": "CPU", "precision": "single", "error": number, "seconds": SECONDS}]}],
             "stability": [{"growth": number, "oracle": oracle, "points": [case], "peers": [peer]}]}
 

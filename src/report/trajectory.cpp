@@ -1,0 +1,60 @@
+#include "report/trajectory.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "integrate/observables.hpp"
+
+namespace catena {
+namespace {
+
+constexpr double constraint_tolerance = 1e-13;
+
+Scene with(Scene scene, Stepping const& stepping) {
+    DynamicsSpec& d = scene.dynamics;
+    d.given = true;
+    d.integrator = stepping.integrator;
+    d.step = stepping.step;
+    d.tolerance = stepping.tolerance;
+    d.friction = 0;
+    d.constraint_tolerance = constraint_tolerance;
+    if (!is_refined(d.integrator)) scene.solver.refine = 0;
+    return scene;
+}
+
+}  // namespace
+
+Trajectory::Trajectory(Scene scene, Communicator const& communicator, Stepping const& stepping)
+    : scene_(with(std::move(scene), stepping)),
+      system_(scene_, uses_joint_coordinates(stepping.integrator) ? Axes::joint : Axes::world, communicator,
+              is_implicit(stepping.integrator) ? stepping.step : 0.0),
+      stepper_(make_stepper(system_, scene_.dynamics)) {
+    stepper_->prepare(nullptr);
+}
+
+void Trajectory::run(std::int64_t steps) {
+    for (std::int64_t i = 0; i < steps; ++i) {
+        stepper_->step(done_++, nullptr);
+        stepper_->prepare(nullptr);
+    }
+    system_.wait();
+}
+
+ChainSystem::Snapshot Trajectory::snapshot() {
+    stepper_->observe(false);
+    return system_.snapshot();
+}
+
+Trajectory::Energy Trajectory::energy() {
+    Energy e;
+    e.total = e.kinetic = kinetic_energy(scene_, snapshot());
+    for (EnergyTerm const& term : system_.potential_energy()) e.total += term.value;
+    return e;
+}
+
+Trajectory::InnerSteps Trajectory::inner_steps() const {
+    nlohmann::json const counts = stepper_->inner_steps();
+    if (counts.is_null()) return {};
+    return {counts.at("taken").get<std::int64_t>(), counts.at("rejected").get<std::int64_t>()};
+}
+
+}  // namespace catena
