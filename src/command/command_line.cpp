@@ -146,6 +146,7 @@ void add_commands(CLI::App& app, Words& words) {
                      "stability: instead, chains that are hard to solve, up to 2^20 bodies: growth of roundings, errors, bounds, verdicts; "
                      "without --quick beside Simbody and Pinocchio where they are here (tests/bench/peers/README.md)")
         ->type_name("NAME");
+    command->add_option("--sizes", words.sizes, "of the suite: coils and dills of so many bodies alone")->type_name("N,...");
     command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
     command->add_option("--output", words.output, "folder for report.html, report.json and pictures (default catena-report)")
         ->type_name("DIR");
@@ -293,6 +294,13 @@ void refuse_with_suite(Words const& words) {
                              "the suite has chains of its own, and its errors hang neither on threads nor on repetition: leave it out");
 }
 
+std::vector<std::int64_t> sizes_of(Words const& words) {
+    std::vector<std::int64_t> sizes;
+    if (!words.sizes.empty())
+        for (std::string const& size : comma_list("--sizes", words.sizes)) sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
+    return sizes;
+}
+
 ReportRequest report_request(Words const& words) {
     ReportRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
@@ -302,6 +310,9 @@ ReportRequest report_request(Words const& words) {
     if (!request.suite.empty() && !request.scenes.empty())
         throw InputError("both --suite and a scene", "command line", "the suite has chains of its own: leave the scene out");
     if (!request.suite.empty()) refuse_with_suite(words);
+    if (request.suite.empty() && !words.sizes.empty())
+        throw InputError("--sizes without --suite", "command line", "write --suite stability, or leave it out");
+    request.sizes = sizes_of(words);
     if (!words.output.empty()) request.output = words.output;
     request.repeat = repeat_of(words, request.quick ? 3 : request.repeat);
     return request;
@@ -321,11 +332,7 @@ BenchRequest bench_request(Words const& words) {
     if (request.name == "plan")
         for (std::int64_t bodies = 16; bodies <= 1 << 20; bodies *= 2) request.sizes.push_back(bodies);
     if (request.name == "figures") request.sizes = {2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048};
-    if (!words.sizes.empty()) {
-        request.sizes.clear();
-        for (std::string const& size : comma_list("--sizes", words.sizes))
-            request.sizes.push_back(whole_number("--sizes", size, 1, 1000000000));
-    }
+    if (!words.sizes.empty()) request.sizes = sizes_of(words);
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
     for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
     if (!words.backends.empty())

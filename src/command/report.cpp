@@ -136,7 +136,9 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
         return peers ? (*peers)(each, scene) : std::vector<PeerAnswer>{};
     };
     std::vector<StabilityStudy> studies;
-    for (StabilityCase const& each : stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick)) {
+    auto const cases =
+        request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes);
+    for (StabilityCase const& each : cases) {
         int const seeds = each.bodies > 100000 ? 1 : 3;
         studies.push_back(study_stability(each, backends, handles_of(request), seeds, ask));
         spdlog::info("{}, {}: {}", each.family, each.name, name_of(studies.back().verdict()));

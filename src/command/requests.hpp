@@ -44,6 +44,7 @@ struct RunRequest : SceneOptions {
 struct ReportRequest : CommonOptions {
     std::vector<std::string> scenes;  // empty: generated ones
     std::string suite;                // "stability"; empty: error against run time
+    std::vector<std::int64_t> sizes;  // of the suite: coils and dills of these alone
     std::string output = "catena-report";
     int repeat = 11;
     bool quick = false;

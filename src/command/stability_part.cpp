@@ -127,7 +127,7 @@ ReportPart stability_part(std::vector<StabilityStudy> const& studies) {
         "4 times the best of others' (articulated bodies in double, other programs) and the residual's bound, else the case is INVALID. "
         "Where 2^-53 growth is above 1e-3 the equations of joint forces in double determine fewer than three digits: ARTICULATED, where "
         "articulated handles (catena solve --handles articulated), refined, keep to all that; else the answer is that of a chain nearby, "
-        "or refused: BEYOND where others have none either, LOST where they do.",
+        "or refused: BEYOND where others have none either or 2^-53 condition is above 1e-3, too, else LOST.",
         {},
         Json::array()};
     for (StabilityStudy const& study : studies) {

@@ -41,7 +41,7 @@ std::vector<Variant> variants_of(ChainSpec const& chain, std::vector<Backend> co
     std::vector<Variant> all;
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
-            if (kind == Handles::articulated && !scene::takes_articulated_handles(chain)) continue;
+            if (kind == Handles::articulated && (uses_gpu(backend) || !scene::takes_articulated_handles(chain))) continue;
             Variant variant;
             variant.solver.backend = backend;
             variant.solver.handles = kind;
@@ -209,7 +209,7 @@ Verdict StabilityStudy::verdict() const {
         if (!all(false, &StabilityPoint::is_nearby) || !all(true, &StabilityPoint::is_nearby)) return Verdict::invalid;
         if (good && articulated_good) return Verdict::refined;
         if (has_articulated && articulated_good) return Verdict::articulated;
-        return best_of_others() <= 1e-3 ? Verdict::lost : Verdict::beyond;
+        return best_of_others() <= 1e-3 && !ill_conditioned() ? Verdict::lost : Verdict::beyond;
     }
     if (!good || !articulated_good) return Verdict::invalid;
     return all(false, &StabilityPoint::holds) && all(true, &StabilityPoint::holds) ? Verdict::valid : Verdict::refined;
@@ -219,10 +219,11 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
                                int seeds, AskPeers const& peers) {
     StabilityStudy study{which.family, which.name, {}, which.bodies, seeds, {}, 1, 0, {}};
     std::vector<PeerErrors> of_peers;
-    std::vector<Variant> variants = variants_of(which.scene(1).chains.front(), backends, handles);
+    std::vector<Variant> variants;
     std::vector<double> condition, growth, in_double;
     for (int seed = 1; seed <= seeds; ++seed) {
         Scene scene = which.scene(static_cast<std::uint64_t>(seed));
+        if (variants.empty()) variants = variants_of(scene.chains.front(), backends, handles);
         Solution const layout = layout_of(scene);
         ExactSolution const exact = exact_solution(scene, layout, largest_quad_here, which.bodies > few_nudges_above ? 1 : 3);
         study.reference = exact.by;

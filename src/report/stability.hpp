@@ -71,6 +71,8 @@ struct StabilityStudy {
     double against_peers(bool articulated = false) const;
     /// The equations of joint forces in double determine fewer than three digits of the answer.
     bool beyond() const { return growth * 0x1p-53 > 1e-3; }
+    /// So do any equations in double, as the condition number says.
+    bool ill_conditioned() const { return condition && *condition * 0x1p-53 > 1e-3; }
     /// The worst over the points without articulated handles; infinite where one has no answer.
     double worst(double (StabilityPoint::*error)() const) const;
     /// Of the points with or without articulated handles.

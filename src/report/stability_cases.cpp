@@ -130,7 +130,7 @@ class Cases {
         for (int const e : exponents)
             if (!quick_ || e == exponents.front() || e == exponents.back()) action(std::pow(10.0, e), fmt::format("1e{}", e));
     }
-    void long_chains(std::int64_t longest);
+    void long_chain(std::int64_t bodies);
     void masses();
     void inertias();
     void shapes();
@@ -144,11 +144,9 @@ class Cases {
     std::vector<StabilityCase> all_;
 };
 
-void Cases::long_chains(std::int64_t longest) {
-    for (std::int64_t n = 16; n <= longest; n *= 4) {
-        add("coil", fmt::format("{} bodies", n), [n](std::uint64_t seed) { return scene_of(chain_of(scene::coil(rods(n, seed), {}))); }, n);
-        add("dill", fmt::format("{} bodies", n), [n](std::uint64_t seed) { return scene_of(chain_of(scene::dill(rods(n, seed), {}))); }, n);
-    }
+void Cases::long_chain(std::int64_t n) {
+    add("coil", fmt::format("{} bodies", n), [n](std::uint64_t seed) { return scene_of(chain_of(scene::coil(rods(n, seed), {}))); }, n);
+    add("dill", fmt::format("{} bodies", n), [n](std::uint64_t seed) { return scene_of(chain_of(scene::dill(rods(n, seed), {}))); }, n);
 }
 
 void Cases::masses() {
@@ -246,13 +244,19 @@ void Cases::units() {
 
 std::vector<StabilityCase> stability_cases(std::int64_t longest, bool quick) {
     Cases cases(quick);
-    cases.long_chains(longest);
+    for (std::int64_t n = 16; n <= longest; n *= 4) cases.long_chain(n);
     cases.masses();
     cases.inertias();
     cases.shapes();
     cases.rates();
     cases.springs();
     cases.units();
+    return cases.take();
+}
+
+std::vector<StabilityCase> coils_and_dills(std::vector<std::int64_t> const& sizes) {
+    Cases cases(false);
+    for (std::int64_t const n : sizes) cases.long_chain(n);
     return cases.take();
 }
 

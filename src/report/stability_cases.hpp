@@ -20,6 +20,9 @@ struct StabilityCase {
 /// units. `quick`: every other one.
 std::vector<StabilityCase> stability_cases(std::int64_t longest, bool quick);
 
+/// Of these sizes alone.
+std::vector<StabilityCase> coils_and_dills(std::vector<std::int64_t> const& sizes);
+
 inline constexpr std::int64_t hard_bodies = 64;
 
 }  // namespace catena

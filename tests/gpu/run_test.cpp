@@ -11,7 +11,7 @@ class GpuRun : public WholeRun {
     void SetUp() override { need_gpu(catena::testing::world()); }
     /// Whether the scene is one for the host, which then refuses the GPU in one line.
     bool is_refused(Backend backend) {
-        if (parse_scene(GetParam().text, "scene.yaml").dynamics.why_host_alone().empty()) return false;
+        if (parse_scene(GetParam().text, "scene.yaml").why_host_alone().empty()) return false;
         try {
             run(catena::testing::world(), "refused", 40, "", backend);
             ADD_FAILURE() << "not refused";
@@ -56,6 +56,17 @@ RunScene joint_chains(char const* name, char const* joint, char const* more, cha
                       ", step: 0.0005, steps: 40}\noutput: {every: 20, checkpoint_every: 20, joint_forces: true}\n"};
 }
 char const* const held = ", tip: {joint: {type: spherical}}";
+/// What the solutions lack is looked for on the host and solved for on the GPU.
+RunScene refined(RunScene scene) {
+    scene.text += "solver: {refine: 2}\n";
+    return scene;
+}
+INSTANTIATE_TEST_SUITE_P(Refined, GpuRun,
+                         ::testing::Values(refined(joint_chains("rk4_revolute_held", "revolute", held, "rk4")),
+                                           refined(joint_chains("verlet_spherical_held", "spherical", held, "velocity-verlet")),
+                                           refined(joint_chains("rk4_planar", "planar", "", "rk4"))),
+                         name_of_scene);
+
 INSTANTIATE_TEST_SUITE_P(SharedChains, GpuRun,
                          ::testing::Values(joint_chains("rk4_planar", "planar", "", "rk4"),
                                            joint_chains("rk4_spherical_held", "spherical", held, "rk4"),
