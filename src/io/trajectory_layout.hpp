@@ -30,9 +30,8 @@ namespace catena::hdf5 {
 
 /// What of the optional parts a trajectory has.
 struct TrajectoryContents {
-    std::vector<hsize_t> bodies;  // their sites
     bool velocities = false, joint_forces = false, periodic = false, si = false;
-    hsize_t sites = 0, tips = 0;
+    hsize_t sites = 0, bodies = 0, tips = 0;
 };
 TrajectoryContents contents_of(Topology const&, bool velocities, bool joint_forces);
 
