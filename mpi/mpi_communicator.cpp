@@ -27,6 +27,8 @@ class MpiLibrary {
         int initialised = 0;
         check_mpi(MPI_Initialized(&initialised), "MPI_Initialized");
         if (initialised != 0) return;
+        // Of Open MPI's two ways to files, for ROMIO (io/all_writers.cpp).
+        ::setenv("OMPI_MCA_io", "^ompio", 0);
         int provided = MPI_THREAD_SINGLE;
         check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
         owned_ = true;

@@ -12,6 +12,9 @@
 namespace catena {
 namespace {
 
+/// What ranks send to the root in one piece (chain/scene_windows.hpp). To write together takes about a millisecond more for each frame.
+constexpr std::int64_t worth_it = 4 << 20;
+
 /// The same on every host that sees the same file.
 using Marks = std::array<std::int64_t, 2>;
 
@@ -30,16 +33,19 @@ int rank_without(Communicator const& communicator, std::string const& file) {
 }
 
 std::string why_by_the_root(Communicator const& communicator, std::string const& file) {
-    if (std::string const why = hdf5::why_not_by_all(communicator); !why.empty()) return why;
+    std::string const why = hdf5::why_not_by_all(communicator);
+    if (communicator.sum(why.empty() ? 0 : 1) > 0) return why.empty() ? "not every rank can write with the others" : why;
     int const rank = rank_without(communicator, file);
     return rank < 0 ? "" : "rank " + std::to_string(rank) + " does not see the file";
 }
 
 }  // namespace
 
-FileWay choose_file_way(Communicator const& communicator, FileWish wish, std::string const& file) {
+FileWay choose_file_way(Communicator const& communicator, FileWish wish, std::string const& file, std::int64_t bytes) {
     if (communicator.size() == 1) return {};
     if (wish == FileWish::root) return {false, "by the root: CATENA_HDF5 says so"};
+    communicator.broadcast(std::as_writable_bytes(std::span(&bytes, 1)));
+    if (wish == FileWish::best && bytes < worth_it) return {false, "by the root: frames are small"};
     std::string const why = why_by_the_root(communicator, file);
     if (why.empty()) return {true, "collective, " + std::to_string(communicator.size()) + " ranks"};
     if (wish == FileWish::collective)

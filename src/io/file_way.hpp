@@ -1,6 +1,7 @@
 // How the ranks of a run write a file of HDF5's: the root alone, or all of them together.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "mpi/communicator.hpp"
@@ -18,7 +19,8 @@ struct FileWay {
     bool collective = false;
     std::string text = "by the root";  // with the reason where several ranks might have; else "collective, 3 ranks"
 };
-/// For `file`, which the root has made. InputError where what is wished for cannot be. Collective.
-FileWay choose_file_way(Communicator const&, FileWish, std::string const& file);
+/// For `file`, which the root has made, and frames of so many bytes (the root knows): small ones are sooner written by one. InputError
+/// where what is wished for cannot be. Collective.
+FileWay choose_file_way(Communicator const&, FileWish, std::string const& file, std::int64_t bytes);
 
 }  // namespace catena

@@ -8,6 +8,7 @@ class OneWriter final : public Writers {
     bool are_several() const override { return false; }
     bool is_first() const override { return true; }
     void prepare(Properties const&, std::string const&, std::string const&) const override {}
+    void watch(File const&, std::string const&, std::string const&) override {}
     hid_t transfer() const override { return H5P_DEFAULT; }
     std::int64_t sum(std::int64_t value) const override { return value; }
     void make_room(File const& handle, hsize_t more, std::string const& file, std::string const& doing) override {

@@ -65,8 +65,14 @@ class H5mdWriter final : public TrajectoryWriter {
     H5mdWriter(std::string file, Standing const& standing, std::unique_ptr<Writers> writers)
         : name_(std::move(file)), writers_(std::move(writers)), at_(standing) {
         Quiet const quiet;
-        file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access_of(*writers_, name_).get()), name_, writing));
-        series_ = open_trajectory(place(), at_.contents);
+        try {
+            file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access_of(*writers_, name_).get()), name_, writing));
+            writers_->watch(file_, name_, writing);
+            series_ = open_trajectory(place(), at_.contents);
+        } catch (...) {
+            if (writers_->are_several()) leave_open();
+            throw;
+        }
     }
 
     /// Others may not know that this rank ends here: then nothing is closed together.
@@ -271,12 +277,14 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
                                   bool joint_forces, std::optional<std::int64_t> after_step) {
     std::unique_ptr<H5mdWriter> writer;
     bool fits = false;
+    std::int64_t bytes = 0;
     on_first_rank(communicator, [&] {
         writer = std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, after_step);
         fits = writer->is_for_all();
+        bytes = writer->standing().contents.bytes_of_frame();
     });
     FileWish const wish = file_wish_of_run(communicator);
-    FileWay way = choose_file_way(communicator, wish, file);
+    FileWay way = choose_file_way(communicator, wish, file, bytes);
     if (way.collective && communicator.sum(fits ? 1 : 0) == 0) way = {false, "by the root: an earlier version began the file"};
     if (!way.collective) return {std::move(writer), way};
     Standing standing;

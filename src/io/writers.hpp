@@ -18,6 +18,8 @@ class Writers {
     virtual bool is_first() const = 0;
     /// Makes H5Fopen and H5Fcreate theirs.
     virtual void prepare(Properties const& access, std::string const& file, std::string const& doing) const = 0;
+    /// To be told of the file once it is open.
+    virtual void watch(File const&, std::string const& file, std::string const& doing) = 0;
     /// For H5Dwrite.
     virtual hid_t transfer() const = 0;
     virtual std::int64_t sum(std::int64_t value) const = 0;
@@ -34,7 +36,7 @@ class Writers {
 std::unique_ptr<Writers> one_writer();
 /// Precondition: why_not_by_all() is empty.
 std::unique_ptr<Writers> all_writers(Communicator const&);
-/// What keeps these ranks from writing together: "this build's HDF5 is serial".
+/// What keeps this rank from writing with the others: "this build's HDF5 is serial".
 std::string why_not_by_all(Communicator const&);
 
 }  // namespace catena::hdf5
