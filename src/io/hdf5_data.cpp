@@ -170,15 +170,14 @@ void Series::write(Place const& place, Space const& in_file, void const* values,
     check(H5Dwrite(data_.get(), type_, in_memory.get(), in_file.get(), transfer, values), place.file, place.doing);
 }
 
-void Series::put(Place const& place, hsize_t frame, void const* values, hid_t transfer) {
+void Series::put(Place const& place, hsize_t frame, void const* values) {
     Space const in_file = grown(place, frame + 1);
+    if (values == nullptr) return;
     std::vector<hsize_t> start{frame}, count{1};
     start.resize(row_.size() + 1, 0);
     count.insert(count.end(), row_.begin(), row_.end());
-    check(values == nullptr ? H5Sselect_none(in_file.get())
-                            : H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
-          place.file, place.doing);
-    write(place, in_file, values, transfer);
+    check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), place.file, place.doing);
+    write(place, in_file, values, H5P_DEFAULT);
 }
 
 void Series::put(Place const& place, hsize_t frame, std::span<Part const> parts, void const* values, hid_t transfer) {

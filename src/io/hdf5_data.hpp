@@ -45,9 +45,9 @@ class Series {
     struct Part {
         hsize_t first, count;
     };
-    /// Writes row `frame`, growing to frame + 1 rows; nothing of it where `values` is null. `transfer`: of the file's writers.
-    void put(Place const&, hsize_t frame, void const* values, hid_t transfer);
-    /// Of that row these parts, which follow one another in the row as they do in `values`.
+    /// Writes row `frame`, growing to frame + 1 rows; where `values` is null it only grows.
+    void put(Place const&, hsize_t frame, void const* values);
+    /// Of that row these parts, which follow one another in the row as they do in `values`. `transfer`: of the file's writers.
     void put(Place const&, hsize_t frame, std::span<Part const> parts, void const* values, hid_t transfer);
     /// Bytes that row `frame` adds to the file.
     hsize_t growth(Place const&, hsize_t frame) const;

@@ -209,9 +209,7 @@ class H5mdWriter final : public TrajectoryWriter {
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
         flushed_ = now();
     }
-    void put_from_first(Series& series, void const* values) {
-        series.put(place(), at_.frames, writers_->is_first() ? values : nullptr, writers_->transfer());
-    }
+    void put_from_first(Series& series, void const* values) { series.put(place(), at_.frames, writers_->is_first() ? values : nullptr); }
     Place place() const { return {file_.get(), name_, writing}; }
 
     void create(Topology const& topology) {

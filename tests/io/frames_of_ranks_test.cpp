@@ -110,7 +110,7 @@ TEST_F(FramesOfRanks, AreTheBitsOfOneWriter) {
     NEEDS_PARALLEL_HDF5;
     ::setenv("CATENA_HDF5", "collective", 1);
     int const ranks = world().size();
-    for (std::size_t const beads : {std::size_t{0}, std::size_t{40000}}) {
+    for (std::size_t const beads : {std::size_t{0}, std::size_t{20000}}) {
         Topology const topology = topology_of(beads);
         std::size_t const sites = topology.mass.size();
         auto const write = [&](std::string const& name, auto const& owner, std::vector<std::int64_t> const& steps,
@@ -123,19 +123,18 @@ TEST_F(FramesOfRanks, AreTheBitsOfOneWriter) {
         };
         auto const in_turn = [&](std::size_t site) { return static_cast<int>(beads == 0 ? site : site / 7777) % ranks; };
         auto const in_runs = [&](std::size_t site) { return static_cast<int>(site * static_cast<std::size_t>(ranks) / sites); };
-        auto const last_has_none = [&](std::size_t site) { return static_cast<int>(site) % (ranks - 1); };
+        auto const last_has_none = [&](std::size_t site) { return static_cast<int>(beads == 0 ? site : site / 7777) % (ranks - 1); };
         write("turns.h5md", in_turn, {0, 10, 20});
         write("runs.h5md", in_runs, {0, 10, 20});
-        write("none.h5md", last_has_none, {0, 10, 20});
-        write("again.h5md", in_runs, {0, 10, 15, 30});
-        write("again.h5md", in_turn, {10, 20}, 9);
+        write("none.h5md", last_has_none, {0, 10});
+        write("none.h5md", in_turn, {10, 20}, 9);
         if (world().rank() != 0) continue;
         auto const alone = make_trajectory(folder_ / "alone.h5md", topology, true, true, {});
         for (std::int64_t const step : {0, 10, 20}) alone->write(sample_frame(step, topology));
         alone->close();
         Bits const expected = bits_of(folder_ / "alone.h5md");
         ASSERT_GT(expected.size(), 10U);
-        for (char const* const name : {"turns.h5md", "runs.h5md", "none.h5md", "again.h5md"})
+        for (char const* const name : {"turns.h5md", "runs.h5md", "none.h5md"})
             EXPECT_TRUE(bits_of(folder_ / name) == expected) << name << ", " << beads;
         auto const goes_on = make_trajectory(folder_ / "runs.h5md", topology, true, true, 10);
         goes_on->write(sample_frame(20, topology));
@@ -150,14 +149,14 @@ TEST_F(FramesOfRanks, WhatWasNotFlushedOrClosedLeavesTheRestWhole) {
     Topology const topology = sample_topology();
     {
         TrajectoryOfRanks const made = make("left.h5md", topology);
-        for (std::int64_t step = 0; step < 30; ++step) {
+        for (std::int64_t step = 0; step < 10; ++step) {
             write_own(*made.writer, sample_frame(step, topology), topology, [](std::size_t site) { return static_cast<int>(site) % 2; });
-            if (step == 19) made.writer->flush();
+            if (step == 6) made.writer->flush();
         }
     }
     world().barrier();
     if (world().rank() == 0) {
-        EXPECT_EQ(frames_in(folder_ / "left.h5md"), 20U);
+        EXPECT_EQ(frames_in(folder_ / "left.h5md"), 7U);
     }
 }
 
