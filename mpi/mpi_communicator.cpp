@@ -27,6 +27,8 @@ class MpiLibrary {
         int initialised = 0;
         check_mpi(MPI_Initialized(&initialised), "MPI_Initialized");
         if (initialised != 0) return;
+        // Of Open MPI's two ways to files, for ROMIO (io/all_writers.cpp).
+        ::setenv("OMPI_MCA_io", "^ompio", 0);
         int provided = MPI_THREAD_SINGLE;
         check_mpi(MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided), "MPI_Init_thread");
         owned_ = true;
@@ -167,6 +169,8 @@ class MpiCommunicator final : public Communicator {
         for (std::size_t i = 0; i < expected.size(); ++i) require_length(statuses[i], expected[i]);
     }
 
+    MPI_Comm handle() const { return world_; }
+
     double max(double value) const override { return from_ordered(all_reduced(ordered(value), MPI_MAX)); }
     std::int64_t sum(std::int64_t value) const override { return all_reduced(value, MPI_SUM); }
 
@@ -296,6 +300,11 @@ class MpiCommunicator final : public Communicator {
 };
 
 }  // namespace
+
+MPI_Comm handle_of(Communicator const& communicator) {
+    auto const* const by_mpi = dynamic_cast<MpiCommunicator const*>(&communicator);
+    return by_mpi != nullptr ? by_mpi->handle() : MPI_COMM_NULL;
+}
 
 std::unique_ptr<Communicator> mpi_communicator(int* argc, char*** argv, MpiOptions const& options) {
     auto communicator = std::make_unique<MpiCommunicator>(argc, argv, options);

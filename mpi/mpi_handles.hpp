@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "mpi/communicator.hpp"
 
 namespace catena {
 
@@ -18,6 +19,9 @@ inline void check_mpi(int code, char const* call) {
     MPI_Error_string(code, text, &length);
     throw ComputationError(std::string("MPI failed: ") + text + " (" + call + "): see whether every rank and its host are still up");
 }
+
+/// MPI's communicator of these ranks; MPI_COMM_NULL where they speak in another way.
+MPI_Comm handle_of(Communicator const&);
 
 /// Whether an error is on its way out that other ranks may not know of: to wait for them then would be for ever.
 class Unwinding {

@@ -79,4 +79,45 @@ void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own, 
     }
 }
 
+/// Joined where they are neighbours in their group too.
+std::vector<SceneWindows::Part> SceneWindows::own_parts() const {
+    std::vector<Part> own;
+    for (Part const& part : parts_) {
+        if (part.rank != communicator_.rank()) continue;
+        if (!own.empty() && own.back().group == part.group && own.back().first + own.back().count == part.first &&
+            own.back().local + own.back().count == part.local)
+            own.back().count += part.count;
+        else
+            own.push_back(part);
+    }
+    return own;
+}
+
+std::vector<SceneWindows::Run> SceneWindows::own_runs() const {
+    std::vector<Run> runs;
+    for (Part const& part : own_parts()) runs.push_back({part.first, part.count});
+    return runs;
+}
+
+void SceneWindows::pass_own(int width, std::vector<std::vector<double>> const& own,
+                            std::function<void(std::vector<Own> const&)> const& take) const {
+    std::int64_t const length = std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
+    std::vector<std::vector<Own>> rounds;
+    std::int64_t room = 0;  // bodies, in the last one
+    for (Part const& part : own_parts())
+        for (std::int64_t at = 0; at < part.count;) {
+            if (room == 0 || rounds.back().size() == most_runs) {
+                rounds.emplace_back();
+                room = length;
+            }
+            std::int64_t const count = std::min(part.count - at, room);
+            double const* const values = own[part.group].data() + (part.local + at) * width;
+            rounds.back().push_back({part.first + at, std::span(values, static_cast<std::size_t>(count * width))});
+            at += count;
+            room -= count;
+        }
+    rounds.resize(static_cast<std::size_t>(communicator_.max(static_cast<double>(rounds.size()))));
+    for (std::vector<Own> const& round : rounds) take(round);
+}
+
 }  // namespace catena

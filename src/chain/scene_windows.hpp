@@ -24,7 +24,23 @@ class SceneWindows {
     /// other ranks waiting: it is for failures that end the program. Collective.
     void pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const;
 
+    /// Neighbours in the scene.
+    struct Run {
+        std::int64_t first, count;
+    };
+    /// This rank's own, in the order of the scene.
+    std::vector<Run> own_runs() const;
+    /// The numbers of such a run, or of a part of one.
+    struct Own {
+        std::int64_t first;
+        std::span<double const> values;
+    };
+    /// `own` without a message, in the order of the scene, in rounds of bounded size: as many on every rank, the last ones empty where a
+    /// rank has less. Collective.
+    void pass_own(int width, std::vector<std::vector<double>> const& own, std::function<void(std::vector<Own> const&)> const& take) const;
+
   private:
+    static constexpr std::size_t most_runs = 256;  // in a round
     /// Neighbours in the scene, in a group and on a rank.
     struct Part {
         std::int64_t first, count;  // in the scene
@@ -38,6 +54,7 @@ class SceneWindows {
     };
     template <class Action>
     void for_each_part_in(Window const&, Action const& action) const;
+    std::vector<Part> own_parts() const;
     void send(Window const&, int width, std::vector<std::vector<double>> const& own) const;
     std::vector<double> receive(Window const&, int width, std::vector<std::vector<double>> const& own) const;
 

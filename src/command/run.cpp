@@ -56,6 +56,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
                                      counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"),
                                      counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
     text.entry("", reason);
+    if (parallel.at("ranks").get<std::int64_t>() > 1) text.entry("frames written", parallel.at("frames_written").get<std::string>());
     if (auto const forces = s.find("forces"); forces != s.end()) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));

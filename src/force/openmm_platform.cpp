@@ -74,7 +74,7 @@ std::vector<std::string> const& load_openmm_plugins() {
 OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, int device) {
     auto const& failures = load_openmm_plugins();
     auto const present = platforms_present();
-    bool const on_gpu = device >= 0 && communicator.size() == 1;  // those of several ranks pass through the host
+    bool const on_gpu = device >= 0;
     std::string const name = !spec.platform.empty()                ? spec.platform
                              : on_gpu && contains(present, "CUDA") ? "CUDA"
                              : contains(present, "CPU")            ? "CPU"

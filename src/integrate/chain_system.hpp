@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "chain/scene_windows.hpp"
 #include "force/openmm_force.hpp"
 #include "integrate/absolute_dynamics.hpp"
 #include "integrate/joint_dynamics.hpp"
@@ -60,7 +61,18 @@ class ChainSystem {
         Snapshot motion;
         std::vector<Vector<double, 6>> joint_force;  // where they are asked for
     };
-    void pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take);
+    void pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take) { pass_bodies(own_bodies(joint_forces), take); }
+    /// This rank's bodies as they are now.
+    struct OwnBodies {
+        bool turning = false, joint_forces = false;  // what a row holds beside position and velocity
+        std::vector<std::vector<double>> rows;       // of each group, one a body
+        int width() const { return (turning ? 13 : 6) + (joint_forces ? 6 : 0); }
+    };
+    OwnBodies own_bodies(bool joint_forces);
+    void pass_bodies(OwnBodies const&, std::function<void(Bodies const&)> const& take) const;
+    /// They alone, in scene order, in rounds of bounded size, as many on every rank: neighbours together. Collective.
+    void pass_own_bodies(OwnBodies const&, std::function<void(std::vector<Bodies> const&)> const& take) const;
+    std::vector<SceneWindows::Run> own_runs() const { return SceneWindows(communicator_, groups_).own_runs(); }
     /// Potential energy term by term, the same on every rank after OpenMM, on rank 0 for the others: gravity, springs, fixman, then
     /// OpenMM's. Collective.
     std::vector<EnergyTerm> potential_energy();
@@ -146,7 +158,6 @@ class ChainSystem {
     void describe_beads();
     void order_beads_by_rank();
     std::vector<BodyResults> results() const;
-    std::vector<std::vector<double>> own_bodies(bool turning, bool joint_forces);
     std::size_t index_of(ChainGroup const&) const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;
     std::vector<TipForce> tip_forces(std::vector<BodyResults> const&) const;

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "chain/gather.hpp"
-#include "chain/scene_windows.hpp"
 #include "error.hpp"
 
 namespace catena {
@@ -45,13 +44,14 @@ std::size_t ChainSystem::index_of(ChainGroup const& group) const {
 }
 
 /// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega, joint force.
-std::vector<std::vector<double>> ChainSystem::own_bodies(bool turning, bool joint_forces) {
-    std::vector<std::vector<double>> own(groups_.size());
+ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
+    bool const turning = std::any_of(groups_.begin(), groups_.end(), [](auto const& group) { return !group->beads; });
+    OwnBodies own{turning, joint_forces, std::vector<std::vector<double>>(groups_.size())};
     std::vector<BodyResults> const found = joint_forces ? results() : std::vector<BodyResults>();
     std::size_t result = 0;
     auto const add = [&](ChainGroup const& group, auto const& row) {
-        std::vector<double>& rows = own[index_of(group)];
-        rows.reserve(static_cast<std::size_t>(group.size) * ((turning ? 13 : 6) + (joint_forces ? 6 : 0)));
+        std::vector<double>& rows = own.rows[index_of(group)];
+        rows.reserve(static_cast<std::size_t>(group.size * own.width()));
         for (std::int64_t k = 0; k < group.size; ++k) {
             row(rows, k);
             if (!joint_forces) continue;
@@ -95,23 +95,36 @@ std::vector<std::vector<double>> ChainSystem::own_bodies(bool turning, bool join
     return own;
 }
 
-void ChainSystem::pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take) {
-    bool const turning = std::any_of(groups_.begin(), groups_.end(), [](auto const& group) { return !group->beads; });
-    int const width = (turning ? 13 : 6) + (joint_forces ? 6 : 0);
-    auto const own = own_bodies(turning, joint_forces);
-    SceneWindows(communicator_, groups_).pass(width, own, [&](std::int64_t first, std::span<double const> values) {
-        Bodies bodies;
-        bodies.first = first;
-        Snapshot& motion = bodies.motion;
-        for (auto row = values.begin(); row != values.end();) {
-            auto const next = [&] { return *row++; };
-            auto const three = [&] { return Vec3{{next(), next(), next()}}; };
-            motion.position.push_back(three());
-            motion.velocity.push_back(three());
-            motion.orientation.push_back(turning ? Quat{next(), next(), next(), next()} : Quat::identity());
-            motion.omega.push_back(turning ? three() : Vec3::zero());
-            if (joint_forces) bodies.joint_force.push_back({{next(), next(), next(), next(), next(), next()}});
-        }
+namespace {
+
+ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first, std::span<double const> values) {
+    ChainSystem::Bodies bodies;
+    bodies.first = first;
+    ChainSystem::Snapshot& motion = bodies.motion;
+    for (auto row = values.begin(); row != values.end();) {
+        auto const next = [&] { return *row++; };
+        auto const three = [&] { return Vec3{{next(), next(), next()}}; };
+        motion.position.push_back(three());
+        motion.velocity.push_back(three());
+        motion.orientation.push_back(own.turning ? Quat{next(), next(), next(), next()} : Quat::identity());
+        motion.omega.push_back(own.turning ? three() : Vec3::zero());
+        if (own.joint_forces) bodies.joint_force.push_back({{next(), next(), next(), next(), next(), next()}});
+    }
+    return bodies;
+}
+
+}  // namespace
+
+void ChainSystem::pass_bodies(OwnBodies const& own, std::function<void(Bodies const&)> const& take) const {
+    SceneWindows(communicator_, groups_).pass(own.width(), own.rows, [&](std::int64_t first, std::span<double const> values) {
+        take(bodies_of(own, first, values));
+    });
+}
+
+void ChainSystem::pass_own_bodies(OwnBodies const& own, std::function<void(std::vector<Bodies> const&)> const& take) const {
+    SceneWindows(communicator_, groups_).pass_own(own.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
+        std::vector<Bodies> bodies;
+        for (SceneWindows::Own const& run : round) bodies.push_back(bodies_of(own, run.first, run.values));
         take(bodies);
     });
 }

@@ -23,6 +23,7 @@ char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", 
 
 RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
     : scene_(scene), communicator_(communicator), first_step_(first_step), folder_(options.output) {
+    file_wish_of_run(communicator);  // a wrong one is refused before anything is replaced
     on_first_rank(communicator, [&] {
         bool const exists = fs::exists(folder_);
         std::error_code ignored;
@@ -52,13 +53,23 @@ std::string RunFolder::newest_checkpoint() const {
 }
 
 void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns) {
+    // The frame of the checkpoint's step is written anew: it may have been no frame of the run before.
+    std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_ - 1) : std::nullopt;
     on_first_rank(communicator_, [&] {
-        // The frame of the checkpoint's step is written anew: it may have been no frame of the run before.
-        std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_ - 1) : std::nullopt;
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
-        trajectory_ = make_trajectory(path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
+    });
+    TrajectoryOfRanks made =
+        make_trajectory(communicator_, path("trajectory.h5md"), topology, scene_.output.velocities, scene_.output.joint_forces, after);
+    trajectory_ = std::move(made.writer);
+    frames_way_ = made.way;
+    on_first_rank(communicator_, [&] {
         observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");
     });
+}
+
+std::string RunFolder::way_back() const {
+    std::string const checkpoint = newest_checkpoint();
+    return checkpoint.empty() ? "" : ": mend that and go on with --restart " + checkpoint;
 }
 
 template <class Action>
@@ -67,11 +78,24 @@ void RunFolder::on_disk(Action const& action) {
         try {
             action();
         } catch (ComputationError const& error) {
-            std::string const checkpoint = newest_checkpoint();
-            if (checkpoint.empty()) throw;
-            throw ComputationError(std::string(error.what()) + ": mend that and go on with --restart " + checkpoint);
+            throw ComputationError(error.what() + way_back());
         }
     });
+}
+
+template <class Action>
+void RunFolder::with_frames(Action const& action) {
+    if (!frames_way_.collective) {
+        if (communicator_.rank() == 0) keeping_failure(action);
+        return;
+    }
+    try {
+        action();
+    } catch (SharedError const& error) {
+        throw SharedError(error.what() + way_back());
+    } catch (ComputationError const& error) {
+        throw ComputationError(error.what() + way_back());
+    }
 }
 
 template <class Action>
@@ -103,17 +127,17 @@ void RunFolder::end_topology() {
 void RunFolder::begin(std::int64_t step, double time) {
     step_ = step;
     time_ = time;
-    if (trajectory_) keeping_failure([&] { trajectory_->begin(step, time); });
+    with_frames([&] { trajectory_->begin(step, time); });
 }
 
-void RunFolder::put(Frame const& part) {
-    keeping_failure([&] { trajectory_->put(part); });
+void RunFolder::put(std::span<Frame const> parts) {
+    with_frames([&] { trajectory_->put(parts); });
 }
 
 void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables) {
+    with_frames([&] { trajectory_->end(tip_forces); });
     on_disk([&] {
         throw_kept();
-        trajectory_->end(tip_forces);
         observables_->write(step_, time_, observables);
     });
 }
@@ -123,8 +147,8 @@ void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const
     auto const on_root = [&](auto const& action) {
         if (communicator_.rank() == 0) keeping_failure(action);
     };
+    with_frames([&] { trajectory_->flush(); });  // a restart finds every frame up to the checkpoint's step
     on_root([&] {
-        trajectory_->flush();  // a restart finds every frame up to the checkpoint's step
         observables_->flush();
         writer = std::make_unique<CheckpointWriter>(path("checkpoint.h5"), checkpoint);
     });
@@ -149,8 +173,9 @@ void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const
 }
 
 void RunFolder::finish(std::string const& summary, std::string const& timeline) {
+    with_frames([&] { trajectory_->close(); });
     on_disk([&] {
-        trajectory_->close();
+        throw_kept();
         observables_->close();
         write_text_file(path("summary.json"), summary);
         write_text_file(path("timeline.json"), timeline);

@@ -1,4 +1,5 @@
-// The folder a run writes, on rank 0. What fails there (a full disk) ends all ranks in good order: every call is collective.
+// The folder a run writes, on rank 0; frames may be all ranks' together. What fails there (a full disk) ends all ranks in good order: every
+// call is collective.
 #pragma once
 
 #include <exception>
@@ -23,9 +24,12 @@ class RunFolder {
     bool wants_topology() const { return !appends_; }
     void put_topology(Frame const& part);
     void end_topology();
-    /// A frame: begin and parts on rank 0 alone, which keeps what fails there for the end.
+    /// How frames are written.
+    FileWay const& frames_way() const { return frames_way_; }
+    /// A frame: collective, each rank with parts of its own; else begin and parts on rank 0 alone, which keeps what fails there for the
+    /// end.
     void begin(std::int64_t step, double time);
-    void put(Frame const& part);
+    void put(std::span<Frame const> parts);
     void end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables);
     /// With the arrays of bodies that ranks have of the system.
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
@@ -41,6 +45,10 @@ class RunFolder {
     /// By rank 0; a ComputationError of its tells the way back as well.
     template <class Action>
     void on_disk(Action const& action);
+    /// By whoever writes frames.
+    template <class Action>
+    void with_frames(Action const& action);
+    std::string way_back() const;
     /// On rank 0 between collective calls, unless something failed before.
     template <class Action>
     void keeping_failure(Action const& action);
@@ -52,6 +60,7 @@ class RunFolder {
     std::int64_t first_step_;
     std::string folder_;
     std::unique_ptr<TopologyWriter> topology_;
+    FileWay frames_way_;
     std::unique_ptr<TrajectoryWriter> trajectory_;
     std::unique_ptr<ObservablesWriter> observables_;
     std::vector<std::string> topology_files_;

@@ -112,6 +112,7 @@ class Run {
         stepper_->observe(scene_.output.joint_forces);
         observables_ = std::make_unique<Observables>(scene_, sites_.topology(), system_.potential_energy());
         folder_->open(sites_.topology(), observables_->columns());
+        if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
         system_.pass_bodies(false, [&](ChainSystem::Bodies const& bodies) { folder_->put_topology(sites_.part(bodies, false)); });
         folder_->end_topology();
@@ -121,17 +122,28 @@ class Run {
         stepper_->observe(scene_.output.joint_forces);
         folder_->begin(n, time(n));
         observables_->begin();
-        system_.pass_bodies(scene_.output.joint_forces, [&](ChainSystem::Bodies const& bodies) {
-            Frame const part = sites_.part(bodies, scene_.output.velocities);
+        bool const together = folder_->frames_way().collective;
+        ChainSystem::OwnBodies const own = system_.own_bodies(scene_.output.joint_forces);
+        system_.pass_bodies(own, [&](ChainSystem::Bodies const& bodies) {
+            Frame const part = sites_.part(bodies, scene_.output.velocities && !together);
             observables_->add(bodies.motion, part.positions);
-            folder_->put(part);
+            if (!together) folder_->put(std::span(&part, 1));
         });
+        if (together) put_own(own);
         std::vector<EnergyTerm> const terms = system_.potential_energy();
         std::vector<Vector<double, 6>> at_tips;
         if (scene_.output.joint_forces)
             for (TipForce const& tip : system_.tip_forces()) at_tips.push_back(tip.wrench);
         if (root_) last_row_ = observables_->row(terms, error);
         folder_->end(at_tips, last_row_);
+    }
+
+    void put_own(ChainSystem::OwnBodies const& own) {
+        system_.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
+            std::vector<Frame> parts;
+            for (ChainSystem::Bodies const& bodies : runs) parts.push_back(sites_.part(bodies, scene_.output.velocities));
+            folder_->put(parts);
+        });
     }
 
     /// The largest over ranks: every rank decides the same. A state that is not finite has none.
@@ -250,6 +262,8 @@ class Run {
                          {"threads", system_.executor().threads()},
                          {"message_passing", message_passing_library()},
                          {"gathers", communicator_.gather_way().text()},
+                         {"frames_written", folder_->frames_way().text},
+                         {"checkpoints_written", "by the root"},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
         if (counted_steps_ > 0)

@@ -4,45 +4,59 @@
 
 namespace catena {
 
-Sites::Sites(Scene const& scene) {
+Sites::Sites(Scene const& scene) : Sites(scene, {{0, scene.bodies()}}, true) {}
+Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& own) : Sites(scene, own, false) {}
+
+Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, bool with_topology) : runs_(runs) {
     topology_.title = scene.title;
     topology_.box = scene.box;
     topology_.si = scene.si;
-    std::size_t body = 0;
     for (ChainSpec const& chain : scene.chains) {
-        auto const first = static_cast<std::int64_t>(sites_.size());
-        add(chain, body);
-        bool const all_beads =
-            chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == sites_.size() - static_cast<std::size_t>(first));
+        std::size_t const first = next_site_;
+        add(chain, with_topology);
+        if (!with_topology) continue;
+        std::size_t const count = next_site_ - first;
+        bool const all_beads = chain.is_beads() || (chain.bead_count() > 0 && chain.bead_count() == count);
         if (chain.tip == Tip::jointed) topology_.tips.push_back(std::ssize(topology_.chains));
-        topology_.chains.push_back({chain.name, first, static_cast<std::int64_t>(sites_.size()) - first, all_beads, chain.is_ring()});
-        body += chain.size();
+        topology_.chains.push_back(
+            {chain.name, static_cast<std::int64_t>(first), static_cast<std::int64_t>(count), all_beads, chain.is_ring()});
     }
 }
 
-void Sites::add(ChainSpec const& chain, std::size_t first_body) {
+/// Whether the next body is one of those that this rank shows.
+bool Sites::shows_next() {
+    auto const body = static_cast<std::int64_t>(next_body_);
+    while (run_ < runs_.size() && runs_[run_].first + runs_[run_].count <= body) ++run_;
+    return run_ < runs_.size() && runs_[run_].first <= body;
+}
+
+void Sites::add(ChainSpec const& chain, bool with_topology) {
     CarriedBeads const& carried = chain.carried();
-    auto const add_site = [&](std::size_t k, Vec3 const& place, bool is_first, double mass, std::string const& residue) {
-        sites_.push_back({first_body + k, place, is_first});
-        topology_.mass.push_back(mass);
-        topology_.residue.push_back(residue);
-    };
-    for (std::size_t k = 0; k < chain.size(); ++k) {
+    for (std::size_t k = 0; k < chain.size(); ++k, ++next_body_) {
+        bool const shown = shows_next();
+        auto const add_site = [&](Vec3 const& place, bool is_first, double mass, std::string const& residue) {
+            if (shown) sites_.push_back({next_body_, next_site_, place, is_first});
+            ++next_site_;
+            if (!with_topology) return;
+            topology_.mass.push_back(mass);
+            topology_.residue.push_back(residue);
+        };
         if (chain.is_beads()) {
-            add_site(k, Vec3::zero(), true, chain.beads.mass[k], chain.beads.residue[k]);
+            add_site(Vec3::zero(), true, chain.beads.mass[k], chain.beads.residue[k]);
             continue;
         }
         bool const is_bead = chain.is_linked() && chain.linked.is_bead(k);
         if (!is_bead) {
-            turning_.push_back(first_body + k);
-            topology_.bodies.push_back(static_cast<std::int64_t>(sites_.size()));
+            if (shown) turning_.push_back({next_body_, next_turning_});
+            ++next_turning_;
+            if (with_topology) topology_.bodies.push_back(static_cast<std::int64_t>(next_site_));
         }
         std::int64_t const begin = carried.offset.empty() ? 0 : carried.offset[k], end = carried.offset.empty() ? 0 : carried.offset[k + 1];
         if (begin == end)
-            add_site(k, Vec3::zero(), true, chain.is_linked() ? chain.linked.mass[k] : chain.bodies.mass[k], is_bead ? "UNK" : "BDY");
+            add_site(Vec3::zero(), true, chain.is_linked() ? chain.linked.mass[k] : chain.bodies.mass[k], is_bead ? "UNK" : "BDY");
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
             Vec3 const place = chain.is_linked() ? carried.position[i] : carried.position[i] - chain.bodies.com[k];
-            add_site(k, place, i == static_cast<std::size_t>(begin), carried.mass[i], carried.residue[i]);
+            add_site(place, i == static_cast<std::size_t>(begin), carried.mass[i], carried.residue[i]);
         }
     }
 }
@@ -50,10 +64,11 @@ void Sites::add(ChainSpec const& chain, std::size_t first_body) {
 Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities) const {
     auto const first = static_cast<std::size_t>(bodies.first), end = first + bodies.motion.position.size();
     auto const begin = std::lower_bound(sites_.begin(), sites_.end(), first, [](Site const& site, std::size_t b) { return site.body < b; });
-    auto const turning = std::lower_bound(turning_.begin(), turning_.end(), first);
+    auto const turning =
+        std::lower_bound(turning_.begin(), turning_.end(), first, [](Turning const& one, std::size_t b) { return one.body < b; });
     Frame part;
-    part.first_site = static_cast<std::size_t>(begin - sites_.begin());
-    part.first_body = static_cast<std::size_t>(turning - turning_.begin());
+    part.first_site = begin != sites_.end() ? begin->site : next_site_;
+    part.first_body = turning != turning_.end() ? turning->number : next_turning_;
     ChainSystem::Snapshot const& s = bodies.motion;
     for (auto site = begin; site != sites_.end() && site->body < end; ++site) {
         std::size_t const k = site->body - first;
@@ -62,7 +77,7 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities) const {
         if (velocities) part.velocities.push_back(s.velocity[k] + turn * cross(s.omega[k], site->place));
         if (!bodies.joint_force.empty()) part.joint_forces.push_back(site->is_first ? bodies.joint_force[k] : Vector<double, 6>::zero());
     }
-    for (auto body = turning; body != turning_.end() && *body < end; ++body) part.orientations.push_back(s.orientation[*body - first]);
+    for (auto one = turning; one != turning_.end() && one->body < end; ++one) part.orientations.push_back(s.orientation[one->body - first]);
     return part;
 }
 

@@ -137,6 +137,9 @@ Series Series::create(Place const& place, std::string const& name, hid_t type, s
     Space const space(check(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), limit.data()), place.file, place.doing));
     Properties const properties(check(H5Pcreate(H5P_DATASET_CREATE), place.file, place.doing));
     check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), place.file, place.doing);
+    // The same file whoever writes it: parallel HDF5 has to know where a row lies before ranks write it, and every row is written whole.
+    check(H5Pset_alloc_time(properties.get(), H5D_ALLOC_TIME_EARLY), place.file, place.doing);
+    check(H5Pset_fill_time(properties.get(), H5D_FILL_TIME_NEVER), place.file, place.doing);
     Series series;
     series.type_ = type;
     series.row_ = std::move(row);
@@ -156,30 +159,59 @@ Series Series::open(Place const& place, std::string const& name, hid_t type) {
     return series;
 }
 
+Space Series::grown(Place const& place, hsize_t frames) {
+    cut(place, frames);
+    return Space(check(H5Dget_space(data_.get()), place.file, place.doing));
+}
+
+void Series::write(Place const& place, Space const& in_file, void const* values, hid_t transfer) {
+    hsize_t const count = static_cast<hsize_t>(check(H5Sget_select_npoints(in_file.get()), place.file, place.doing));
+    Space const in_memory = simple(place, std::span(&count, 1));
+    check(H5Dwrite(data_.get(), type_, in_memory.get(), in_file.get(), transfer, values), place.file, place.doing);
+}
+
 void Series::put(Place const& place, hsize_t frame, void const* values) {
+    Space const in_file = grown(place, frame + 1);
+    if (values == nullptr) return;
     std::vector<hsize_t> start{frame}, count{1};
     start.resize(row_.size() + 1, 0);
     count.insert(count.end(), row_.begin(), row_.end());
-    put_block(place, start, count, values);
+    check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), place.file, place.doing);
+    write(place, in_file, values, H5P_DEFAULT);
 }
 
-void Series::put(Place const& place, hsize_t frame, hsize_t first, hsize_t count, void const* values) {
-    if (count == 0) return;
-    std::vector<hsize_t> start{frame, first}, extent{1};
+void Series::put(Place const& place, hsize_t frame, std::span<Part const> parts, void const* values, hid_t transfer) {
+    Space const in_file = grown(place, frame + 1);
+    check(H5Sselect_none(in_file.get()), place.file, place.doing);
+    std::vector<hsize_t> start{frame, 0}, count{1};
     start.resize(row_.size() + 1, 0);
-    extent.insert(extent.end(), row_.begin(), row_.end());
-    extent[1] = count;
-    put_block(place, start, extent, values);
+    count.insert(count.end(), row_.begin(), row_.end());
+    for (Part const& part : parts) {
+        if (part.count == 0) continue;
+        start[1] = part.first;
+        count[1] = part.count;
+        check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_OR, start.data(), nullptr, count.data(), nullptr), place.file, place.doing);
+    }
+    write(place, in_file, values, transfer);
 }
 
-void Series::put_block(Place const& place, std::vector<hsize_t> const& start, std::vector<hsize_t> const& count, void const* values) {
-    std::vector<hsize_t> shape{start[0] + 1};
-    shape.insert(shape.end(), row_.begin(), row_.end());
-    check(H5Dset_extent(data_.get(), shape.data()), place.file, place.doing);
-    Space const file_space(check(H5Dget_space(data_.get()), place.file, place.doing));
-    check(H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr), place.file, place.doing);
-    Space const memory = simple(place, count);
-    check(H5Dwrite(data_.get(), type_, memory.get(), file_space.get(), H5P_DEFAULT, values), place.file, place.doing);
+Properties Series::creation(Place const& place) const {
+    return Properties(check(H5Dget_create_plist(data_.get()), place.file, place.doing));
+}
+
+hsize_t Series::growth(Place const& place, hsize_t frame) const {
+    std::vector<hsize_t> chunk(row_.size() + 1);
+    check(H5Pget_chunk(creation(place).get(), static_cast<int>(chunk.size()), chunk.data()), place.file, place.doing);
+    if (frame % chunk[0] != 0) return 0;
+    hsize_t bytes = chunk[0] * H5Tget_size(type_);
+    for (std::size_t i = 0; i < row_.size(); ++i) bytes *= (row_[i] + chunk[i + 1] - 1) / chunk[i + 1] * chunk[i + 1];
+    return bytes;
+}
+
+bool Series::is_for_all(Place const& place) const {
+    H5D_alloc_time_t time = H5D_ALLOC_TIME_DEFAULT;
+    check(H5Pget_alloc_time(creation(place).get(), &time), place.file, place.doing);
+    return time == H5D_ALLOC_TIME_EARLY;
 }
 
 void Series::cut(Place const& place, hsize_t frames) {

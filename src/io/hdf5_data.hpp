@@ -41,10 +41,18 @@ class Series {
     Series() = default;
     static Series create(Place const&, std::string const& name, hid_t type, std::vector<hsize_t> row);
     static Series open(Place const&, std::string const& name, hid_t type);
-    /// Writes row `frame`, growing to frame + 1 rows.
+    /// Entries along a row's first extent.
+    struct Part {
+        hsize_t first, count;
+    };
+    /// Writes row `frame`, growing to frame + 1 rows; where `values` is null it only grows.
     void put(Place const&, hsize_t frame, void const* values);
-    /// Of that row the entries [first, first + count) along the row's first extent.
-    void put(Place const&, hsize_t frame, hsize_t first, hsize_t count, void const* values);
+    /// Of that row these parts, which follow one another in the row as they do in `values`. `transfer`: of the file's writers.
+    void put(Place const&, hsize_t frame, std::span<Part const> parts, void const* values, hid_t transfer);
+    /// Bytes that row `frame` adds to the file.
+    hsize_t growth(Place const&, hsize_t frame) const;
+    /// Whether all ranks can write into it: its room is there before anybody writes.
+    bool is_for_all(Place const&) const;
     /// Leaves the first `frames` rows.
     void cut(Place const&, hsize_t frames);
     hsize_t frames(Place const&) const;
@@ -52,9 +60,13 @@ class Series {
     hid_t get() const { return data_.get(); }
     explicit operator bool() const { return static_cast<bool>(data_); }
     void close(Place const&);
+    void release() { data_.release(); }
 
   private:
-    void put_block(Place const&, std::vector<hsize_t> const& start, std::vector<hsize_t> const& count, void const* values);
+    /// The file's space of so many rows.
+    Space grown(Place const&, hsize_t frames);
+    Properties creation(Place const&) const;
+    void write(Place const&, Space const& in_file, void const* values, hid_t transfer);
 
     Dataset data_;
     hid_t type_ = H5I_INVALID_HID;  // a native type of the library, not owned

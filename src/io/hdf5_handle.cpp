@@ -58,10 +58,10 @@ int descriptor_of(File const& handle, std::string const& file, std::string const
 }
 }  // namespace
 
-void make_room(File const& handle, std::string const& file, std::string const& doing) {
+void make_room(File const& handle, hsize_t more, std::string const& file, std::string const& doing) {
     hsize_t size = 0;
     check(H5Fget_filesize(handle.get(), &size), file, doing);
-    auto const written = static_cast<off_t>(size);
+    auto const written = static_cast<off_t>(size + more);
     off_t const not_placed_yet = std::min<off_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
     int const descriptor = descriptor_of(handle, file, doing);
     if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, written + not_placed_yet) != 0 && errno == ENOSPC)

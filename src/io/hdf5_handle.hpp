@@ -41,6 +41,8 @@ class Handle {
     }
     hid_t get() const { return id_; }
     explicit operator bool() const { return id_ >= 0; }
+    /// Leaves it open for ever.
+    void release() { id_ = H5I_INVALID_HID; }
     /// Closes now; the status tells of data that could not be written.
     herr_t close() { return id_ < 0 ? 0 : Close(std::exchange(id_, H5I_INVALID_HID)); }
 
@@ -70,8 +72,8 @@ Status check(Status status, std::string const& file, std::string const& doing) {
     return status;
 }
 
-/// On the disk for all that a flush writes: a full one is found before anything in the file is overwritten.
-void make_room(File const&, std::string const& file, std::string const& doing);
+/// On the disk for all that a flush writes and `more` bytes: a full one is found before anything in the file is overwritten.
+void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing);
 /// Everything written so far reaches the disk: H5Fflush, then fsync.
 void flush_to_disk(File const&, std::string const& file, std::string const& doing);
 /// For a file in which something could not be written: as its last flush left it, whatever HDF5 still does to it.

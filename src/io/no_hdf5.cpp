@@ -13,6 +13,10 @@ std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topol
     throw without("trajectory " + file);
 }
 
+TrajectoryOfRanks make_trajectory(Communicator const&, std::string const& file, Topology const&, bool, bool, std::optional<std::int64_t>) {
+    throw without("trajectory " + file);
+}
+
 struct CheckpointWriter::Draft {};
 CheckpointWriter::CheckpointWriter(std::string const& file, Checkpoint const&) { throw without("checkpoint " + file); }
 CheckpointWriter::~CheckpointWriter() = default;

@@ -1,4 +1,5 @@
-// The files of a run. Only rank 0 writes; it is handed frames in parts, as they come from the ranks. Every writer checks each write, flush
+// The files of a run. Rank 0 writes them, handed what belongs to bodies in parts as they come from the ranks; a trajectory can be all
+// ranks' together. Every writer checks each write, flush
 // and close and throws ComputationError naming file and cause (a full disk included); bad existing files give InputError.
 #pragma once
 
@@ -13,6 +14,7 @@
 
 #include "dca/linear.hpp"
 #include "dca/rotation.hpp"
+#include "io/file_way.hpp"
 
 namespace catena {
 
@@ -52,9 +54,11 @@ struct Frame {
 class TrajectoryWriter {
   public:
     virtual ~TrajectoryWriter() = default;
-    /// A frame in parts: these follow one another, from the first site to the last.
+    /// A frame in parts: these follow one another, from the first site to the last. Written by all ranks together, every call is collective
+    /// and a rank's parts are its own sites in their order, however many at a time; tip forces are rank 0's.
     virtual void begin(std::int64_t step, double time) = 0;
-    virtual void put(Frame const& part) = 0;
+    virtual void put(std::span<Frame const> parts) = 0;
+    void put(Frame const& part) { put(std::span(&part, 1)); }
     virtual void end(std::vector<Vector<double, 6>> const& tip_forces) = 0;
     void write(Frame const& whole) {
         begin(whole.step, whole.time);
@@ -69,6 +73,14 @@ class TrajectoryWriter {
 /// absent.
 std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool velocities, bool joint_forces,
                                                   std::optional<std::int64_t> after_step);
+/// The same for all ranks, of rank 0's topology: written by all of them where that can be (CATENA_HDF5), else by rank 0, and the writer is
+/// null on the others. Collective.
+struct TrajectoryOfRanks {
+    std::unique_ptr<TrajectoryWriter> writer;
+    FileWay way;
+};
+TrajectoryOfRanks make_trajectory(Communicator const&, std::string const& file, Topology const&, bool velocities, bool joint_forces,
+                                  std::optional<std::int64_t> after_step);
 
 /// PDB; beyond 99,999 sites mmCIF beside it as well.
 class TopologyWriter {

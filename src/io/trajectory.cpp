@@ -4,9 +4,12 @@
 #include <filesystem>
 
 #include "error.hpp"
+#include "io/file_way.hpp"
 #include "io/hdf5_data.hpp"
 #include "io/output.hpp"
 #include "io/trajectory_layout.hpp"
+#include "io/writers.hpp"
+#include "mpi/first_rank.hpp"
 
 namespace catena {
 namespace {
@@ -21,7 +24,7 @@ static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(d
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Metadata stay in memory between flushes: a killed run leaves the file as its last flush left it, whole.
-Properties keep_metadata_until_flush(std::string const& file) {
+Properties access_of(Writers const& writers, std::string const& file) {
     Properties access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
     H5AC_cache_config_t cache;
     cache.version = H5AC__CURR_CACHE_CONFIG_VERSION;
@@ -31,13 +34,25 @@ Properties keep_metadata_until_flush(std::string const& file) {
     cache.flash_incr_mode = H5C_flash_incr__off;
     cache.decr_mode = H5C_decr__off;
     check(H5Pset_mdc_config(access.get(), &cache), file, writing);
+    writers.prepare(access, file, writing);
     return access;
 }
+
+/// Between two frames, what whoever writes the next one has to know.
+struct Standing {
+    TrajectoryContents contents;
+    Vec3 box;
+    hsize_t frames = 0;
+    std::int64_t last_step = 0;
+};
+static_assert(std::is_trivially_copyable_v<Standing>, "goes from rank to rank as it lies");
 
 class H5mdWriter final : public TrajectoryWriter {
   public:
     H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces, std::optional<std::int64_t> after_step)
-        : name_(std::move(file)), contents_(contents_of(topology, velocities, joint_forces)), box_(topology.box.value_or(Vec3::zero())) {
+        : name_(std::move(file)),
+          writers_(one_writer()),
+          at_{contents_of(topology, velocities, joint_forces), topology.box.value_or(Vec3::zero())} {
         Quiet const quiet;
         if (after_step)
             open(*after_step);
@@ -46,38 +61,50 @@ class H5mdWriter final : public TrajectoryWriter {
         flush();
     }
 
+    /// Goes on with a file that a writer has closed.
+    H5mdWriter(std::string file, Standing const& standing, std::unique_ptr<Writers> writers)
+        : name_(std::move(file)), writers_(std::move(writers)), at_(standing) {
+        Quiet const quiet;
+        try {
+            file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access_of(*writers_, name_).get()), name_, writing));
+            writers_->watch(file_, name_, writing);
+            series_ = open_trajectory(place(), at_.contents);
+        } catch (...) {
+            if (writers_->are_several()) leave_open();
+            throw;
+        }
+    }
+
+    /// Others may not know that this rank ends here: then nothing is closed together.
     ~H5mdWriter() override {
         Quiet const quiet;
+        if (writers_->are_several()) leave_open();
         for (Series* series : series_.present()) *series = Series();
     }
 
     void begin(std::int64_t step, double time) override {
         if (!file_) throw ComputationError("cannot write the trajectory (" + name_ + "): it is closed");
-        if (frames_ > 0 && step <= last_step_) refuse(step, "its last frame is already of step " + std::to_string(last_step_));
+        if (at_.frames > 0 && step <= at_.last_step) refuse(step, "its last frame is already of step " + std::to_string(at_.last_step));
         step_ = step;
         time_ = time;
         sites_ = bodies_ = 0;
+        if (writers_->are_several()) make_room_for_frame();
     }
 
-    void put(Frame const& part) override {
-        std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
-        auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
-        if (part.first_site != sites_ || part.first_body != bodies_ || sites_ + sites > contents_.sites ||
-            bodies_ + bodies > contents_.bodies.size() || !fits(part.velocities.size(), contents_.velocities) ||
-            !fits(part.joint_forces.size(), contents_.joint_forces))
-            refuse_arrays();
-        whole_or_as_flushed([&] { put_part(part); });
+    void put(std::span<Frame const> parts) override {
+        for (Frame const& part : parts) require_fit(part);
+        whole_or_as_flushed([&] { put_parts(parts); });
     }
     void end(std::vector<Vector<double, 6>> const& tip_forces) override {
-        if (sites_ != contents_.sites || bodies_ != contents_.bodies.size() ||
-            (contents_.joint_forces && tip_forces.size() != contents_.tips))
-            refuse_arrays();
+        bool const whole = static_cast<hsize_t>(writers_->sum(static_cast<std::int64_t>(sites_))) == at_.contents.sites &&
+                           static_cast<hsize_t>(writers_->sum(static_cast<std::int64_t>(bodies_))) == at_.contents.bodies;
+        if (!whole || (writers_->is_first() && at_.contents.joint_forces && tip_forces.size() != at_.contents.tips)) refuse_arrays();
         whole_or_as_flushed([&] { end_frame(tip_forces); });
     }
     void flush() override {
         whole_or_as_flushed([&] {
-            make_room(file_, name_, writing);
-            flush_to_disk(file_, name_, writing);
+            writers_->make_room(file_, 0, name_, writing);
+            writers_->flush_to_disk(file_, name_, writing);
         });
         flushed_ = now();
     }
@@ -90,6 +117,9 @@ class H5mdWriter final : public TrajectoryWriter {
         check(file_.close(), name_, writing);
     }
 
+    Standing const& standing() const { return at_; }
+    bool is_for_all() const { return series_.position.is_for_all(place()); }
+
   private:
     template <class Action>
     void whole_or_as_flushed(Action const& action) {
@@ -97,57 +127,114 @@ class H5mdWriter final : public TrajectoryWriter {
         try {
             action();
         } catch (...) {
-            leave_as_flushed(file_);
+            if (!writers_->leave_as_flushed(file_)) leave_open();
             throw;
         }
     }
-    void put_part(Frame const& part) {
+    void leave_open() {
+        for (Series* series : series_.present()) series->release();
+        file_.release();
+    }
+
+    void require_fit(Frame const& part) {
+        TrajectoryContents const& contents = at_.contents;
         std::size_t const sites = part.positions.size(), bodies = part.orientations.size();
-        series_.position.put(place(), frames_, sites_, sites, part.positions.data());
-        if (contents_.velocities) series_.velocity.put(place(), frames_, sites_, sites, part.velocities.data());
-        if (bodies > 0) series_.orientation.put(place(), frames_, bodies_, bodies, part.orientations.data());
-        if (contents_.joint_forces) put_wrenches(part.joint_forces, sites_, series_.torque, series_.force);
+        auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
+        bool const in_order = writers_->are_several() || (part.first_site == sites_ && part.first_body == bodies_);
+        if (!in_order || part.first_site + sites > contents.sites || part.first_body + bodies > contents.bodies ||
+            !fits(part.velocities.size(), contents.velocities) || !fits(part.joint_forces.size(), contents.joint_forces))
+            refuse_arrays();
         sites_ += sites;
         bodies_ += bodies;
     }
 
+    void make_room_for_frame() {
+        whole_or_as_flushed([&] {
+            hsize_t more = 0;
+            for (Series const* series : series_.present()) more += series->growth(place(), at_.frames);
+            writers_->make_room(file_, more, name_, writing);
+        });
+    }
+
+    void put_parts(std::span<Frame const> parts) {
+        std::vector<Series::Part> sites, bodies;
+        for (Frame const& part : parts) {
+            sites.push_back({part.first_site, part.positions.size()});
+            bodies.push_back({part.first_body, part.orientations.size()});
+        }
+        put_all(series_.position, sites, parts, &Frame::positions);
+        if (at_.contents.velocities) put_all(series_.velocity, sites, parts, &Frame::velocities);
+        if (at_.contents.bodies > 0) put_all(series_.orientation, bodies, parts, &Frame::orientations);
+        if (!at_.contents.joint_forces) return;
+        auto const [torque, force] = halves_of(parts, &Frame::joint_forces);
+        series_.torque.put(place(), at_.frames, sites, torque.data(), writers_->transfer());
+        series_.force.put(place(), at_.frames, sites, force.data(), writers_->transfer());
+    }
+
+    template <class Value>
+    void put_all(Series& series, std::span<Series::Part const> where, std::span<Frame const> parts, std::vector<Value> Frame::* values) {
+        if (parts.size() == 1) return series.put(place(), at_.frames, where, (parts[0].*values).data(), writers_->transfer());
+        std::vector<Value> joined;
+        for (Frame const& part : parts) joined.insert(joined.end(), (part.*values).begin(), (part.*values).end());
+        series.put(place(), at_.frames, where, joined.data(), writers_->transfer());
+    }
+
+    static std::pair<std::vector<double>, std::vector<double>> halves_of(std::span<Frame const> parts,
+                                                                         std::vector<Vector<double, 6>> Frame::* wrenches) {
+        std::pair<std::vector<double>, std::vector<double>> halves;
+        for (Frame const& part : parts)
+            for (Vector<double, 6> const& wrench : part.*wrenches) {
+                halves.first.insert(halves.first.end(), wrench.data, wrench.data + 3);
+                halves.second.insert(halves.second.end(), wrench.data + 3, wrench.data + 6);
+            }
+        return halves;
+    }
+
     void end_frame(std::vector<Vector<double, 6>> const& tip_forces) {
-        if (contents_.periodic) series_.edges.put(place(), frames_, box_.data);
-        if (series_.tip_force) put_wrenches(tip_forces, 0, series_.tip_torque, series_.tip_force);
-        series_.time.put(place(), frames_, &time_);
-        series_.step.put(place(), frames_, &step_);
-        ++frames_;
-        last_step_ = step_;
-        if (now() - flushed_ < seconds_between_flushes) return;
-        make_room(file_, name_, writing);
+        Frame tips;
+        tips.tip_forces = tip_forces;
+        auto const [torque, force] = halves_of(std::span(&tips, 1), &Frame::tip_forces);
+        if (at_.contents.periodic) put_from_first(series_.edges, at_.box.data);
+        if (series_.tip_force) {
+            put_from_first(series_.tip_torque, torque.data());
+            put_from_first(series_.tip_force, force.data());
+        }
+        put_from_first(series_.time, &time_);
+        put_from_first(series_.step, &step_);
+        ++at_.frames;
+        at_.last_step = step_;
+        bool const due = writers_->is_first() && now() - flushed_ >= seconds_between_flushes;
+        if (writers_->sum(due ? 1 : 0) == 0) return;
+        writers_->make_room(file_, 0, name_, writing);
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
         flushed_ = now();
     }
+    void put_from_first(Series& series, void const* values) { series.put(place(), at_.frames, writers_->is_first() ? values : nullptr); }
     Place place() const { return {file_.get(), name_, writing}; }
 
     void create(Topology const& topology) {
-        Properties const access = keep_metadata_until_flush(name_);
+        Properties const access = access_of(*writers_, name_);
         file_ = File(check(H5Fcreate(name_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), name_, writing));
-        series_ = create_trajectory(place(), topology, contents_);
+        series_ = create_trajectory(place(), topology, at_.contents);
     }
 
     void open(std::int64_t after_step) {
         if (!std::filesystem::exists(name_)) throw InputError("no trajectory to go on with", name_, "restart in the folder that holds it");
-        Properties const access = keep_metadata_until_flush(name_);
+        Properties const access = access_of(*writers_, name_);
         file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
         if (!file_)
             throw InputError("the trajectory cannot be opened, " + cause(), name_, "close it elsewhere, or start anew with --overwrite");
         std::vector<std::int64_t> steps;
         try {
-            series_ = open_trajectory(place(), contents_);
+            series_ = open_trajectory(place(), at_.contents);
             steps = read_steps();
         } catch (ComputationError const& error) {
             throw InputError("the trajectory is damaged, " + std::string(error.what()), name_, "start anew with --overwrite");
         }
         auto const kept = std::find_if(steps.begin(), steps.end(), [&](std::int64_t step) { return step > after_step; });
-        frames_ = static_cast<hsize_t>(kept - steps.begin());
-        if (frames_ > 0) last_step_ = steps[frames_ - 1];
-        for (Series* series : series_.present()) series->cut(place(), frames_);
+        at_.frames = static_cast<hsize_t>(kept - steps.begin());
+        if (at_.frames > 0) at_.last_step = steps[at_.frames - 1];
+        for (Series* series : series_.present()) series->cut(place(), at_.frames);
     }
 
     /// The steps of the frames that are whole.
@@ -166,26 +253,14 @@ class H5mdWriter final : public TrajectoryWriter {
     }
     [[noreturn]] void refuse_arrays() const { refuse(step_, "the frame's arrays do not fit the topology"); }
 
-    void put_wrenches(std::vector<Vector<double, 6>> const& wrenches, hsize_t first, Series& torques, Series& forces) {
-        std::vector<double> torque, force;
-        for (Vector<double, 6> const& wrench : wrenches) {
-            torque.insert(torque.end(), wrench.data, wrench.data + 3);
-            force.insert(force.end(), wrench.data + 3, wrench.data + 6);
-        }
-        torques.put(place(), frames_, first, wrenches.size(), torque.data());
-        forces.put(place(), frames_, first, wrenches.size(), force.data());
-    }
-
     std::string name_;
-    TrajectoryContents contents_;
-    Vec3 box_;
+    std::unique_ptr<Writers> writers_;
+    Standing at_;
     File file_;
     TrajectorySeries series_;
-    hsize_t frames_ = 0;
-    std::int64_t last_step_ = 0;
     std::int64_t step_ = 0;  // of the frame on its way
     double time_ = 0;
-    std::size_t sites_ = 0, bodies_ = 0;  // of it, so far
+    std::size_t sites_ = 0, bodies_ = 0;  // of it, from this rank, so far
     double flushed_ = 0;
 };
 
@@ -194,6 +269,42 @@ class H5mdWriter final : public TrajectoryWriter {
 std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const& topology, bool velocities, bool joint_forces,
                                                   std::optional<std::int64_t> after_step) {
     return std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, after_step);
+}
+
+TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string const& file, Topology const& topology, bool velocities,
+                                  bool joint_forces, std::optional<std::int64_t> after_step) {
+    std::unique_ptr<H5mdWriter> writer;
+    bool fits = false;
+    std::int64_t bytes = 0;
+    on_first_rank(communicator, [&] {
+        writer = std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, after_step);
+        fits = writer->is_for_all();
+        bytes = writer->standing().contents.bytes_of_frame();
+    });
+    FileWish const wish = file_wish_of_run(communicator);
+    FileWay way = choose_file_way(communicator, wish, file, bytes);
+    if (way.collective && communicator.sum(fits ? 1 : 0) == 0) way = {false, "by the root: an earlier version began the file"};
+    if (!way.collective) return {std::move(writer), way};
+    Standing standing;
+    on_first_rank(communicator, [&] {
+        standing = writer->standing();
+        writer->close();
+    });
+    communicator.broadcast(std::as_writable_bytes(std::span(&standing, 1)));
+    std::string why;
+    try {
+        writer = std::make_unique<H5mdWriter>(file, standing, all_writers(communicator));
+    } catch (ComputationError const& error) {
+        why = error.what();
+    }
+    if (communicator.sum(why.empty() ? 0 : 1) == 0) return {std::move(writer), way};
+    writer.reset();
+    on_first_rank(communicator, [&] {
+        if (why.empty()) why = "some ranks cannot";
+        if (wish == FileWish::collective) throw InputError("ranks cannot write together, " + why, file, "leave CATENA_HDF5=collective out");
+        writer = std::make_unique<H5mdWriter>(file, standing, one_writer());
+    });
+    return {std::move(writer), {false, "by the root: " + why}};
 }
 
 }  // namespace catena

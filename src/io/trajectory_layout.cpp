@@ -74,10 +74,11 @@ class Builder {
         put_attribute(at(own), "format_version", format_version);
         put_text(at(own), "title", topology_.title);
         describe_chains(at(own));
-        if (!contents_.bodies.empty()) {
-            auto const bodies = static_cast<hsize_t>(contents_.bodies.size());
-            Group const element = add_element(at(own), "orientation", {bodies, 4}, "", series_.orientation, "w x y z, body axes to W");
-            put_array(at(element), "site", H5T_NATIVE_HSIZE, contents_.bodies.data(), std::span(&bodies, 1));
+        if (contents_.bodies > 0) {
+            Group const element =
+                add_element(at(own), "orientation", {contents_.bodies, 4}, "", series_.orientation, "w x y z, body axes to W");
+            std::vector<hsize_t> const site(topology_.bodies.begin(), topology_.bodies.end());
+            put_array(at(element), "site", H5T_NATIVE_HSIZE, site.data(), std::span(&contents_.bodies, 1));
         }
         if (!contents_.joint_forces) return;
         std::string const frame = "W, on each body at its inboard joint; at the first of its sites";
@@ -164,7 +165,7 @@ TrajectoryContents contents_of(Topology const& topology, bool velocities, bool j
     contents.si = topology.si;
     contents.sites = topology.mass.size();
     contents.tips = topology.tips.size();
-    contents.bodies.assign(topology.bodies.begin(), topology.bodies.end());
+    contents.bodies = topology.bodies.size();
     return contents;
 }
 
@@ -197,14 +198,14 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
         refuse(root, "is in " + text_of(position, "unit") + ", unlike the scene");
     require(root, "particles/trajectory/velocity", contents.velocities, "velocities");
     require(root, "particles/trajectory/box/edges", contents.periodic, "box edges");
-    require(root, "catena/orientation", !contents.bodies.empty(), "orientations");
+    require(root, "catena/orientation", contents.bodies > 0, "orientations");
     require(root, "catena/joint_force", contents.joint_forces, "joint forces");
     series.step = Series::open(root, position_group + "/step", H5T_NATIVE_INT64);
     series.time = Series::open(root, position_group + "/time", H5T_NATIVE_DOUBLE);
     if (contents.velocities) series.velocity = Series::open(root, "particles/trajectory/velocity/value", H5T_NATIVE_DOUBLE);
     if (contents.periodic) series.edges = Series::open(root, "particles/trajectory/box/edges/value", H5T_NATIVE_DOUBLE);
-    if (!contents.bodies.empty()) series.orientation = Series::open(root, "catena/orientation/value", H5T_NATIVE_DOUBLE);
-    if (series.orientation && series.orientation.row()[0] != contents.bodies.size()) refuse(root, "has another number of bodies");
+    if (contents.bodies > 0) series.orientation = Series::open(root, "catena/orientation/value", H5T_NATIVE_DOUBLE);
+    if (series.orientation && series.orientation.row()[0] != contents.bodies) refuse(root, "has another number of bodies");
     if (!contents.joint_forces) return series;
     series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
     series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);

@@ -30,9 +30,13 @@ namespace catena::hdf5 {
 
 /// What of the optional parts a trajectory has.
 struct TrajectoryContents {
-    std::vector<hsize_t> bodies;  // their sites
     bool velocities = false, joint_forces = false, periodic = false, si = false;
-    hsize_t sites = 0, tips = 0;
+    hsize_t sites = 0, bodies = 0, tips = 0;
+
+    std::int64_t bytes_of_frame() const {
+        hsize_t const of_site = 3 + (velocities ? 3 : 0) + (joint_forces ? 6 : 0);
+        return static_cast<std::int64_t>(sizeof(double) * (sites * of_site + 4 * bodies));
+    }
 };
 TrajectoryContents contents_of(Topology const&, bool velocities, bool joint_forces);
 

@@ -28,7 +28,7 @@ struct StabilityPoint {
     std::optional<Refined> settled = {};  // after as many as help, ten at most
     int steps = 0;                        // of these, the most of the seeds
     bool is_articulated() const { return handles == "articulated"; }
-    bool is_nearby() const { return of_residual_bound <= 1; }
+    bool is_nearby() const { return of_residual_bound <= 1 || (is_articulated() && settled && settled->of_residual_bound <= 1); }
     bool holds() const { return refused.empty() && of_residual_bound <= 1 && of_bound <= 1; }
     bool holds_refined() const {
         return holds() || (refused.empty() && settled && settled->of_residual_bound <= 1 && settled->of_bound <= 1);

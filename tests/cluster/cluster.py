@@ -30,6 +30,7 @@ output: {every: 7, checkpoint_every: 10, velocities: true}
 def arguments(description, **defaults):
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--catena", default=os.path.join(ROOT, "build", "release", "catena"), help="the program")
+    parser.add_argument("--hdf5", default="", help="CATENA_HDF5 of the runs: root or collective")
     parser.add_argument("--mpirun", default="mpirun,--oversubscribe,--bind-to,none", help="the launcher and its options, parted by commas")
     for name, value in defaults.items():
         parser.add_argument("--" + name.replace("_", "-"), type=type(value), default=value)
@@ -51,6 +52,8 @@ class Runs:
                             "OMPI_MCA_btl_vader_single_copy_mechanism": "none",
                             "OMPI_MCA_odls_base_sigkill_timeout": "3",  # as jobs/common.sh does
                             "OMPI_MCA_mpi_yield_when_idle": "1"}  # more ranks than cores
+        if options.hdf5:
+            self.environment["CATENA_HDF5"] = options.hdf5
         self.settings = [word for setting in settings for word in ("--set", setting)]
         self.scene_text = scene
 

@@ -33,6 +33,19 @@ TEST(SceneWindows, BringBodiesInTheOrderOfTheScene) {
                 for (double const value : values) EXPECT_EQ(value, static_cast<double>(next++));
             });
             EXPECT_EQ(next, world.rank() == 0 ? scene.bodies() * width : 0);
+            std::int64_t rounds = 0, bodies = 0, before = -1;
+            windows.pass_own(width, own, [&](std::vector<SceneWindows::Own> const& round) {
+                ++rounds;
+                for (SceneWindows::Own const& run : round) {
+                    EXPECT_LT(before, run.first);
+                    for (std::size_t i = 0; i < run.values.size(); ++i)
+                        EXPECT_EQ(run.values[i], static_cast<double>(run.first * width) + static_cast<double>(i));
+                    bodies += std::ssize(run.values) / width;
+                    before = run.first + std::ssize(run.values) / width - 1;
+                }
+            });
+            EXPECT_EQ(world.max(static_cast<double>(rounds)), static_cast<double>(rounds)) << "some rank has fewer";
+            EXPECT_EQ(world.sum(bodies), scene.bodies());
         }
 }
 

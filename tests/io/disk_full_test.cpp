@@ -1,15 +1,12 @@
 // A disk that is full must never look like success: HDF5 reports it at flushes and at no other place.
 #include <gtest/gtest.h>
-#include <sys/mount.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <csignal>
-#include <cstring>
 
 #include "error.hpp"
 #include "sample_frames.hpp"
+#include "small_disk.hpp"
 #include "temporary_folder.hpp"
 
 namespace catena::test {
@@ -31,26 +28,6 @@ class FileSizeLimit {
   private:
     rlimit before_{};
 };
-
-/// A file system of its own, of a few hundred kB; `mounted` is false without the privilege.
-class SmallDisk {
-  public:
-    SmallDisk() : mounted_(::mount("catena", folder_.path().c_str(), "tmpfs", 0, "size=400k") == 0) {}
-    SmallDisk(SmallDisk const&) = delete;
-    SmallDisk& operator=(SmallDisk const&) = delete;
-    ~SmallDisk() {
-        if (mounted_) ::umount2(folder_.path().c_str(), MNT_DETACH);
-    }
-    bool mounted() const { return mounted_; }
-    std::string operator/(std::string const& name) const { return folder_ / name; }
-
-  private:
-    TemporaryFolder folder_;
-    bool mounted_;
-};
-
-#define NEEDS_SMALL_DISK(disk) \
-    if (!(disk).mounted()) GTEST_SKIP() << "NOT RUN: mounting a small disk needs root (" << std::strerror(errno) << ")"
 
 Checkpoint checkpoint_of(std::size_t doubles) {
     Checkpoint checkpoint;

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <string>
 
+#include "io/output.hpp"
 #include "tests/mpi/world.hpp"
 
 namespace catena::testing {
@@ -34,6 +35,7 @@ Communicator const& world() { return *current; }
 }  // namespace catena::testing
 
 int main(int argc, char** argv) {
+    catena::start_hdf5();
     auto const world = catena::world_communicator(&argc, &argv);
     catena::testing::current = world.get();
     ::testing::InitGoogleTest(&argc, argv);

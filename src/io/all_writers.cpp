@@ -1,0 +1,113 @@
+// All ranks by parallel HDF5. A write that fails on one rank leaves the others waiting within HDF5, and at times that rank as well: MPI
+// tells of it before HDF5 does, and there the program ends. So the failure to be expected, a full disk, is looked for before: rank 0 takes
+// the room for a frame from the system before anybody writes, and all ranks end in good order.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string_view>
+#include <thread>
+
+#include "io/writers.hpp"
+#include "mpi/first_rank.hpp"
+#include "mpi/mpi_handles.hpp"
+
+namespace catena::hdf5 {
+namespace {
+
+/// Open MPI's own way to files (OMPIO, 4.1) keeps quiet about writes that fail; its other one is everybody's ROMIO (mpi_communicator.cpp).
+bool is_quiet_about_failures() {
+    if (!message_passing_library().starts_with("Open MPI")) return false;
+    char const* const chosen = std::getenv("OMPI_MCA_io");
+    std::string_view const word = chosen != nullptr ? chosen : "";
+    return !word.starts_with("romio") && !(word.starts_with("^") && word.find("ompio") != word.npos);
+}
+
+/// Whose failure ends the program: the one file that is open.
+struct Watched {
+    Communicator const* communicator = nullptr;
+    std::string what;
+};
+Watched& watched() {
+    static Watched one;
+    return one;
+}
+
+/// Rank 0 has the first word, and the others are ended before they would have theirs, on a busy machine too.
+void end_all(MPI_File*, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's signature
+    char text[MPI_MAX_ERROR_STRING] = "";
+    int length = 0;
+    MPI_Error_string(*code, text, &length);
+    if (watched().communicator->rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(10));
+    std::fprintf(stderr, "catena: %s: %s\n", watched().what.c_str(), text);
+    watched().communicator->abort(1);
+}
+
+class AllWriters final : public Writers {
+  public:
+    explicit AllWriters(Communicator const& communicator) : communicator_(communicator), transfer_(H5Pcreate(H5P_DATASET_XFER)) {
+        if (!transfer_ || H5Pset_dxpl_mpio(transfer_.get(), H5FD_MPIO_COLLECTIVE) < 0)
+            throw ComputationError("cannot write together: " + cause());
+    }
+    bool are_several() const override { return true; }
+    bool is_first() const override { return communicator_.rank() == 0; }
+    void prepare(Properties const& access, std::string const& file, std::string const& doing) const override {
+        check(H5Pset_fapl_mpio(access.get(), handle_of(communicator_), MPI_INFO_NULL), file, doing);
+        check(H5Pset_coll_metadata_write(access.get(), true), file, doing);
+    }
+    void watch(File const& handle, std::string const& file, std::string const& doing) override {
+        void* opened = nullptr;
+        check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &opened), file, doing);
+        watched() = {&communicator_, "cannot " + doing + " (" + file + ")"};
+        MPI_Errhandler handler = MPI_ERRHANDLER_NULL;
+        check_mpi(MPI_File_create_errhandler(end_all, &handler), "MPI_File_create_errhandler");
+        check_mpi(MPI_File_set_errhandler(*static_cast<MPI_File const*>(opened), handler), "MPI_File_set_errhandler");
+        check_mpi(MPI_Errhandler_free(&handler), "MPI_Errhandler_free");
+    }
+    hid_t transfer() const override { return transfer_.get(); }
+    std::int64_t sum(std::int64_t value) const override { return communicator_.sum(value); }
+
+    void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing) override {
+        grown_ += static_cast<off_t>(more);
+        on_first_rank(communicator_, [&] { reserve(file, doing); });
+    }
+    void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) const override {
+        check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, doing);  // MPI_File_sync is part of it
+    }
+    /// Metadata are in HDF5's memory alone, data of frames that they do not tell of harm nobody: what is never closed stays as it is.
+    bool leave_as_flushed(File const&) const override { return false; }
+
+  private:
+    void reserve(std::string const& file, std::string const& doing) {
+        int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+        if (descriptor < 0) throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(errno));
+        // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left it.
+        if (reserved_ == 0) reserved_ = first_ = ::lseek(descriptor, 0, SEEK_END);
+        off_t const wanted = first_ + grown_ + grown_ / 64 + (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
+        int const error = wanted <= reserved_ || fallocate(descriptor, FALLOC_FL_KEEP_SIZE, reserved_, wanted - reserved_) == 0 ? 0 : errno;
+        ::close(descriptor);
+        if (error == ENOSPC || error == EDQUOT || error == EFBIG)
+            throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(error));
+        reserved_ = std::max(reserved_, wanted);  // or a file system that cannot: there the writes tell
+    }
+
+    Communicator const& communicator_;
+    Properties transfer_;
+    off_t first_ = 0, grown_ = 0, reserved_ = 0;  // bytes: at first, of frames since, taken from the system
+};
+
+}  // namespace
+
+std::string why_not_by_all(Communicator const& communicator) {
+    if (handle_of(communicator) == MPI_COMM_NULL) return "these ranks are not MPI's";
+    return is_quiet_about_failures() ? "OMPIO keeps quiet about writes that fail (OMPI_MCA_io=^ompio)" : "";
+}
+
+std::unique_ptr<Writers> all_writers(Communicator const& communicator) { return std::make_unique<AllWriters>(communicator); }
+
+}  // namespace catena::hdf5

@@ -1,0 +1,57 @@
+#include "io/file_way.hpp"
+
+#include <sys/stat.h>
+
+#include <array>
+#include <span>
+
+#include "error.hpp"
+#include "io/writers.hpp"
+#include "mpi/first_rank.hpp"
+
+namespace catena {
+namespace {
+
+/// What ranks send to the root in one piece (chain/scene_windows.hpp). Small frames take 0.15 ms longer together, tens of ms where ranks
+/// share cores.
+constexpr std::int64_t worth_it = 4 << 20;
+
+/// The same on every host that sees the same file.
+using Marks = std::array<std::int64_t, 2>;
+
+Marks marks_of(std::string const& file) {
+    struct stat status{};
+    if (::stat(file.c_str(), &status) != 0) return {-1, -1};
+    return {static_cast<std::int64_t>(status.st_ino), static_cast<std::int64_t>(status.st_size)};
+}
+
+/// The last rank on whose host the file is another one or none; -1: none.
+int rank_without(Communicator const& communicator, std::string const& file) {
+    Marks const own = marks_of(file);
+    Marks of_root = own;
+    communicator.broadcast(std::as_writable_bytes(std::span(of_root)));
+    return static_cast<int>(communicator.max(own == of_root ? -1 : communicator.rank()));
+}
+
+std::string why_by_the_root(Communicator const& communicator, std::string const& file) {
+    std::string const why = hdf5::why_not_by_all(communicator);
+    if (communicator.sum(why.empty() ? 0 : 1) > 0) return why.empty() ? "not every rank can write with the others" : why;
+    int const rank = rank_without(communicator, file);
+    return rank < 0 ? "" : "rank " + std::to_string(rank) + " does not see the file";
+}
+
+}  // namespace
+
+FileWay choose_file_way(Communicator const& communicator, FileWish wish, std::string const& file, std::int64_t bytes) {
+    if (communicator.size() == 1) return {};
+    if (wish == FileWish::root) return {false, "by the root: CATENA_HDF5 says so"};
+    communicator.broadcast(std::as_writable_bytes(std::span(&bytes, 1)));
+    if (wish == FileWish::best && bytes < worth_it) return {false, "by the root: frames are small"};
+    std::string const why = why_by_the_root(communicator, file);
+    if (why.empty()) return {true, "collective, " + std::to_string(communicator.size()) + " ranks"};
+    if (wish == FileWish::collective)
+        throw InputError("ranks cannot write together, " + why, file, "leave CATENA_HDF5=collective out: the root writes");
+    return {false, "by the root: " + why};
+}
+
+}  // namespace catena
