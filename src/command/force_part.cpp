@@ -40,7 +40,8 @@ ReportPart force_part(std::vector<ForceStudy> const& studies) {
         "Error of OpenMM's forces against run time",
         "Differences from OpenMM's Reference platform (double precision), over the forces' own root mean square and largest; "
         "median time of an evaluation of the forces alone. Bound of both: 2^12 units of the precision in which pairs are computed (2^-24, "
-        "double 2^-53), on GPUs and 64 of the steps of 2^-32 kJ/mol/nm in which they add up.",
+        "double 2^-53), on GPUs also 64 of the steps of 2^-32 kJ/mol/nm in which they add up and 64 times 2^-24, in which they keep "
+        "parameters.",
         {},
         Json::array()};
     for (ForceStudy const& study : studies) {

@@ -25,7 +25,7 @@ struct OpenMmPlatform {
 /// Returns what did not load, one line a file.
 std::vector<std::string> const& load_openmm_plugins();
 
-/// The platform that the scene names, else CUDA where it is present and one rank has its chains on GPU `device` (-1: it has not), else CPU
+/// The platform that the scene names, else CUDA where it is present and the rank has its chains on GPU `device` (-1: it has not), else CPU
 /// where there is one, else Reference. CUDA takes the chains' GPU unless the scene names another. CPU threads, where the scene gives no
 /// number: the rank's cores, but one for every 500 beads at most (on two cores, a second thread slows 280 beads down by a fifth). Throws
 /// InputError listing those present.

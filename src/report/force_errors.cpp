@@ -38,7 +38,8 @@ Spread seconds_of_forces(ChainSystem& system, int repeat) {
 
 double force_error_bound(std::string const& platform, std::string const& precision, double rms_force) {
     bool const adds_in_steps = platform != "Reference" && platform != "CPU";
-    return 0x1p12 * (precision == "double" ? 0x1p-53 : 0x1p-24) + (adds_in_steps ? 64 * 0x1p-32 / rms_force : 0);
+    double const of_pairs = 0x1p12 * (precision == "double" ? 0x1p-53 : 0x1p-24);
+    return adds_in_steps ? of_pairs + 64 * 0x1p-24 + 64 * 0x1p-32 / rms_force : of_pairs;
 }
 
 ForceStudy study_force_errors(Scene const& given, Communicator const& communicator, int repeat) {

@@ -17,8 +17,9 @@ struct ForcePoint {
     bool valid() const { return error <= bound && largest_error <= bound; }
 };
 /// Forces are sums of pairs that cancel, whose terms lose digits where positions are rounded within stiff contacts: 2^12 units of the
-/// precision in which pairs are computed (2^-24 single and mixed, 2^-53 double; against Reference, which is double), and on GPUs, which add
-/// up in steps of 2^-32 kJ/mol/nm, 64 of these steps over the forces' root mean square.
+/// precision in which pairs are computed (2^-24 single and mixed, 2^-53 double; against Reference, which is double). GPUs add up in steps
+/// of 2^-32 kJ/mol/nm: 64 of these over the forces' root mean square. And they keep the parameters of custom pair forces in single
+/// precision whatever the platform's (OpenMM 8, CommonCalcCustomNonbondedForceKernel): 64 times 2^-24.
 double force_error_bound(std::string const& platform, std::string const& precision, double rms_force);
 
 struct ForceStudy {

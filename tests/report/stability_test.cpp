@@ -62,9 +62,9 @@ TEST(Stability, VerdictsSayWhichBoundHolds) {
 TEST(Stability, WhatHoldsAfterRefinementAloneIsSaidSo) {
     StabilityStudy study = study_of(1e3, 1.5, 0.5);
     study.oracle_error = 1e-12;
-    study.points[0].refined = {{1e-9, 1.2, 0.5, 1}, {1e-12, 0.5, 0.5, 1}};
+    study.points[0].settled = StabilityPoint::Refined{1e-12, 0.5, 0.5, 1};
     EXPECT_EQ(study.verdict(), Verdict::refined);
-    study.points[0].refined[1].of_bound = 1.5;
+    study.points[0].settled->of_bound = 1.5;
     EXPECT_EQ(study.verdict(), Verdict::invalid);
 }
 
@@ -79,7 +79,7 @@ TEST(Stability, MeasuredErrorsAboveTheirBoundAreInvalid) {
     StabilityStudy study = study_stability(case_of("thin bodies, hinges", "1e8"), {Backend::segments}, {Handles::projected}, 1);
     ASSERT_GT(std::max(study.points.at(0).of_residual_bound, study.points[0].of_bound), 1);
     EXPECT_EQ(study.verdict(), Verdict::refined);
-    study.points[0].refined.clear();
+    study.points[0].settled.reset();
     EXPECT_EQ(study.verdict(), Verdict::invalid);
 }
 
@@ -108,10 +108,10 @@ TEST(Stability, WhatIsNotRefinedMayBeOffByTheGrowth) {
 TEST(Stability, RefinedAnswersAreHeldToFourTimesTheBestOfOthers) {
     StabilityStudy study = study_beside({{"a", 1e-15}}, 1e-8, 1e-7);
     study.points[0].residual_bound = 1e-15;
-    study.points[0].refined = {{1e-12, 0.5, 0.5, 1}, {2e-15, 0.5, 0.5, 1}};
+    study.points[0].settled = StabilityPoint::Refined{2e-15, 0.5, 0.5, 1};
     EXPECT_NEAR(study.against_peers(), 0.5, 1e-12);
     EXPECT_EQ(study.verdict(), Verdict::valid);
-    study.points[0].refined[1].error = 5e-15;
+    study.points[0].settled->error = 5e-15;
     EXPECT_EQ(study.verdict(), Verdict::invalid);
     study.peers[0].error = 2e-15;
     EXPECT_EQ(study.verdict(), Verdict::valid);
@@ -127,6 +127,8 @@ TEST(Stability, DigitsThatOthersKeepAreLost) {
     EXPECT_EQ(study.verdict(), Verdict::beyond);
     study.peers[0].error = 1e-4;
     EXPECT_EQ(study.verdict(), Verdict::lost);
+    study.condition = 1e14;  // no equations in double determine three digits
+    EXPECT_EQ(study.verdict(), Verdict::beyond);
 }
 
 /// A peer that knows the answer, one that has none, one that answers nonsense: of every seed.
@@ -159,9 +161,36 @@ TEST(Stability, SpoiltAnswersAreInvalidBesideExactOnes) {
     StabilityStudy study =
         study_stability(case_of("masses, bodies on hinges", "alternating, 1e4"), {Backend::segments}, {Handles::projected}, 1);
     EXPECT_EQ(study.verdict(), Verdict::valid);
-    study.points[0].refined[1].error = study.points[0].refined[0].error = study.points[0].error;  // as if it did nothing
+    study.points[0].settled->error = study.points[0].error;  // as if refinement did nothing
     EXPECT_LE(study.points[0].of_bound, 1);
     EXPECT_EQ(study.verdict(), Verdict::invalid);
+}
+
+/// A case of no digits is ARTICULATED where these handles, refined, keep to what is allowed, and to that alone.
+TEST(Stability, WhatArticulatedHandlesKeepIsSaidSo) {
+    StabilityStudy study = study_of(1e20, 0, 0, "not positive definite");
+    study.oracle_error = 1e-14;
+    StabilityPoint held;
+    held.handles = "articulated";
+    held.residual_bound = 1e-15;
+    held.of_residual_bound = 2;
+    held.error = 1e-12;
+    held.settled = StabilityPoint::Refined{2e-14, 0.5, 0.5, 1};
+    study.points.push_back(held);
+    EXPECT_EQ(study.verdict(), Verdict::articulated);
+    study.points[1].settled->error = 5e-14;
+    EXPECT_EQ(study.verdict(), Verdict::lost);
+    study.points[1].settled.reset();
+    EXPECT_EQ(study.verdict(), Verdict::invalid);  // its residual is not within the bound
+}
+
+TEST(Stability, ArticulatedHandlesKeepADillsDigits) {
+    std::vector<StabilityCase> const cases = coils_and_dills({1024});
+    ASSERT_EQ(cases.size(), 2U);
+    StabilityStudy const study = study_stability(cases[1], {Backend::segments}, {Handles::projected, Handles::articulated}, 1);
+    EXPECT_EQ(study.verdict(), Verdict::articulated);
+    EXPECT_GT(study.worst(&StabilityPoint::plain_error), 1e-3);
+    EXPECT_LE(study.points.at(1).error, 8 * study.oracle_error + 64 * 1024 * 0x1p-53);  // not refined
 }
 
 /// Nearly parallel hinges, light bodies between heavy ones, thin bodies: the equations of joint forces lose digits there that
