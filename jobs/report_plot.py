@@ -21,7 +21,7 @@ COLOURS = {"serial": "#0072B2", "segments": "#D55E00", "openmp": "#009E73", "cud
            "rk4": "#0072B2", "velocity-verlet": "#D55E00", "rattle": "#009E73", "g-baoab": "#CC79A7",
            "dormand-prince": "#56B4E9", "staggered": "#E69F00", "implicit-g-baoab": "#882255", "oracle": "#666666",
            "simbody": "#56B4E9", "pinocchio, local": "#E69F00", "pinocchio, world": "#882255"}
-MARKERS = {"projected": "o", "full": "s"}
+MARKERS = {"projected": "o", "full": "s", "articulated": "^"}
 FLOOR = 1e-17  # an error of zero still has a place
 
 
@@ -138,7 +138,7 @@ def forces(report, hardware):
 
 
 def stability(report, hardware):
-    """Forward error over growth, a dot a case, open ones after two steps of refinement, crosses by other programs."""
+    """Forward error over growth, a dot a case, triangles by articulated handles, open ones refined as often as helps, crosses by other programs."""
     figure, (axes,) = panels(1, f"Stability suite: forward error over growth\n{hardware}", "growth of roundings", "forward error")
     figure.set_size_inches(8, 5.5)
     backends, peers = {}, {}
@@ -150,17 +150,18 @@ def stability(report, hardware):
                 peers[peer["name"]] = True
                 axes.plot(study["growth"], shown(peer["forward_error"]), "x", color=COLOURS[peer["name"]], markersize=4)
         for point in study["points"]:
-            if point["handles"] == "projected" and not point["refused"]:
+            if point["handles"] != "full" and not point["refused"]:
                 backends[point["backend"]] = True
-                axes.plot(study["growth"], shown(point["forward_error"]), "o", color=COLOURS[point["backend"]], markersize=4)
-                if point["refined"]:
-                    error = shown(point["refined"][-1]["forward_error"])
-                    axes.plot(study["growth"], error, "o", fillstyle="none", color=COLOURS[point["backend"]], markersize=4)
+                style = {"marker": MARKERS[point["handles"]], "color": COLOURS[point["backend"]], "markersize": 4}
+                axes.plot(study["growth"], shown(point["forward_error"]), **style)
+                if point["settled"]:
+                    axes.plot(study["growth"], shown(point["settled"]["forward_error"]), fillstyle="none", **style)
     growths = decades([study["growth"] for study in studies])
     axes.plot(growths, [2.0**-53 * growth for growth in growths], "--", color="black", linewidth=0.8)
     entries = [entry(name) for name in backends] + [entry("articulated bodies (oracle)", "*", color=COLOURS["oracle"]),
                                                     entry("2^-53 growth", "", linestyle="--"),
-                                                    entry("refined twice", fillstyle="none")] + [entry(name, "x") for name in peers]
+                                                    entry("articulated handles", "^"),
+                                                    entry("refined", fillstyle="none")] + [entry(name, "x") for name in peers]
     figure.legend(handles=entries, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
     return figure
 

@@ -236,7 +236,8 @@ void fill(ChainGroup& group, Scene const& scene) {
     }
 }
 
-/// Joints at the boundaries of shared units are eliminated at the top, under another index: their local entries stay 0.
+/// Joints at the boundaries of shared units are eliminated at the top, under another index; articulated handles read the local entries, the
+/// halo's among them, on the way down.
 void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
     dca::Schedule const& s = group.schedule;
     auto const restricted = [&](int chain, std::int64_t body) {

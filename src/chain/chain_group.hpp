@@ -93,8 +93,8 @@ struct ChainGroup {
     int neighbour_inboard = -1, neighbour_outboard = -1;  // ranks that hold the bodies before and after, where a chain goes on there
     GroupView view() const;
     char const* kind() const;  // smallest handle kind: link | planar | spherical | universal | revolute | full
-    /// Restricted directions of joint k of local numbering, tips and those of shared chains' tops included (schedule.joints entries;
-    /// `none`: 0).
+    /// Restricted directions of joint k of local numbering, the halo's, tips' and those of shared chains' tops included (schedule.joints
+    /// entries; `none`: 0).
     std::vector<std::uint8_t> restricted_of_joint;
     bool has_jointed_tip(std::int64_t k) const { return !jointed_tip.empty() && jointed_tip[static_cast<std::size_t>(k)] >= 0; }
     /// Precondition: has_jointed_tip(k).

@@ -46,8 +46,7 @@ void add_common(CLI::App& command, Words& words) {
     command
         .add_option("--handles", c.handles,
                     "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3) | articulated (open chains on "
-                    "joints: keeps "
-                    "the digits of badly conditioned ones)")
+                    "joints, on the host: keeps the digits of badly conditioned ones)")
         ->type_name("KIND");
     command
         .add_option("--threads", c.threads,

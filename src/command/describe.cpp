@@ -131,7 +131,7 @@ Directions directions_of(Scene const& scene) {
 
 std::string block_text(bool beads, int directions, Handles handles) {
     std::string const size = fmt::format("{0}x{0}", directions);
-    if (handles == Handles::articulated) return size + ", every direction, inertias of what a joint carries";
+    if (handles == Handles::articulated) return size + ", every direction, of runs held at their inboard side";
     if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
     if (beads) return size + ", projected on the links";
     if (directions == 6) return size + ", every direction: welds, driven or implicit joints restrict them all";

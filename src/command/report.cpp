@@ -100,12 +100,16 @@ ReportPart integrators_of(ReportScenes const& scenes, Communicator const& commun
 Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
     make_folder(communicator, request.output);
     std::vector<SolverStudy> solver;
+    std::vector<std::string> left_out = scenes.left_out;
     for (Scene const& scene : scenes.solver) {
-        solver.push_back(study_solver_errors(scene, communicator, backends_of(request), handles_of(request), request.repeat));
+        SolverStudy study = study_solver_errors(scene, communicator, backends_of(request), handles_of(request), request.repeat);
+        if (study.points.empty())
+            left_out.push_back(fmt::format("the solver's errors in {}: no chains for {} handles", scene.title, request.handles));
+        else
+            solver.push_back(std::move(study));
         spdlog::info("{} done", scene.title);
     }
     std::vector<ReportPart> parts;
-    std::vector<std::string> left_out = scenes.left_out;
     if (std::any_of(scenes.solver.begin(), scenes.solver.end(), [](Scene const& s) { return s.solver.refine > 0; }))
         left_out.emplace_back("refinement (solver.refine) of the solver's errors and times: see catena solve --refine");
     if (communicator.rank() == 0) parts.push_back(solver_part(solver));
@@ -140,7 +144,12 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
         request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes);
     for (StabilityCase const& each : cases) {
         int const seeds = each.bodies > 100000 ? 1 : 3;
-        studies.push_back(study_stability(each, backends, handles_of(request), seeds, ask));
+        StabilityStudy study = study_stability(each, backends, handles_of(request), seeds, ask);
+        if (study.points.empty()) {
+            left_out.push_back(fmt::format("{}, {}: no chain for {} handles", each.family, each.name, request.handles));
+            continue;
+        }
+        studies.push_back(std::move(study));
         spdlog::info("{}, {}: {}", each.family, each.name, name_of(studies.back().verdict()));
     }
     std::vector<ReportPart> parts{stability_part(studies)};

@@ -219,7 +219,10 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["velocities"] = thermal ? "thermal" : "given";
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
-        if (!outcome.valid) outcome.complaint = fmt::format("residual {:.2e}, bound {:.2e}: compare with --refine 2", residual, bound);
+        if (!outcome.valid)
+            outcome.complaint =
+                fmt::format("residual {:.2e}, bound {:.2e}: compare with --refine 2 or, of open chains on joints, --handles articulated",
+                            residual, bound);
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);

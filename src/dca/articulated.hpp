@@ -130,13 +130,13 @@ CATENA_HD Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int rows) {
     return t;
 }
 
-/// The power of two next above 1 / sqrt(x), or 1 where x is no positive number: scaling by it is free of rounding.
+/// A power of two within a factor of two of 1 / sqrt(x), or 1 where x is no positive finite number: scaling by it is free of rounding.
 template <class Real>
 CATENA_HD Real unit_of(Real x) {
     using std::frexp;
     using std::ldexp;
     int exponent = 0;
-    if (!(x > Real(0))) return Real(1);
+    if (!(x > Real(0) && x - x == Real(0))) return Real(1);
     frexp(x, &exponent);
     return ldexp(Real(1), -(exponent / 2));
 }
@@ -293,7 +293,9 @@ CATENA_HD void release(int i, ReleasedDirection<Real> const& r, ArticulatedBias<
 }
 /// Accelerations of a body along the six directions of its inboard joint, from the states of its two joints and how many directions either
 /// restricts. `body`, `bias`: with its free directions released, which `released` holds. What these contribute is found from the force at
-/// handle 2 or from the acceleration there: a light body between heavy ones is told by the latter alone.
+/// handle 2 or from the acceleration there: a light body between heavy ones is told by the latter alone. Taken is, direction by direction,
+/// whichever has the smaller terms for the roundings to go by: `size` those of the force, `terms` over the pivot those of the acceleration,
+/// with the largest pivot's, whose roundings the others carry.
 template <class Real>
 CATENA_HD Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& body, ArticulatedBias<Real, 6> const& bias,
                                         ReleasedDirection<Real> const* released, HandleState<Real, 6> const& inboard, int restricted,

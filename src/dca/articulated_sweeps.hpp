@@ -6,6 +6,8 @@
 
 namespace catena::dca {
 
+inline void lower(Lost& found, std::int64_t k) { found.joint = std::min(found.joint, static_cast<unsigned long long>(k)); }
+
 /// One body with its inboard joint. `sliding`: some joint is prismatic or helical.
 template <bool sliding>
 class ArticulatedLeaf {
@@ -51,7 +53,10 @@ class ArticulatedLeaf {
     /// With the directions that the joint leaves free released.
     Matrix6 matrix(std::int64_t k, int restricted, Lost& found) const {
         Matrix6 m = held(k).matrix;
-        for (int i = K - 1; i >= restricted; --i) found = release(i, m).own > 0 ? found : lower(found, k);
+        for (int i = K - 1; i >= restricted; --i) {
+            double const own = release(i, m).own;
+            if (!(own > 0 && own - own == 0)) lower(found, k);
+        }
         return m;
     }
     Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const { return released(loads, k, restricted).bias; }
@@ -87,10 +92,6 @@ class ArticulatedLeaf {
             release(i, r.direction[i], r.bias);
         }
         return r;
-    }
-    static Lost lower(Lost found, std::int64_t k) {
-        found.joint = std::min(found.joint, static_cast<unsigned long long>(k));
-        return found;
     }
     /// As turn_to_screw.
     static void mix(Vec3 const& screw, Held& b) {
@@ -154,14 +155,22 @@ struct ArticulatedMatrixSweep {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.matrix(begin, s.restricted[begin], found);
         for (std::int64_t k = begin + 1; k < end_of(run, p); ++k)
-            segment = joined(segment, s.leaf.matrix(k, s.restricted[k], found), s.at(k));
+            segment = joined(segment, s.leaf.matrix(k, s.restricted[k], found), s.at(k), found);
         s.note(found);
         return segment;
     }
     Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+        Lost found;
+        Segment const segment = joined(inboard, outboard, at, found);
+        s.note(found);
+        return segment;
+    }
+    Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Lost& found) const {
         typename Sweeps::Joint joint;
         Segment const segment = join(inboard, outboard, at.restricted, joint);
         s.joints.store(at.k, joint);
+        for (int i = 0; i < Leaf::K; ++i)
+            if (double const pivot = joint.factor.lu(i, i); pivot == 0 || pivot - pivot != 0) lower(found, at.k);
         return segment;
     }
     Segment load(std::int64_t slot) const { return s.matrices.load(slot); }

@@ -40,8 +40,9 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     }
     bool const tip = body == group.partition.trees[chain].bodies;
     bool const open = !group.beads && !group.linked && group.axes == Axes::joint && !group.has_tips();
-    bool const may = open && group.handles != Handles::articulated;
-    throw ComputationError("the matrix of a joint is not positive definite (chain " + group.name[chain] +
+    bool const may = open && group.handles != Handles::articulated && group.implicit_joint.empty();
+    std::string const what = group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";
+    throw ComputationError(what + " is not positive definite (chain " + group.name[chain] +
                            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
                            "): masses, inertias or positions there are extreme or not finite" +
                            (may ? "; `handles: articulated` keep more digits" : ""));

@@ -33,16 +33,13 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
     throw Error(text, "solver.backend: " + backend, remedy);
 }
 
-/// Articulated handles hold open chains of rigid bodies in joint coordinates.
-void refuse_articulated(ChainGroup const& group, double implicit_step) {
-    std::string const why = group.beads || group.linked ? "chains of beads and of linked bodies have none"
-                            : group.axes == Axes::world ? "bodies in absolute coordinates have none"
-                            : group.has_tips()          ? "chains with jointed tips and rings have none"
-                            : implicit_step > 0         ? "implicit joints have none"
-                                                        : "";
-    if (!why.empty())
-        throw InputError("articulated handles are for open chains in joint coordinates: " + why, "solver.handles: articulated",
-                         "take projected or full");
+/// Whose chains have links or closed tips the scene's validation has refused.
+void refuse_articulated(ChainGroup const& group, bool implicit) {
+    if (!group.beads && !group.linked && !group.has_tips() && group.axes == Axes::joint && !implicit) return;
+    throw InputError(implicit                    ? "articulated handles and implicit joints"
+                     : group.axes == Axes::joint ? "articulated handles and chains with links or closed tips"
+                                                 : "articulated handles and absolute coordinates",
+                     "solver.handles: articulated", "use integrator rk4, dormand-prince or velocity-verlet, or handles projected or full");
 }
 
 }  // namespace
@@ -88,7 +85,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
     groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, implicit_step > 0);
     if (scene.solver.handles == Handles::articulated)
-        for (auto const& group : groups_) refuse_articulated(*group, implicit_step);
+        for (auto const& group : groups_) refuse_articulated(*group, implicit_step > 0);
     if (uses_gpu(backend_)) require_gpu_memory();
     if (scene.forces.openmm) make_openmm();
     for (auto const& group : groups_) {

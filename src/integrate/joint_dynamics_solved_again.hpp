@@ -88,10 +88,8 @@ void JointDynamicsIn<Space>::refine() {
     if (!has_matrices_) assemble_matrices();
     auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
     std::int64_t const size = group_.size, of_tip = group_.has_tips() ? size : 0;
-    int const directions = group_.directions;
-    FieldOf<3> torque(size), force(size), alpha(size), acceleration(size);
-    typename Space::Directions bias(size + 1, directions), joint_force(size + 1, directions), tip_bias(of_tip, directions),
-        tip_force(of_tip, directions);
+    need_for_refinement();
+    auto& [torque, force, alpha, acceleration, bias, joint_force, tip_bias, tip_force] = *refinement_;
     fill(space_, torque, lacking.torque);
     fill(space_, force, lacking.force);
     space_.write(bias, lacking.bias);

@@ -89,7 +89,9 @@ class AllWriters final : public Writers {
         // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left it.
         if (reserved_ == 0) reserved_ = first_ = ::lseek(descriptor, 0, SEEK_END);
         off_t const wanted = first_ + grown_ + grown_ / 64 + (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
-        int const error = wanted <= reserved_ || fallocate(descriptor, FALLOC_FL_KEEP_SIZE, reserved_, wanted - reserved_) == 0 ? 0 : errno;
+        int error = 0;
+        do error = wanted <= reserved_ || fallocate(descriptor, FALLOC_FL_KEEP_SIZE, reserved_, wanted - reserved_) == 0 ? 0 : errno;
+        while (error == EINTR);
         ::close(descriptor);
         if (error == ENOSPC || error == EDQUOT || error == EFBIG)
             throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(error));

@@ -1,8 +1,11 @@
 #include "io/file_way.hpp"
 
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <array>
+#include <cerrno>
 #include <span>
 
 #include "error.hpp"
@@ -20,8 +23,12 @@ constexpr std::int64_t worth_it = 4 << 20;
 using Marks = std::array<std::int64_t, 2>;
 
 Marks marks_of(std::string const& file) {
+    int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);  // asks the server, where there is one
+    if (descriptor < 0) return {-1, -1};
     struct stat status{};
-    if (::stat(file.c_str(), &status) != 0) return {-1, -1};
+    bool const told = ::fstat(descriptor, &status) == 0;
+    ::close(descriptor);
+    if (!told) return {-1, -1};
     return {static_cast<std::int64_t>(status.st_ino), static_cast<std::int64_t>(status.st_size)};
 }
 
@@ -33,11 +40,22 @@ int rank_without(Communicator const& communicator, std::string const& file) {
     return static_cast<int>(communicator.max(own == of_root ? -1 : communicator.rank()));
 }
 
+/// MPI's files take locks on many file systems, and end the program where they get none.
+bool has_locks(std::string const& file) {
+    int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
+    struct flock lock{};
+    lock.l_type = F_WRLCK, lock.l_whence = SEEK_SET, lock.l_len = 1;
+    bool const locked = descriptor >= 0 && (::fcntl(descriptor, F_SETLK, &lock) == 0 || errno == EAGAIN || errno == EACCES);
+    if (descriptor >= 0) ::close(descriptor);
+    return locked;
+}
+
 std::string why_by_the_root(Communicator const& communicator, std::string const& file) {
     std::string const why = hdf5::why_not_by_all(communicator);
     if (communicator.sum(why.empty() ? 0 : 1) > 0) return why.empty() ? "not every rank can write with the others" : why;
     int const rank = rank_without(communicator, file);
-    return rank < 0 ? "" : "rank " + std::to_string(rank) + " does not see the file";
+    if (rank >= 0) return "rank " + std::to_string(rank) + " does not see the file";
+    return communicator.sum(has_locks(file) ? 0 : 1) > 0 ? "its file system has no locks" : "";
 }
 
 }  // namespace

@@ -283,7 +283,11 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
     });
     FileWish const wish = file_wish_of_run(communicator);
     FileWay way = choose_file_way(communicator, wish, file, bytes);
-    if (way.collective && communicator.sum(fits ? 1 : 0) == 0) way = {false, "by the root: an earlier version began the file"};
+    if (way.collective && communicator.sum(fits ? 1 : 0) == 0) {
+        if (wish == FileWish::collective)
+            throw InputError("ranks cannot write together, an earlier version began the file", file, "leave CATENA_HDF5=collective out");
+        way = {false, "by the root: an earlier version began the file"};
+    }
     if (!way.collective) return {std::move(writer), way};
     Standing standing;
     on_first_rank(communicator, [&] {
@@ -294,7 +298,7 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
     std::string why;
     try {
         writer = std::make_unique<H5mdWriter>(file, standing, all_writers(communicator));
-    } catch (ComputationError const& error) {
+    } catch (std::exception const& error) {  // whatever it is, the others wait for this rank's word
         why = error.what();
     }
     if (communicator.sum(why.empty() ? 0 : 1) == 0) return {std::move(writer), way};

@@ -14,6 +14,7 @@ namespace {
 /// Why a GPU is not for `auto`, besides there being none.
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
+    if (scene.solver.refine > 0) return "what refined solutions lack is looked for on the host";
     return scene.why_host_alone();
 }
 /// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and the solver.

@@ -194,10 +194,11 @@ bool IntegratorCurve::as_promised() const {
     auto const has_error = [](IntegratorPoint const& p) { return p.no_error.empty(); };
     auto const allowed = [](IntegratorPoint const& p) { return p.no_error.empty() && p.error <= p.allowed; };
     auto const near = [&](double found) { return found > order - 0.1 && found < order + 0.1; };
-    if (exact || too_stiff) return true;
+    if (exact || (too_stiff && !slow)) return true;
     if (scheme == Scheme::adaptive) return std::all_of(points.begin(), points.end(), allowed);
     bool const goes_on = scheme != Scheme::implicit_springs || std::all_of(points.begin(), points.end(), has_error);
-    return goes_on && slope && near(*slope) && (!slow || !slope_beyond || near(*slope_beyond));
+    bool const shown_beyond = !slow || scheme != Scheme::implicit_springs || (slope_beyond && near(*slope_beyond));
+    return goes_on && has_error(points.back()) && slope && near(*slope) && shown_beyond;
 }
 
 double IntegratorCurve::unstable_from() const {
@@ -241,7 +242,7 @@ IntegratorStudy study_integrator_errors(Scene const& scene, Communicator const& 
     if (works) study.no_energy_error = "torques or wrenches work on the bodies";
     study.no_implicit = why_explicit_alone(springs_of(scene));
     std::vector<Integrator> const integrators = integrators_of(scene);
-    bool const springs = std::any_of(integrators.begin(), integrators.end(), is_implicit);
+    bool const springs = springs_of(scene) != Springs::none;
     if (springs) finest += 2;
     // Of second order sixteen times finer than the finest: 1/256 of that one's error, or rounding. Of fifth order as fine; where springs
     // may be stiff for that, four times finer.

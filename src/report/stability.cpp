@@ -84,6 +84,9 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
         for (; steps < most_refinements && error > to.residual_bound.back() && error < before / 2; ++steps) {
             settled.cost.push_back(refine());
             before = std::exchange(error, look(settled));
+            if (error <= before) continue;  // as often as helps, by the known answer
+            settled.residual.pop_back();
+            error = before;
         }
         to.settled.residual.push_back(settled.residual.back());
         to.settled.error.push_back(error);
@@ -202,6 +205,7 @@ bool StabilityStudy::all(bool articulated, std::function<bool(StabilityPoint con
 /// Where the equations of joint forces lose all digits an answer must still be the exact one of a chain nearby, or refused; whether
 /// articulated handles or others keep them is said.
 Verdict StabilityStudy::verdict() const {
+    if (points.empty()) return Verdict::invalid;
     bool const has_articulated = std::any_of(points.begin(), points.end(), [](StabilityPoint const& p) { return p.is_articulated(); });
     bool const articulated_good = all(true, &StabilityPoint::holds_refined) && against_peers(true) <= 1;
     bool const good = all(false, &StabilityPoint::holds_refined) && against_peers(false) <= 1;

@@ -2,7 +2,6 @@
 //
 // A backend has solved exactly a chain whose data and equations are off by its local residual; the answer is then off by the residual times
 // the growth (growth.hpp). With the bound of the residual, 32 depth(tree) 2^-53, that bounds the error: 32 depth(tree) 2^-53 growth.
-// (Of articulated handles that is far too much: they are held to what follows.)
 // Articulated bodies in double and other programs ("peers") solve the same chains: after refinement, which brings back what the growth
 // took, the error may be 4 times the best of theirs, or that of the residual's bound alone.
 #pragma once

@@ -18,6 +18,9 @@ Scene with(Scene scene, Stepping const& stepping) {
     d.friction = 0;
     d.constraint_tolerance = constraint_tolerance;
     if (!is_refined(d.integrator)) scene.solver.refine = 0;
+    // Which absolute coordinates and implicit joints have none of.
+    if (!uses_joint_coordinates(d.integrator) || is_implicit(d.integrator))
+        if (scene.solver.handles == Handles::articulated) scene.solver.handles = Handles::projected;
     return scene;
 }
 

@@ -182,8 +182,9 @@ SolverSpec read_solver(Node const& node) {
                                    {"cuda", Backend::cuda},
                                    {"cuda-levels", Backend::cuda_levels}});
     });
-    take(fields, "handles", solver.handles,
-         [](Node const& n) { return choice<Handles>(n, {{"projected", Handles::projected}, {"full", Handles::full}, {"articulated", Handles::articulated}}); });
+    take(fields, "handles", solver.handles, [](Node const& n) {
+        return choice<Handles>(n, {{"projected", Handles::projected}, {"full", Handles::full}, {"articulated", Handles::articulated}});
+    });
     take(fields, "threads", solver.threads, [](Node const& n) { return whole(n, 0, 4096); });
     take(fields, "refine", solver.refine, [](Node const& n) { return static_cast<int>(whole(n, 0, 10)); });
     take(fields, "simd", solver.simd, [](Node const& n) {

@@ -94,6 +94,14 @@ void check_integrator(Node const& root, Scene const& scene, Draft const& draft) 
                 fmt::format("a prescribed motion under integrator {}", name_of(integrator)), joint_integrators + ", or leave it out");
 }
 
+void check_handles(Node const& root, Scene const& scene, Draft const& draft) {
+    if (scene.solver.handles != Handles::articulated || takes_articulated_handles(draft.chain)) return;
+    ChainSpec const& chain = draft.chain;
+    char const* const why = chain.bodies.size() == 0 ? "has links" : chain.is_ring() ? "is a ring" : "has a jointed tip";
+    fail(*root.find("solver")->find("handles"), fmt::format("articulated handles for chain `{}`, which {}", shown(chain.name), why),
+         "use `projected` or `full`: articulated ones are for open chains of rigid bodies");
+}
+
 void check_fixman(Node const& root, DynamicsSpec const& dynamics, Draft const& draft) {
     if (!dynamics.fixman) return;
     Node const& at = *root.find("dynamics")->find("fixman");
@@ -188,6 +196,7 @@ void check_together(Node const& root, Scene const& scene, std::vector<Draft> con
         if (previous && previous->node == draft.node) continue;
         previous = &draft;
         check_drag(root, scene, draft);
+        check_handles(root, scene, draft);
         if (scene.dynamics.given) check_integrator(root, scene, draft);
         check_fixman(root, scene.dynamics, draft);
         check_thermal(root, scene.dynamics, draft);

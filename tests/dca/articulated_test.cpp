@@ -125,19 +125,20 @@ TEST(ArticulatedHandles, KeepTheDigitsOfADill) {
 
 TEST(ArticulatedHandles, OtherChainsAreRefused) {
     auto const refused = [](std::string const& chain, Axes axes) {
-        Scene const scene = parse_scene("chains: [{" + chain + "}]\nsolver: {handles: articulated}", "scene.yaml");
         try {
-            ChainSystem(scene, axes, testing::world());
+            Scene const scene = parse_scene("chains: [{name: c, " + chain + "}]\nsolver: {handles: articulated}", "scene.yaml");
+            ChainSystem const system(scene, axes, testing::world());
         } catch (InputError const& error) {
             return std::string(error.what());
         }
         return std::string();
     };
-    EXPECT_NE(refused("generator: {random: {bodies: 9, joint: link}}", Axes::joint).find("beads"), std::string::npos);
-    EXPECT_NE(refused("generator: {random: {bodies: 9, joint: spherical}}", Axes::world).find("absolute"), std::string::npos);
-    EXPECT_NE(refused("base: fixed, generator: {random: {bodies: 9, joint: spherical}}, tip: {joint: {type: spherical}}", Axes::joint)
-                  .find("tips"),
-              std::string::npos);
+    auto const holds = [](std::string const& text, char const* part) { return text.find(part) != std::string::npos; };
+    EXPECT_PRED2(holds, refused("generator: {random: {bodies: 9, joint: link}}", Axes::joint),
+                 "for chain `c`, which has links (scene.yaml");
+    std::string const closed = "base: fixed, generator: {random: {bodies: 9, joint: spherical}}, tip: {joint: {type: spherical}}";
+    EXPECT_PRED2(holds, refused(closed, Axes::joint), "for chain `c`, which has a jointed tip (scene.yaml");
+    EXPECT_PRED2(holds, refused("generator: {random: {bodies: 9, joint: spherical}}", Axes::world), "absolute coordinates (solver.handles");
     EXPECT_EQ(refused("generator: {random: {bodies: 9, joint: spherical}}", Axes::joint), "");
 }
 

@@ -25,13 +25,14 @@ def report(number):
     curves = [{"integrator": "rk4", "scheme": "explicit", "unstable_from": 0.2, "points": [step, {**step, "step": 0.2, "error": None, "no_error": "unstable"}]},
               {"integrator": "dormand-prince", "scheme": "adaptive", "unstable_from": 0, "points": [step]},
               {"integrator": "staggered", "scheme": "implicit springs", "unstable_from": 0, "points": [step]}]
-    case = {"backend": "segments", "handles": "projected", "refused": "", "forward_error": number, "refined": [{"forward_error": number}]}
+    case = {"backend": "segments", "handles": "projected", "refused": "", "forward_error": number, "settled": {"forward_error": number}}
+    held = {**case, "handles": "articulated", "settled": None}
     peer = {"name": "simbody", "forward_error": number, "why_not": "" if number else "its answer is not finite"}
     return {"hardware": {"processor": "any"}, "ranks": 1,
-            "studies": [{"title": "a", "condition": number, "points": [point], "oracle": oracle}],
+            "studies": [{"title": "a", "condition": number, "points": [point, {**point, "handles": "articulated"}], "oracle": oracle}],
             "integrators": {"scenes": [{"title": "a", "curves": curves}, {"title": "b", "curves": []}]},
             "forces": [{"title": "a", "beads": 1, "points": [{"platform": "CPU", "precision": "single", "error": number, "seconds": SECONDS}]}],
-            "stability": [{"growth": number, "oracle": oracle, "points": [case], "peers": [peer]}]}
+            "stability": [{"growth": number, "oracle": oracle, "points": [case, held], "peers": [peer]}]}
 
 
 for number in (1e-9, None):
