@@ -198,7 +198,7 @@ bool IntegratorCurve::as_promised() const {
     if (scheme == Scheme::adaptive) return std::all_of(points.begin(), points.end(), allowed);
     bool const goes_on = scheme != Scheme::implicit_springs || std::all_of(points.begin(), points.end(), has_error);
     bool const shown_beyond = !slow || scheme != Scheme::implicit_springs || (slope_beyond && near(*slope_beyond));
-    return goes_on && has_error(points.back()) && slope && near(*slope) && shown_beyond;
+    return goes_on && (points.empty() || has_error(points.back())) && slope && near(*slope) && shown_beyond;
 }
 
 double IntegratorCurve::unstable_from() const {

@@ -117,6 +117,11 @@ TEST(IntegratorErrors, AnotherOrderThanPromisedIsInvalid) {
     EXPECT_FALSE(curve.as_promised());
     curve.slope = 1.95;
     EXPECT_TRUE(curve.as_promised());
+    curve.points.resize(2);
+    EXPECT_TRUE(curve.as_promised());
+    curve.points.back().no_error = "came to no end";  // the finest step of all
+    EXPECT_FALSE(curve.as_promised());
+    curve.points.clear();
     curve.slope = std::nullopt;
     EXPECT_FALSE(curve.as_promised());
     curve.exact = true;

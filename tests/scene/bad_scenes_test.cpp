@@ -143,7 +143,7 @@ solver: {backend: segment})y",
      "`segment` is not a value of `backend` (s.yaml: solver.backend, line 2): did you mean `segments`?"},
     {"handles", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {handles: 6x6})y",
-     "`6x6` is not a value of `handles` (s.yaml: solver.handles, line 2): use one of `projected`, `full`"},
+     "`6x6` is not a value of `handles` (s.yaml: solver.handles, line 2): use one of `projected`, `full`, `articulated`"},
     {"threads", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {threads: -1})y",
      "threads -1 is below 0 (s.yaml: solver.threads, line 2): give 0 or more"},
