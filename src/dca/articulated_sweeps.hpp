@@ -13,6 +13,7 @@ template <bool sliding>
 class ArticulatedLeaf {
   public:
     static constexpr int K = 6;
+    static constexpr bool at_once = false, beads = false, projected = false;
     using Matrix6 = ArticulatedMatrix<double, K>;
     using Bias6 = ArticulatedBias<double, K>;
     using Vec6 = Vector<double, K>;
@@ -225,5 +226,16 @@ struct ArticulatedBiasSweep {
         }
     }
 };
+
+template <bool sliding>
+struct SweepsOf<ArticulatedLeaf<sliding>> {
+    using Sweeps = ArticulatedSweeps<ArticulatedLeaf<sliding>>;
+    using OfMatrices = ArticulatedMatrixSweep<ArticulatedLeaf<sliding>>;
+    using OfBiases = ArticulatedBiasSweep<ArticulatedLeaf<sliding>>;
+};
+template <int K>
+Vector<double, K> const& force_of(HandleState<double, K> const& joint) {
+    return joint.force;
+}
 
 }  // namespace catena::dca
