@@ -33,8 +33,8 @@ class TreeSolver final : public ChainSolver {
           space_(space),
           communicator_(communicator),
           model_(group),
-          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, K),
-          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, K),
+          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
+          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
           top_copies_(schedule_.top_copies),
           matrices_(schedule_.slots),
           biases_(schedule_.slots),
@@ -44,8 +44,8 @@ class TreeSolver final : public ChainSolver {
           shown_matrices_(schedule_, RecordNumbers<typename Sweeps::Matrices>::width, space, communicator),
           shown_biases_(schedule_, RecordNumbers<typename Sweeps::Biases>::width, space, communicator),
           lost_(1),
-          sweeps_{leaf(),         model_.restricted(), matrices_.view(), biases_.view(),
-                  joints_.view(), offsets_.view(),     forces_.view(),   lost_.data()} {
+          sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
+                  joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
         space_.put(lost_.data(), none_lost);
         if constexpr (has_lanes) {
             aside_.emplace(group, model_.view(), space.simd());
@@ -160,17 +160,10 @@ class TreeSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
 
-    /// From the whole group where its view, which any space has, does not hold all that it takes.
-    Leaf leaf() const {
-        if constexpr (std::is_constructible_v<Leaf, ChainGroup const&>)
-            return Leaf(group_);
-        else
-            return Leaf(model_.view());
-    }
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
-            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint, K);
+            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint, Sweeps::in_stage);
         };
         add(aside_->other_runs(), no_levels_, no_roots_);
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);

@@ -10,7 +10,7 @@
 #include "dca/closure.hpp"
 #include "dca/leaves.hpp"
 #include "dca/records.hpp"
-#include "dca/tree.hpp"
+#include "dca/stages.hpp"
 
 namespace catena::dca {
 
@@ -35,6 +35,7 @@ struct TreeSweeps {
     using Directions = Vector<double, K>;
     using Offset = Directions;
     using State = Directions;  // what the way down knows of a joint: its force
+    static constexpr StageRecords in_stage = stage_records(K);
 
     Leaf leaf;
     std::uint8_t const* restricted = nullptr;      // of every joint (ChainGroup::restricted_of_joint)
