@@ -216,7 +216,7 @@ CATENA_HD_APART Matrix<Real, K, K> root_of_sum(Matrix<Real, K, K> const& a, Matr
 /// The joined run.
 template <class Real, int K>
 CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const& inboard, ArticulatedMatrix<Real, K> const& outboard,
-                                          int restricted, ArticulatedJoint<Real, K>& joint) {
+                                                int restricted, ArticulatedJoint<Real, K>& joint) {
     using Square = Matrix<Real, K, K>;
     Matrix<Real, K, 2 * K> all;
     Vector<Real, K> unit;
@@ -253,7 +253,7 @@ CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const
 }
 template <class Real, int K>
 CATENA_HD_APART ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& inboard, ArticulatedBias<Real, K> const& outboard,
-                                        ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K>& offset) {
+                                              ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K>& offset) {
     Vector<Real, K> const e = joint.motion * inboard.e + joint.tip * inboard.w, p = joint.force * outboard.p;
     offset = {solve(joint.factor, e - joint.mobility * p), solve_transposed(joint.factor, joint.inertia * e + p)};
     return {inboard.p + transposed_times(joint.inboard, offset.force), joint.outboard * offset.acceleration + outboard.e, outboard.w};
@@ -261,7 +261,7 @@ CATENA_HD_APART ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& in
 /// The joint's state from those at the joined run's two ends.
 template <class Real, int K>
 CATENA_HD_APART HandleState<Real, K> state_between(ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K> const& offset,
-                                             HandleState<Real, K> const& first, HandleState<Real, K> const& next) {
+                                                   HandleState<Real, K> const& first, HandleState<Real, K> const& next) {
     Vector<Real, K> const a1 = joint.inboard * first.acceleration, f2 = transposed_times(joint.outboard, next.force);
     Vector<Real, K> const a = solve(joint.factor, a1 - joint.mobility * f2) + offset.acceleration;
     Vector<Real, K> const f = solve_transposed(joint.factor, joint.inertia * a1 + f2) + offset.force;
@@ -302,8 +302,8 @@ CATENA_HD void release(int i, ReleasedDirection<Real> const& r, ArticulatedBias<
 /// with the largest pivot's, whose roundings the others carry.
 template <class Real>
 CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& body, ArticulatedBias<Real, 6> const& bias,
-                                        ReleasedDirection<Real> const* released, HandleState<Real, 6> const& inboard, int restricted,
-                                        HandleState<Real, 6> const& outboard, int restricted_outboard) {
+                                              ReleasedDirection<Real> const* released, HandleState<Real, 6> const& inboard, int restricted,
+                                              HandleState<Real, 6> const& outboard, int restricted_outboard) {
     using std::fabs;
     using std::sqrt;
     Vector<Real, 6> a = Vector<Real, 6>::zero(), z = bias.w, size = Vector<Real, 6>::zero();

@@ -63,8 +63,8 @@ class ArticulatedLeaf {
         return m;
     }
     CATENA_HD Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const { return released(loads, k, restricted).bias; }
-    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted, HandleState<double, K> const& inboard, int restricted_outboard,
-                    HandleState<double, K> const& outboard, AccelerationsView const& out) const {
+    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted, HandleState<double, K> const& inboard,
+                              int restricted_outboard, HandleState<double, K> const& outboard, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         Released const r = released(loads, k, restricted);
         Vec6 const a = accelerations(r.body.matrix, r.bias, r.direction, inboard, restricted, outboard, restricted_outboard) - r.closure;
@@ -212,7 +212,9 @@ struct ArticulatedBiasSweep {
     CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
     /// The ground's acceleration stands in the biases of the joints to it, and at a free tip there is no force.
-    CATENA_HD void close(Root const& root, Segment const& whole) const { s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p}); }
+    CATENA_HD void close(Root const& root, Segment const& whole) const {
+        s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p});
+    }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     CATENA_HD State force(Node const& node, State const& first, State const& next) const {
         return state_between(node.joint, node.offset, first, next);

@@ -134,7 +134,7 @@ class JointDynamicsIn final : public JointDynamics {
         exchange_ends();
     }
     /// What is lacking is looked for on the host.
-    void refine() override;
+    void refine(Executor const& executor) override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
     JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
 
@@ -178,9 +178,9 @@ class JointDynamicsIn final : public JointDynamics {
         solver_->check();
         return with_solution([&](JointSolution const& s) { return s.results(communicator_); });
     }
-    double residual() override {
+    double residual(Executor const& executor) override {
         solver_->check();
-        return with_solution([&](JointSolution const& s) { return s.residual(communicator_); });
+        return with_solution([&](JointSolution const& s) { return s.residual(communicator_, executor); });
     }
     PotentialEnergy potential() override { return potential_of(group_, given_, space_.read(state_.q), motion()); }
 

@@ -104,9 +104,9 @@ void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found
 }
 
 template <class Space>
-void JointDynamicsIn<Space>::refine() {
+void JointDynamicsIn<Space>::refine(Executor const& executor) {
     if (!has_matrices_) assemble_matrices();
-    auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
+    auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_, executor); });
     std::int64_t const size = group_.size, of_tip = group_.has_tips() ? size : 0;
     if (!refinement_) refinement_.emplace(group_);
     JointRefinement<Space>& r = *refinement_;

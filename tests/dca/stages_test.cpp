@@ -149,8 +149,11 @@ class Walk {
 };
 
 TEST_P(Stages, EveryItemIsDoneOnceAndAfterWhatItNeeds) {
-    std::vector<StageSizes> const all_sizes = {
-        {1, 2, 0}, {4, 8, 2}, stage_sizes(stage_records(1), 232448, 8), stage_sizes(stage_records(3), 101376, 0), stage_sizes(stage_records(6), 232448, 8)};
+    std::vector<StageSizes> const all_sizes = {{1, 2, 0},
+                                               {4, 8, 2},
+                                               stage_sizes(stage_records(1), 232448, 8),
+                                               stage_sizes(stage_records(3), 101376, 0),
+                                               stage_sizes(stage_records(6), 232448, 8)};
     bool const large = *std::max_element(GetParam().begin(), GetParam().end()) > 100000;
     for (int const ranks : large ? std::vector<int>{1, 3} : std::vector<int>{1, 2, 3, 5})
         for (bool const pairwise : large ? std::vector<bool>{false} : std::vector<bool>{false, true})
@@ -221,7 +224,8 @@ TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
             ASSERT_TRUE(stage.of_runs);
             std::int64_t const threads = threads_for(stage, sizes);
             EXPECT_GE(threads, parts_of_run * stage.width);
-            EXPECT_LE(8 * (records.segment * (threads + stage.width) + 2 * records.state * stage.width), shared_bytes) << records.segment << " numbers";
+            EXPECT_LE(8 * (records.segment * (threads + stage.width) + 2 * records.state * stage.width), shared_bytes)
+                << records.segment << " numbers";
         }
 }
 
