@@ -33,7 +33,8 @@ std::vector<std::string> const later_benches{"sweeps"};
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite,
+        cases;
     std::vector<std::string> scenes;
     bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
 };
@@ -46,7 +47,7 @@ void add_common(CLI::App& command, Words& words) {
     command
         .add_option("--handles", c.handles,
                     "directions that the solver's blocks carry: projected (default) | full (6x6, beads 3x3) | articulated (open chains on "
-                    "joints, on the host: keeps the digits of badly conditioned ones)")
+                    "joints: keeps the digits of badly conditioned ones)")
         ->type_name("KIND");
     command
         .add_option("--threads", c.threads,
@@ -146,6 +147,7 @@ void add_commands(CLI::App& app, Words& words) {
                      "without --quick beside Simbody and Pinocchio where they are here (tests/bench/peers/README.md)")
         ->type_name("NAME");
     command->add_option("--sizes", words.sizes, "of the suite: coils and dills of so many bodies alone")->type_name("N,...");
+    command->add_option("--cases", words.cases, "of the suite: those whose family holds one of these words")->type_name("WORD,...");
     command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
     command->add_option("--output", words.output, "folder for report.html, report.json and pictures (default catena-report)")
         ->type_name("DIR");
@@ -309,8 +311,10 @@ ReportRequest report_request(Words const& words) {
     if (!request.suite.empty() && !request.scenes.empty())
         throw InputError("both --suite and a scene", "command line", "the suite has chains of its own: leave the scene out");
     if (!request.suite.empty()) refuse_with_suite(words);
-    if (request.suite.empty() && !words.sizes.empty())
-        throw InputError("--sizes without --suite", "command line", "write --suite stability, or leave it out");
+    for (auto const& [option, given] : {std::pair{"--sizes", words.sizes}, {"--cases", words.cases}})
+        if (request.suite.empty() && !given.empty())
+            throw InputError(option + std::string(" without --suite"), "command line", "write --suite stability, or leave it out");
+    if (!words.cases.empty()) request.cases = comma_list("--cases", words.cases);
     request.sizes = sizes_of(words);
     if (!words.output.empty()) request.output = words.output;
     request.repeat = repeat_of(words, request.quick ? 3 : request.repeat);

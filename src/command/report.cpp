@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "command/commands.hpp"
 #include "command/peer_answers.hpp"
@@ -125,6 +127,22 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
     return conclude("error against run time", parts, left_out, communicator, request);
 }
 
+std::vector<StabilityCase> chosen(std::vector<StabilityCase> cases, std::vector<std::string> const& words) {
+    auto const holds = [](StabilityCase const& each, std::string const& word) { return each.family.find(word) != std::string::npos; };
+    for (std::string const& word : words)
+        if (std::none_of(cases.begin(), cases.end(), [&](StabilityCase const& each) { return holds(each, word); })) {
+            std::set<std::string> families;
+            for (StabilityCase const& each : cases) families.insert(each.family);
+            throw InputError("no family of cases has '" + word + "'", "--cases",
+                             fmt::format("take words of: {}", fmt::join(families, ", ")));
+        }
+    if (!words.empty())
+        std::erase_if(cases, [&](StabilityCase const& each) {
+            return std::none_of(words.begin(), words.end(), [&](std::string const& word) { return holds(each, word); });
+        });
+    return cases;
+}
+
 Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
     if (communicator.size() > 1)
         throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"), "--suite", "run it without mpirun");
@@ -141,7 +159,8 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
     };
     std::vector<StabilityStudy> studies;
     auto const cases =
-        request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes);
+        chosen(request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes),
+               request.cases);
     for (StabilityCase const& each : cases) {
         int const seeds = each.bodies > 100000 ? 1 : 3;
         StabilityStudy study = study_stability(each, backends, handles_of(request), seeds, ask);

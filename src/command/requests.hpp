@@ -45,6 +45,7 @@ struct ReportRequest : CommonOptions {
     std::vector<std::string> scenes;  // empty: generated ones
     std::string suite;                // "stability"; empty: error against run time
     std::vector<std::int64_t> sizes;  // of the suite: coils and dills of these alone
+    std::vector<std::string> cases;   // of the suite: those whose family holds one of these words; empty: all
     std::string output = "catena-report";
     int repeat = 11;
     bool quick = false;

@@ -1,6 +1,7 @@
 #include "report/growth.hpp"
 
 #include <algorithm>
+#include <future>
 
 #include "error.hpp"
 #include "report/nudged.hpp"
@@ -19,6 +20,9 @@ std::vector<double> joined(std::vector<double> a, std::vector<double> const& b) 
 }  // namespace
 
 ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::int64_t largest_quad, int nudges) {
+    bool const quad = scene.bodies() <= largest_quad;
+    std::future<std::vector<double>> widest;  // solutions go side by side
+    if (quad) widest = std::async(std::launch::async, [&] { return oracle_accelerations<oracle::Quad>(scene, layout.bead_force); });
     std::vector<double> wide;
     std::vector<std::vector<double>> moved(static_cast<std::size_t>(nudges));
     for (std::size_t c = 0; c < scene.chains.size(); ++c) {
@@ -26,10 +30,13 @@ ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::in
         oracle::Loads const loads = oracle_loads(scene, c, layout.bead_force);
         auto const found = oracle::aba<long double>(chain, loads);
         wide = joined(std::move(wide), joint_accelerations(chain, found));
-        for (std::size_t i = 0; i < moved.size(); ++i) {
-            Nudged const n = nudged(i + 1, chain, loads, found, nudge);
-            moved[i] = joined(std::move(moved[i]), joint_accelerations(n.chain, oracle::aba<long double>(n.chain, n.loads)));
-        }
+        std::vector<std::future<std::vector<double>>> own(moved.size());
+        for (std::size_t i = 0; i < own.size(); ++i)
+            own[i] = std::async(std::launch::async, [&, i] {
+                Nudged const n = nudged(i + 1, chain, loads, found, nudge);
+                return joint_accelerations(n.chain, oracle::aba<long double>(n.chain, n.loads));
+            });
+        for (std::size_t i = 0; i < own.size(); ++i) moved[i] = joined(std::move(moved[i]), own[i].get());
     }
     ExactSolution exact;
     Solution there = layout;
@@ -37,9 +44,8 @@ ExactSolution exact_solution(Scene const& scene, Solution const& layout, std::in
         there.acceleration = std::move(acceleration);
         exact.growth = larger(exact.growth, largest_difference(scene, there, wide) / nudge);
     }
-    bool const quad = scene.bodies() <= largest_quad;
     exact.by = quad ? "articulated bodies, 113 bits" : "articulated bodies, 64 bits";
-    exact.acceleration = quad ? oracle_accelerations<oracle::Quad>(scene, layout.bead_force) : std::move(wide);
+    exact.acceleration = quad ? widest.get() : std::move(wide);
     return exact;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <limits>
 #include <utility>
 
@@ -141,9 +142,9 @@ void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution 
 
 StabilityPeer peer_of(PeerErrors const& p) { return {p.name, p.why_not.empty() ? median(p.error) : infinite, p.why_not}; }
 
-double error_in_double(Scene const& scene, Solution layout, ExactSolution const& exact) {
+double error_of(std::future<std::vector<double>>& in_double, Scene const& scene, Solution layout, ExactSolution const& exact) {
     try {
-        layout.acceleration = oracle_accelerations<double>(scene, {});
+        layout.acceleration = in_double.get();
     } catch (ComputationError const&) {
         return infinite;
     }
@@ -229,11 +230,12 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
         Scene scene = which.scene(static_cast<std::uint64_t>(seed));
         if (variants.empty()) variants = variants_of(scene.chains.front(), backends, handles);
         Solution const layout = layout_of(scene);
+        auto found_in_double = std::async(std::launch::async, [&] { return oracle_accelerations<double>(scene, {}); });
         ExactSolution const exact = exact_solution(scene, layout, largest_quad_here, which.bodies > few_nudges_above ? 1 : 3);
         study.reference = exact.by;
         growth.push_back(exact.growth);
         if (which.bodies <= largest_condition) condition.push_back(oracle::condition_estimate(scene.chains.front()));
-        in_double.push_back(error_in_double(scene, layout, exact));
+        in_double.push_back(error_of(found_in_double, scene, layout, exact));
         std::vector<PeerAnswer> const answers = peers ? peers(which, scene) : std::vector<PeerAnswer>{};
         of_peers.resize(answers.size());
         for (std::size_t i = 0; i < answers.size(); ++i) add(of_peers[i], answers[i], scene, layout, exact);

@@ -206,6 +206,13 @@ TEST(Report, TheStabilitySuiteGivesAVerdictForEveryCase) {
     EXPECT_EQ(json.at("left_out").back(), "peers: Simbody and Pinocchio (--quick)");
     EXPECT_EQ(catena({"report", "--suite", "stability", input("arm.yaml")}).status, 2);
     expect_refused(catena({"report", "--sizes", "64"}), 2, "--sizes without --suite (command line): write --suite stability");
+    auto const dill =
+        catena({"report", "--suite", "stability", "--sizes", "64", "--cases", "dill", "--quick", "--output", folder / "d", "--json", "-"})
+            .json();
+    ASSERT_EQ(dill.at("stability").size(), 1U);
+    EXPECT_EQ(dill.at("stability")[0].at("family"), "dill");
+    expect_refused(catena({"report", "--suite", "stability", "--sizes", "64", "--cases", "knot"}), 2,
+                   "no family of cases has 'knot' (--cases): take words of: coil, dill");
 }
 
 TEST(Report, BackendAndHandlesCanBeChosen) {
