@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -26,8 +25,6 @@ struct CellHash {
 };
 
 using CellSet = std::unordered_set<Cell, CellHash>;
-/// Indices of points, by their cells.
-using CellMap = std::unordered_map<Cell, std::vector<std::int64_t>, CellHash>;
 
 class Grid {
   public:
@@ -81,13 +78,14 @@ class Grid {
         return dot(d, d);
     }
 
-  private:
+    /// A cell's place along an axis, around the box where there is one.
     std::int64_t wrapped(std::int64_t c, int axis) const {
         if (count_[axis] == 0) return c;
         std::int64_t const r = c % count_[axis];
         return r < 0 ? r + count_[axis] : r;
     }
 
+  private:
     std::optional<Vec3> box_;
     Vec3 edge_{};
     Cell count_{};

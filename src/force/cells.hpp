@@ -1,0 +1,52 @@
+// Points sorted by the cells of a grid.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "force/grid.hpp"
+
+namespace catena {
+
+class PointsInCells {
+  public:
+    PointsInCells(Grid const& grid, std::span<Vec3 const> points) {
+        // Beads that follow each other lie together: their cells are the same for some.
+        struct Run {
+            Cell cell;
+            std::int64_t begin, end;
+        };
+        std::vector<Run> runs;
+        for (std::int64_t k = 0; k < std::ssize(points); ++k) {
+            Cell const cell = grid.cell(points[static_cast<std::size_t>(k)]);
+            if (runs.empty() || runs.back().cell != cell) runs.push_back({cell, k, k});
+            runs.back().end = k + 1;
+        }
+        std::sort(runs.begin(), runs.end(),
+                  [](Run const& a, Run const& b) { return a.cell != b.cell ? a.cell < b.cell : a.begin < b.begin; });
+        point_.reserve(points.size());
+        for (Run const& run : runs) {
+            if (cells_.empty() || cells_.back() != run.cell) {
+                cells_.push_back(run.cell);
+                first_.push_back(std::ssize(point_));
+            }
+            for (std::int64_t k = run.begin; k < run.end; ++k) point_.push_back(k);
+        }
+        first_.push_back(std::ssize(point_));
+    }
+
+    /// Those that hold points, ascending.
+    std::vector<Cell> const& cells() const { return cells_; }
+    /// Of the i-th of them, ascending.
+    std::span<std::int64_t const> points(std::size_t i) const {
+        return std::span(point_).subspan(static_cast<std::size_t>(first_[i]), static_cast<std::size_t>(first_[i + 1] - first_[i]));
+    }
+
+  private:
+    std::vector<Cell> cells_;
+    std::vector<std::int64_t> first_, point_;
+};
+
+}  // namespace catena
