@@ -93,13 +93,6 @@ std::vector<Vec3> GpuPath::positions() {
     return x;
 }
 
-DeviceBead GpuPath::bead_at(int particle, Vec3 const& x) const {
-    DeviceBead bead;
-    bead.place = place_[static_cast<std::size_t>(particle)];
-    for (int c = 0; plan_.box && c < 3; ++c) bead.cell[c] = static_cast<std::int32_t>(std::floor(x[c] / (*plan_.box)[c]));
-    return bead;
-}
-
 void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others) {
     particles_.origin = plan_.shifted ? mean(x) : Vec3::zero();
     std::size_t particles = x.size();
@@ -116,7 +109,7 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others) 
     place_.resize(particles);
     for (std::size_t i = 0; i < particles; ++i) place_[static_cast<std::size_t>(particle_at[i])] = static_cast<std::int32_t>(i);
     std::vector<DeviceBead> beads(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_at(plan_.particle[i], x[i]);
+    for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_of(plan_.particle[i], x[i]);
     upload(*own_, beads.data(), beads.size());
     check(cudaStreamSynchronize(stream_), "take OpenMM's order");
     for (DeviceBeads* group : beads_) check(cudaStreamSynchronize(stream_of(*group)), "finish its work");

@@ -8,6 +8,7 @@
 
 #include "cuda/openmm_on_device.hpp"
 #include "cuda/owners.hpp"
+#include "force/bead_tables.hpp"
 #include "force/device_path.hpp"
 
 namespace catena::cuda {
@@ -57,7 +58,7 @@ class GpuPath : public DevicePath {
         std::span<Vec3 const> position;
     };
     void order(std::vector<Vec3> const& x, std::span<Others const> others);
-    DeviceBead bead_at(int particle, Vec3 const& x) const;
+    DeviceBead bead_of(int particle, Vec3 const& x) const { return bead_at(place_[static_cast<std::size_t>(particle)], x, plan_.box); }
     /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.
     void put_own(std::span<DeviceBeads* const> beads);
     void compute(std::span<DeviceBeads* const> beads);

@@ -117,20 +117,14 @@ class HaloPath final : public GpuPath {
 
     /// Of each own bead, the places where it is shown.
     void list_sent(std::vector<Vec3> const& x) {
-        std::vector<std::int64_t> const& sent = lists().sent;
-        std::vector<std::int32_t> first(x.size() + 1, 0), place(sent.size());
-        for (std::int64_t const k : sent) ++first[static_cast<std::size_t>(k) + 1];
-        for (std::size_t k = 0; k < x.size(); ++k) first[k + 1] += first[k];
-        std::vector<std::int32_t> next(first.begin(), first.end() - 1);
-        for (std::size_t i = 0; i < sent.size(); ++i)
-            place[static_cast<std::size_t>(next[static_cast<std::size_t>(sent[i])]++)] = static_cast<std::int32_t>(i);
-        upload(first_.of(first.size()), first.data(), first.size());
-        upload(place_of_shown_.of(place.size()), place.data(), place.size());
+        ShownTable const table = shown_table(lists().sent, x.size());
+        upload(first_.of(table.first.size()), table.first.data(), table.first.size());
+        upload(place_of_shown_.of(table.place.size()), table.place.data(), table.place.size());
         upload(listed_.of(3 * x.size()), x.front().data, 3 * x.size());
         check(cudaStreamSynchronize(stream_), "take lists");
         shown_.first = (*first_).data();
         shown_.place = (*place_of_shown_).data();
-        shown_.shown = show_.of(3 * sent.size()).data();
+        shown_.shown = show_.of(3 * lists().sent.size()).data();
         shown_.listed = lists().farthest ? (*listed_).data() : nullptr;
         double const farthest = lists().farthest.value_or(0);
         shown_.farthest_squared = farthest * farthest;
@@ -141,9 +135,9 @@ class HaloPath final : public GpuPath {
     /// Where ghosts go from now on, and who stands aside.
     void place_ghosts() {
         std::vector<DeviceBead> beads;
-        for (std::size_t i = 0; i < in().size(); ++i) beads.push_back(bead_at(lists().particle[i], in()[i]));
+        for (std::size_t i = 0; i < in().size(); ++i) beads.push_back(bead_of(lists().particle[i], in()[i]));
         std::size_t const ghosts = beads.size(), all = ghosts + lists().idle.size();
-        for (std::size_t i = 0; i < lists().idle.size(); ++i) beads.push_back(bead_at(lists().idle[i], lists().aside[i]));
+        for (std::size_t i = 0; i < lists().idle.size(); ++i) beads.push_back(bead_of(lists().idle[i], lists().aside[i]));
         upload(ghost_.of(all), beads.data(), all);
         arrived_.of(3 * all);
         if (all > ghosts) {

@@ -23,7 +23,8 @@ HaloForces::HaloForces(RankPlan const& plan)
         for (std::int64_t const bead : *beads)
             --of_kind_elsewhere_[static_cast<std::size_t>(kind_of_bead_[static_cast<std::size_t>(bead)])];
     // A small one, so that a platform that refuses the forces is found out before the first step, and for its GPU context.
-    home_ = share_.context_of(system_of({share_.particles_of(std::span(own()).first(1)), 1, 1}, share_.system()));
+    Subset const one{share_.particles_of(std::span(own()).first(1)), 1, 1};
+    home_ = share_.context_of(system_of(share_.exchanges() ? one : share_.subset_of(share_.partners()), share_.system()));
 }
 
 std::vector<std::int64_t> HaloForces::every_number(std::int64_t count) {
