@@ -84,6 +84,7 @@ std::int64_t GpuPath::take_trouble() {
 }
 
 std::vector<Vec3> GpuPath::positions() {
+    if (beads_.empty()) throw ComputationError("positions on the GPU were asked for before there was an evaluation");
     std::vector<Vec3> x;
     x.reserve(plan_.particle.size());
     for (DeviceBeads* group : beads_) {

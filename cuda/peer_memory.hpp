@@ -55,7 +55,8 @@ class PeerMemory {
     PeerMemory(int rank, std::vector<double*> base);
 
     int rank_, ranks_;
-    std::vector<double*> base_;  // of each rank
+    unsigned long long context_;  // in which it is
+    std::vector<double*> base_;   // of each rank
     std::int64_t used_ = 0;
 };
 

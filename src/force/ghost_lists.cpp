@@ -53,7 +53,10 @@ void sort_unique(std::vector<std::int64_t>& values) {
 }  // namespace
 
 GhostLists::GhostLists(Communicator const& communicator, Plan plan)
-    : communicator_(communicator), plan_(std::move(plan)), place_(static_cast<std::size_t>(plan_.first_of_rank.back())) {
+    : communicator_(communicator),
+      plan_(std::move(plan)),
+      place_(static_cast<std::size_t>(plan_.first_of_rank.back())),
+      executor_(openmp_is_built() ? openmp_executor(cores_of_rank(communicator)) : serial_executor()) {
     for (std::int64_t i = 0; i < std::ssize(place_); ++i) place_[plan_.by_rank.empty() ? i : plan_.by_rank[i]] = i;
 }
 
@@ -116,14 +119,14 @@ void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
     for (auto const& [rank, theirs] : of_others) {
         std::vector<Candidate> const& mine = candidates.at(rank);
         auto const positions = [](std::vector<Candidate> const& from) {
-            std::vector<Vec3> x;
-            for (Candidate const& c : from) x.push_back(c.position);
+            std::vector<Vec3> x(from.size());
+            std::transform(from.begin(), from.end(), x.begin(), [](Candidate const& c) { return c.position; });
             return x;
         };
         std::vector<Vec3> const here = positions(mine), there = positions(theirs);
-        for (std::int64_t const i : near_any(here, there, radius, plan_.box)) lists[rank].send.push_back(mine[i].bead);
-        auto const near = near_any(there, here, radius, plan_.box);
-        for (std::int64_t const i : near) lists[rank].receive.push_back(theirs[i].bead);
+        auto const [shown, near] = near_each_other(here, there, radius, plan_.box, *executor_);
+        for (std::int64_t const i : shown) lists[rank].send.push_back(mine[static_cast<std::size_t>(i)].bead);
+        for (std::int64_t const i : near) lists[rank].receive.push_back(theirs[static_cast<std::size_t>(i)].bead);
         for (std::int64_t i = 0; i < std::ssize(theirs) && !rejected; ++i)
             if (!std::binary_search(near.begin(), near.end(), i)) rejected = there[i];
     }

@@ -8,10 +8,12 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "dca/executor.hpp"
 #include "dca/linear.hpp"
 #include "force/ghost_traffic.hpp"
 #include "force/grid.hpp"
@@ -94,8 +96,9 @@ class GhostLists {
 
     Communicator const& communicator_;
     Plan plan_;
-    std::vector<std::int64_t> place_;  // of each bead in by_rank
-    ListsOfRank partners_;             // those of each rank, and own beads that are one's
+    std::vector<std::int64_t> place_;     // of each bead in by_rank
+    std::unique_ptr<Executor> executor_;  // of searches
+    ListsOfRank partners_;                // those of each rank, and own beads that are one's
     std::vector<Neighbour> neighbours_;
     std::vector<std::int64_t> sent_, received_, beads_;
     Vec3 aside_ = Vec3::zero(), edge_ = Vec3::zero();  // the first place aside where space has no end; of a cell

@@ -16,6 +16,8 @@ namespace catena {
 
 using Cell = std::array<std::int64_t, 3>;
 
+inline bool is_same(Cell const& a, Cell const& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
+
 struct CellHash {
     std::size_t operator()(Cell const& c) const {
         std::uint64_t h = 0;
@@ -74,7 +76,7 @@ class Grid {
     double squared_distance(Vec3 const& a, Vec3 const& b) const {
         Vec3 d = a - b;
         if (box_)
-            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::round(d[i] / (*box_)[i]);
+            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] / (*box_)[i]);
         return dot(d, d);
     }
 
