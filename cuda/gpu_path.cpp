@@ -24,6 +24,7 @@ class LonePath final : public GpuPath {
         refuse_trouble();  // of the evaluation before, which is over where its step is
         if (of_this_order_ == 0) order_anew(beads);
         start(beads, timed);
+        put_own(beads);
         compute(beads);
         if (timed) events_->chains_begin.record(stream_of(*beads.front()));
     }
@@ -135,7 +136,6 @@ void GpuPath::put_own(std::span<DeviceBeads* const> beads) {
 }
 
 void GpuPath::compute(std::span<DeviceBeads* const> beads) {
-    put_own(beads);
     if (timed_) events_->openmm_begin.record(stream_);
     openmm_->compute();
     if (timed_) events_->openmm_end.record(stream_);

@@ -37,6 +37,8 @@ class HaloPath final : public GpuPath {
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         start(beads, timed);
+        own_are_put_ = of_this_order_ > 0;
+        if (own_are_put_) put_own(beads);  // now: OpenMM is not to wait for what the streams are given next
         if (has_lists_) show(beads);
         if (!plan_.overlap) exchange_and_compute(beads);
         if (timed) events_->chains_begin.record(stream_of(*beads.front()));
@@ -52,8 +54,8 @@ class HaloPath final : public GpuPath {
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
     std::span<Vec3> in() const { return {(*in_).data(), lists().particle.size()}; }
 
-    /// The chains' streams have what was there before behind them when they come here: the messages before, too, because OpenMM's forces
-    /// waited for them and the streams for those.
+    /// What the streams do here comes after OpenMM's last forces, for which they waited, and so after the ghosts that these waited for:
+    /// the buffers of the messages before are free again.
     void show(std::span<DeviceBeads* const> beads) {
         cudaStream_t const last = stream_of(*beads.back());
         std::int64_t next = 0;
@@ -86,8 +88,9 @@ class HaloPath final : public GpuPath {
         if (of_this_order_ == 0) {
             Others const others[] = {{lists().particle, in()}, {lists().idle, lists().aside}};
             order(positions(), others);
-            ghosts_are_placed_ = false;
+            own_are_put_ = ghosts_are_placed_ = false;
         }
+        if (!own_are_put_) put_own(beads);
         if (!std::exchange(ghosts_are_placed_, true)) place_ghosts();
         put_ghosts();
         compute(beads);
@@ -163,7 +166,7 @@ class HaloPath final : public GpuPath {
     }
 
     Halo& halo_;
-    bool has_lists_ = false, ghosts_are_placed_ = false;
+    bool has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
     ShownBeads shown_;
     Event is_shown_{Event::For::order};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;
