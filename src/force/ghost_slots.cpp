@@ -5,14 +5,11 @@
 
 namespace catena {
 
-void GhostSlots::make(std::span<std::int64_t const> beads, std::span<std::int64_t const> spares) {
+void GhostSlots::make(std::vector<std::int64_t> like) {
     slot_.assign(kind_of_bead_.size(), -1);
     for (int const k : kind_of_bead_) kinds_ = std::max(kinds_, k + 1);
-    like_.assign(beads.begin(), beads.end());
-    like_.insert(like_.end(), spares.begin(), spares.end());
+    like_ = std::move(like);
     bead_.assign(like_.size(), -1);
-    std::copy(beads.begin(), beads.end(), bead_.begin());
-    for (std::size_t i = 0; i < beads.size(); ++i) slot_[static_cast<std::size_t>(beads[i])] = static_cast<int>(i);
 }
 
 bool GhostSlots::take(std::span<std::int64_t const> beads) { return take(beads, false); }
@@ -23,7 +20,7 @@ bool GhostSlots::take(std::span<std::int64_t const> beads, bool of_any_kind) {
     std::vector<char> stays(bead_.size(), 0);
     std::vector<std::int64_t> come;
     for (std::int64_t const bead : beads) {
-        if (slot_.empty() || slot(bead) < 0)
+        if (slot(bead) < 0)
             come.push_back(bead);
         else
             stays[static_cast<std::size_t>(slot(bead))] = 1;

@@ -13,8 +13,8 @@ class GhostSlots {
     /// `kind_of_bead`: of every bead that may ever come; must outlive it.
     explicit GhostSlots(std::vector<int> const& kind_of_bead) : kind_of_bead_(kind_of_bead) {}
 
-    /// Slots of these beads' kinds, the first ones for themselves. What was there before is forgotten.
-    void make(std::span<std::int64_t const> beads, std::span<std::int64_t const> spares);
+    /// Slots of these beads' kinds, all free. What was there before is forgotten.
+    void make(std::vector<std::int64_t> like);
     /// Gives each of `beads` a slot; those that have one keep it. False, and nothing is changed, where there are too few of some kind.
     bool take(std::span<std::int64_t const> beads);
     /// The same with slots of other kinds where there are too few; how kinds have changed is told by like(). False, and nothing is

@@ -87,22 +87,22 @@ Subset HaloForces::subset_of_slots() const {
     return share_.subset_of(ghosts);
 }
 
-/// Of each kind that there is among the ghosts, some spares, but no more than there are beads: where every bead is a ghost there is no
-/// place aside.
+/// Kind by kind, because OpenMM sorts particles in space among those of their kind alone: neighbours in its arrays then are neighbours in
+/// space. With some spares, but no more than there are beads: where every bead is a ghost there is no place aside.
 void HaloForces::make_context(std::span<std::int64_t const> others) {
-    std::vector<std::int64_t> here(of_kind_elsewhere_.size(), 0), like(of_kind_elsewhere_.size(), 0), spares;
-    for (std::int64_t const bead : others) {
-        auto const kind = static_cast<std::size_t>(kind_of_bead_[static_cast<std::size_t>(bead)]);
-        ++here[kind];
-        like[kind] = bead;
+    std::vector<std::vector<std::int64_t>> of_kind(of_kind_elsewhere_.size());
+    for (std::int64_t const bead : others) of_kind[static_cast<std::size_t>(kind_of_bead_[static_cast<std::size_t>(bead)])].push_back(bead);
+    std::vector<std::int64_t> like;
+    for (std::size_t kind = 0; kind < of_kind.size(); ++kind) {
+        std::vector<std::int64_t> const& beads = of_kind[kind];
+        if (beads.empty()) continue;
+        like.insert(like.end(), beads.begin(), beads.end());
+        std::int64_t const here = std::ssize(beads), spares = std::min(here / spare_part + least_spares, of_kind_elsewhere_[kind] - here);
+        if (share_.exchanges()) like.insert(like.end(), static_cast<std::size_t>(spares), beads.front());
     }
-    for (std::size_t kind = 0; share_.exchanges() && kind < here.size(); ++kind)
-        if (here[kind] > 0)
-            spares.insert(spares.end(),
-                          static_cast<std::size_t>(std::min(here[kind] / spare_part + least_spares, of_kind_elsewhere_[kind] - here[kind])),
-                          like[kind]);
     context_.reset();  // before the next takes its memory
-    slots_.make(others, spares);
+    slots_.make(std::move(like));
+    slots_.take(others);
     system_ = system_of(subset_of_slots(), share_.system());
     context_ = share_.context_of(system_, home_.get());
     largest_ = std::max(largest_, context_->size());

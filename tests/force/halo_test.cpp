@@ -211,8 +211,10 @@ TEST(Halo, ABeadInTroubleIsEverybodysMessage) {
 TEST(Slots, GhostsTakeThoseOfTheirKind) {
     std::vector<int> const kind{0, 1, 0, 1, 2, 0};
     GhostSlots slots(kind);
-    slots.make(std::vector<std::int64_t>{0, 1, 4}, std::vector<std::int64_t>{0, 0});
+    slots.make({0, 1, 4, 0, 0});
     EXPECT_EQ(slots.size(), 5);
+    EXPECT_EQ(slots.idle().size(), 5U);
+    EXPECT_TRUE(slots.take(std::vector<std::int64_t>{0, 1, 4}));
     EXPECT_EQ(slots.idle(), (std::vector<int>{3, 4}));
     EXPECT_TRUE(slots.take(std::vector<std::int64_t>{0, 2, 3}));  // 3 in the place of 1
     EXPECT_EQ(slots.slot(0), 0);
