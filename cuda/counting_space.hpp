@@ -115,7 +115,9 @@ class CountingSpace : public HostAccess {
               r2_(group.r2),
               axes1_(group.axes1),
               axes2_(group.axes2),
-              screw_(group.screw) {}
+              screw_(group.screw),
+              mass_(group.mass_of_sweeps()),
+              inertia_(group.inertia_of_sweeps()) {}
         GroupView view() const { return {}; }
         std::uint8_t const* restricted() const { return nullptr; }
 
@@ -128,6 +130,8 @@ class CountingSpace : public HostAccess {
         Fixed<3> r1_, r2_;
         Fixed<9> axes1_, axes2_;
         Fixed<3> screw_;
+        Fixed<1> mass_;
+        Fixed<6> inertia_;
     };
     template <class T>
     class Levels {
@@ -151,10 +155,10 @@ class CountingSpace : public HostAccess {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, std::span<std::uint8_t const> restricted, int directions) {
+             std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records) {
             constexpr std::int64_t shared_bytes = 227 << 10, together = 8;  // of an H100; others' plans take about as much
             dca::StagePlan const plan =
-                dca::plan_stages(runs, levels, roots, slots, restricted, dca::stage_sizes(directions, shared_bytes, together));
+                dca::plan_stages(runs, levels, roots, slots, restricted, dca::stage_sizes(records, shared_bytes, together));
             count(runs);
             for (dca::Stage const& stage : plan.stages) {
                 count(stage.items);

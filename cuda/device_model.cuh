@@ -35,7 +35,9 @@ class DeviceModel {
           r2_(group.r2),
           axes1_(group.axes1),
           axes2_(group.axes2),
-          screw_(group.screw) {}
+          screw_(group.screw),
+          mass_(group.mass_of_sweeps()),
+          inertia_(group.inertia_of_sweeps()) {}
 
     GroupView view() const {
         return {size_,
@@ -49,7 +51,9 @@ class DeviceModel {
                 r2_.view(),
                 axes1_.view(),
                 axes2_.view(),
-                screw_.view()};
+                screw_.view(),
+                mass_.view(),
+                inertia_.view()};
     }
     std::uint8_t const* restricted() const { return restricted_.data(); }
 
@@ -63,6 +67,8 @@ class DeviceModel {
     FixedField<3> r1_, r2_;
     FixedField<9> axes1_, axes2_;
     FixedField<3> screw_;
+    FixedField<1> mass_;
+    FixedField<6> inertia_;
 };
 
 }  // namespace catena::cuda

@@ -14,6 +14,7 @@ std::unique_ptr<ChainSolver> make_device_solver(ChainGroup const&, DeviceSpace c
 // Its parts, compiled one by one.
 std::unique_ptr<ChainSolver> make_bead_solver(ChainGroup const&, DeviceSpace const&, Communicator const&);
 std::unique_ptr<ChainSolver> make_absolute_solver(ChainGroup const&, DeviceSpace const&, Communicator const&);
+std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const&, DeviceSpace const&, Communicator const&);
 template <int K, bool sliding>
 std::unique_ptr<ChainSolver> make_joint_solver(ChainGroup const&, DeviceSpace const&, Communicator const&);
 

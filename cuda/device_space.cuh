@@ -48,9 +48,9 @@ class DeviceSpace {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, std::span<std::uint8_t const> restricted, int directions)
+             std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
             : runs_(runs) {
-            dca::StageSizes const sizes = sizes_here(directions);
+            dca::StageSizes const sizes = sizes_here(records);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
             for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
@@ -92,7 +92,7 @@ class DeviceSpace {
             int threads;
             kernels::DeviceStage view;
         };
-        static dca::StageSizes sizes_here(int directions) {
+        static dca::StageSizes sizes_here(dca::StageRecords const& records) {
             int shared_bytes = 0, clusters = 0;
             auto const ask = [](int& answer, cudaDeviceAttr of) {
                 int device = 0;
@@ -101,7 +101,7 @@ class DeviceSpace {
             };
             ask(shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin);
             ask(clusters, cudaDevAttrClusterLaunch);
-            return dca::stage_sizes(directions, shared_bytes, clusters && kernels_know_clusters() ? kernels::most_in_cluster : 0);
+            return dca::stage_sizes(records, shared_bytes, clusters && kernels_know_clusters() ? kernels::most_in_cluster : 0);
         }
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cuda/counting_space.hpp"
+#include "dca/articulated_sweeps.hpp"
 #include "dca/leaf_choice.hpp"
 #include "dca/space_levels.hpp"
 #include "dca/tree_solver.hpp"
@@ -37,9 +38,10 @@ auto with_directions(ChainGroup const& group, Use const& use) {
 }
 
 std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, Communicator const& communicator) {
-    return with_directions(group, [&](auto leaf) -> std::unique_ptr<ChainSolver> {
+    auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
         return std::make_unique<TreeSolver<typename decltype(leaf)::type, CountingSpace>>(group, CountingSpace(), communicator);
-    });
+    };
+    return group.handles == Handles::articulated ? make(Of<ArticulatedLeaf<false>>{}) : with_directions(group, make);
 }
 
 /// The lowest levels, with what crosses where they are cut: at most the bodies' segments, forces and joints.

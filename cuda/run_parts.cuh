@@ -103,8 +103,8 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
 template <bool unroll, bool nodes_stay, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
-    using Directions = typename Sweep::Sweeps::Directions;
-    SharedRecords<Directions> const at_part{memory, SharedRecords<Directions>::pitch_for(static_cast<int>(blockDim.x))};
+    using State = typename Sweep::Sweeps::State;
+    SharedRecords<State> const at_part{memory, SharedRecords<State>::pitch_for(static_cast<int>(blockDim.x))};
     int const lanes = lanes_of_block(), here = static_cast<int>(threadIdx.x);
     RunPart const mine(threadIdx.x, lanes);
     std::int64_t const i = first_run + mine.run;
@@ -113,7 +113,7 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     int const count = i < end ? dca::parts_of(run) : 0;
     typename Sweep::Part read;
     typename Sweep::Sweeps::Node node;
-    Directions own, next;
+    State own, next;
     if (mine.part < count) {  // all that is read before any of it is needed
         if (!part) read = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
         if constexpr (nodes_stay && Sweep::keeps_nodes) {

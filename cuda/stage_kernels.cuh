@@ -23,7 +23,7 @@ struct DeviceStage {
 };
 
 template <class Sweep>
-constexpr int threads_of = dca::stage_threads(Sweep::Sweeps::K);
+constexpr int threads_of = Sweep::Sweeps::in_stage.threads;
 
 /// action(i) for a block's i of a range.
 template <class Action>
@@ -36,10 +36,10 @@ __device__ void each_of(dca::Range const& range, Action const& action) {
 template <class Sweep>
 class BlockOfStage {
     using Segment = typename Sweep::Segment;
-    using Directions = typename Sweep::Sweeps::Directions;
+    using State = typename Sweep::Sweeps::State;
     using Node = typename Sweep::Sweeps::Node;
     using Segments = SharedRecords<Segment>;
-    using Forces = SharedRecords<Directions>;
+    using Forces = SharedRecords<State>;
     static_assert(!Sweep::keeps_nodes || sizeof(Node) <= sizeof(Segment));
     static_assert(sizeof(dca::StageMerge) == 3 * sizeof(double));
 
@@ -276,7 +276,7 @@ RunsGrid grid_of_climb(std::int64_t runs) {
 template <class Sweep>
 RunsGrid grid_of_descent(std::int64_t runs) {
     RunsGrid grid = grid_of_runs(runs, dca::parts_of_run, threads);
-    grid.shared_bytes = sizeof(double) * SharedRecords<typename Sweep::Sweeps::Directions>::size(threads);
+    grid.shared_bytes = sizeof(double) * SharedRecords<typename Sweep::Sweeps::State>::size(threads);
     return grid;
 }
 

@@ -44,7 +44,17 @@ GroupView ChainGroup::view() const {
             r2.view(),
             axes1.view(),
             axes2.view(),
-            screw.view()};
+            screw.view(),
+            mass_of_sweeps().view(),
+            inertia_of_sweeps().view()};
+}
+Field<1> const& ChainGroup::mass_of_sweeps() const {
+    static Field<1> const none;
+    return handles == Handles::articulated ? mass : none;
+}
+Field<6> const& ChainGroup::inertia_of_sweeps() const {
+    static Field<6> const none;
+    return handles == Handles::articulated ? inertia : none;
 }
 
 int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }

@@ -17,6 +17,8 @@ struct GroupView {
     ConstView<3> r1, r2;
     ConstView<9> axes1, axes2;
     ConstView<3> screw;
+    ConstView<1> mass;  // with articulated handles
+    ConstView<6> inertia;
 
     CATENA_HD bool has_jointed_tip(std::int64_t k) const { return jointed_tip && jointed_tip[k] >= 0; }
     /// Of the joint on the outboard side of body k, where there is one.

@@ -33,10 +33,11 @@ struct LuFactor {
     Vector<Real, K> row;  // row i of P A is row[i] of A
 };
 template <class Real, int K>
-CATENA_HD LuFactor<Real, K> lu_of(Matrix<Real, K, K> const& a) {
+CATENA_HD_APART LuFactor<Real, K> lu_of(Matrix<Real, K, K> const& a) {
     using std::fabs;
     LuFactor<Real, K> f{a, {}};
     for (int i = 0; i < K; ++i) f.row[i] = Real(i);
+    CATENA_NO_UNROLL
     for (int k = 0; k < K; ++k) {
         int largest = k;
         for (int i = k + 1; i < K; ++i)
@@ -58,7 +59,7 @@ CATENA_HD LuFactor<Real, K> lu_of(Matrix<Real, K, K> const& a) {
 }
 /// A^-1 b
 template <class Real, int K>
-CATENA_HD Vector<Real, K> solve(LuFactor<Real, K> const& f, Vector<Real, K> const& b) {
+CATENA_HD_APART Vector<Real, K> solve(LuFactor<Real, K> const& f, Vector<Real, K> const& b) {
     Vector<Real, K> x;
     for (int i = 0; i < K; ++i) {
         x[i] = b[static_cast<int>(f.row[i])];
@@ -72,7 +73,7 @@ CATENA_HD Vector<Real, K> solve(LuFactor<Real, K> const& f, Vector<Real, K> cons
 }
 /// A^-T b
 template <class Real, int K>
-CATENA_HD Vector<Real, K> solve_transposed(LuFactor<Real, K> const& f, Vector<Real, K> b) {
+CATENA_HD_APART Vector<Real, K> solve_transposed(LuFactor<Real, K> const& f, Vector<Real, K> b) {
     for (int i = 0; i < K; ++i) {
         for (int j = 0; j < i; ++j) b[i] = less_product(f.lu(j, i), b[j], b[i]);
         b[i] = b[i] / f.lu(i, i);
@@ -94,19 +95,20 @@ struct Turned {
     int order[N], rank;
 };
 template <bool with_turn = true, class Real, int K, int N>
-CATENA_HD Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int rows) {
+CATENA_HD_APART Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int rows) {
     using std::sqrt;
     Turned<Real, K, N> t{Matrix<Real, K, K>::identity(), Matrix<Real, K, N>::zero(), {}, 0};
     bool taken[N] = {};
+    CATENA_NO_UNROLL
     for (int i = 0; i < rows; ++i) {
-        int largest = -1;
+        int largest = 0;
         Real most(0);
         for (int j = 0; j < N; ++j) {
             Real size(0);
             for (int k = i; k < rows; ++k) size = fused(a(k, j), a(k, j), size);
             if (!taken[j] && size > most) largest = j, most = size;
         }
-        if (largest < 0) break;
+        if (!(most > Real(0))) break;
         taken[largest] = true;
         t.order[t.rank++] = largest;
         Real const length = a(i, largest) > Real(0) ? -sqrt(most) : sqrt(most);
@@ -173,17 +175,19 @@ CATENA_HD Symmetric<Real, K> plus_symmetric_part(Symmetric<Real, K> a, Matrix<Re
 /// r with r r^T = s, by Cholesky's factorisation from the largest entry on the diagonal down. Precondition: s positive semidefinite, to
 /// rounding; what is left when none is above 0 is taken for that.
 template <class Real, int K>
-CATENA_HD Matrix<Real, K, K> root_of(Symmetric<Real, K> s) {
+CATENA_HD_APART Matrix<Real, K, K> root_of(Symmetric<Real, K> s) {
     using std::sqrt;
     auto r = Matrix<Real, K, K>::zero();
     bool done[K] = {};
+    CATENA_NO_UNROLL
     for (int c = 0; c < K; ++c) {
-        int largest = -1;
+        int largest = 0;
+        Real most(0);
         for (int i = 0; i < K; ++i)
-            if (!done[i] && s(i, i) > Real(0) && (largest < 0 || s(i, i) > s(largest, largest))) largest = i;
-        if (largest < 0) break;
+            if (!done[i] && s(i, i) > most) largest = i, most = s(i, i);
+        if (!(most > Real(0))) break;
         done[largest] = true;
-        Real const pivot = sqrt(s(largest, largest));
+        Real const pivot = sqrt(most);
         for (int i = 0; i < K; ++i)
             if (!done[i] || i == largest) r(i, c) = i == largest ? pivot : s(i, largest) / pivot;
         for (int i = 0; i < K; ++i)
@@ -195,7 +199,7 @@ CATENA_HD Matrix<Real, K, K> root_of(Symmetric<Real, K> s) {
 
 /// r with r r^T = a a^T + b b^T
 template <class Real, int K>
-CATENA_HD Matrix<Real, K, K> root_of_sum(Matrix<Real, K, K> const& a, Matrix<Real, K, K> const& b) {
+CATENA_HD_APART Matrix<Real, K, K> root_of_sum(Matrix<Real, K, K> const& a, Matrix<Real, K, K> const& b) {
     Matrix<Real, 2 * K, K> both;
     for (int i = 0; i < K; ++i)
         for (int j = 0; j < K; ++j) {
@@ -211,8 +215,8 @@ CATENA_HD Matrix<Real, K, K> root_of_sum(Matrix<Real, K, K> const& a, Matrix<Rea
 
 /// The joined run.
 template <class Real, int K>
-CATENA_HD ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const& inboard, ArticulatedMatrix<Real, K> const& outboard,
-                                          int restricted, ArticulatedJoint<Real, K>& joint) {
+CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const& inboard, ArticulatedMatrix<Real, K> const& outboard,
+                                                int restricted, ArticulatedJoint<Real, K>& joint) {
     using Square = Matrix<Real, K, K>;
     Matrix<Real, K, 2 * K> all;
     Vector<Real, K> unit;
@@ -248,16 +252,16 @@ CATENA_HD ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const& inbo
             outboard.tip, root_of_sum(outboard.rest, joint.outboard * root_of(plus_symmetric_part(none, yielding)))};
 }
 template <class Real, int K>
-CATENA_HD ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& inboard, ArticulatedBias<Real, K> const& outboard,
-                                        ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K>& offset) {
+CATENA_HD_APART ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& inboard, ArticulatedBias<Real, K> const& outboard,
+                                              ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K>& offset) {
     Vector<Real, K> const e = joint.motion * inboard.e + joint.tip * inboard.w, p = joint.force * outboard.p;
     offset = {solve(joint.factor, e - joint.mobility * p), solve_transposed(joint.factor, joint.inertia * e + p)};
     return {inboard.p + transposed_times(joint.inboard, offset.force), joint.outboard * offset.acceleration + outboard.e, outboard.w};
 }
 /// The joint's state from those at the joined run's two ends.
 template <class Real, int K>
-CATENA_HD HandleState<Real, K> state_between(ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K> const& offset,
-                                             HandleState<Real, K> const& first, HandleState<Real, K> const& next) {
+CATENA_HD_APART HandleState<Real, K> state_between(ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K> const& offset,
+                                                   HandleState<Real, K> const& first, HandleState<Real, K> const& next) {
     Vector<Real, K> const a1 = joint.inboard * first.acceleration, f2 = transposed_times(joint.outboard, next.force);
     Vector<Real, K> const a = solve(joint.factor, a1 - joint.mobility * f2) + offset.acceleration;
     Vector<Real, K> const f = solve_transposed(joint.factor, joint.inertia * a1 + f2) + offset.force;
@@ -272,7 +276,7 @@ struct ReleasedDirection {
 };
 /// Of a body that was held in direction i of its inboard joint: no force acts along it from here on. Precondition: inertia(i, i) > 0.
 template <class Real>
-CATENA_HD ReleasedDirection<Real> release(int i, ArticulatedMatrix<Real, 6>& body) {
+CATENA_HD_APART ReleasedDirection<Real> release(int i, ArticulatedMatrix<Real, 6>& body) {
     using std::sqrt;
     ReleasedDirection<Real> r{{}, body.carry.column(i), body.inertia(i, i)};
     for (int j = 0; j < 6; ++j) r.inertia[j] = body.inertia(i, j);
@@ -297,9 +301,9 @@ CATENA_HD void release(int i, ReleasedDirection<Real> const& r, ArticulatedBias<
 /// whichever has the smaller terms for the roundings to go by: `size` those of the force, `terms` over the pivot those of the acceleration,
 /// with the largest pivot's, whose roundings the others carry.
 template <class Real>
-CATENA_HD Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& body, ArticulatedBias<Real, 6> const& bias,
-                                        ReleasedDirection<Real> const* released, HandleState<Real, 6> const& inboard, int restricted,
-                                        HandleState<Real, 6> const& outboard, int restricted_outboard) {
+CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& body, ArticulatedBias<Real, 6> const& bias,
+                                              ReleasedDirection<Real> const* released, HandleState<Real, 6> const& inboard, int restricted,
+                                              HandleState<Real, 6> const& outboard, int restricted_outboard) {
     using std::fabs;
     using std::sqrt;
     Vector<Real, 6> a = Vector<Real, 6>::zero(), z = bias.w, size = Vector<Real, 6>::zero();

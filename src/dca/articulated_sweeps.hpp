@@ -6,20 +6,23 @@
 
 namespace catena::dca {
 
-inline void lower(Lost& found, std::int64_t k) { found.joint = std::min(found.joint, static_cast<unsigned long long>(k)); }
+CATENA_HD void lower(Lost& found, std::int64_t k) {
+    auto const bad = static_cast<unsigned long long>(k);
+    found.joint = bad < found.joint ? bad : found.joint;
+}
 
 /// One body with its inboard joint. `sliding`: some joint is prismatic or helical.
 template <bool sliding>
 class ArticulatedLeaf {
   public:
     static constexpr int K = 6;
+    static constexpr bool at_once = false, beads = false, projected = false;
     using Matrix6 = ArticulatedMatrix<double, K>;
     using Bias6 = ArticulatedBias<double, K>;
     using Vec6 = Vector<double, K>;
-    explicit ArticulatedLeaf(ChainGroup const& group)
-        : group_(group.view()), frames_(group_), mass_(group.mass.view()), inertia_(group.inertia.view()) {}
+    explicit ArticulatedLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
-    GroupView const& group() const { return group_; }
+    CATENA_HD GroupView const& group() const { return group_; }
 
     /// A body held at its inboard joint in every direction, and what its handles see.
     struct Held {
@@ -28,7 +31,7 @@ class ArticulatedLeaf {
         Matrix<double, 3, K> turning, shifting;  // angular acceleration and that of the centre for each direction of handle 1
         Matrix6 matrix;
     };
-    Held held(std::int64_t k) const {
+    CATENA_HD_APART Held held(std::int64_t k) const {
         Held b{frames_.state(k), {}, {}, {}, {}};
         b.handles = frames_.handles(b.state, k);
         Mat3 const e = transposed_times(to_matrix(as_quaternion(b.state.rotation)), as_matrix(b.state.axes1));
@@ -39,8 +42,8 @@ class ArticulatedLeaf {
             b.shifting.set_column(3 + i, cross(b.state.r1, e.column(i)));
         }
         if constexpr (sliding) mix(group_.screw.load(k), b);
-        double const mass = mass_.load(k)[0];
-        Matrix<double, 3, K> const turned = full(as_symmetric(inertia_.load(k))) * b.turning;
+        double const mass = group_.mass.load(k)[0];
+        Matrix<double, 3, K> const turned = full(as_symmetric(group_.inertia.load(k))) * b.turning;
         for (int j = 0; j < K; ++j)
             for (int i = j; i < K; ++i) {
                 double const shifted = mass * dot(b.shifting.column(i), b.shifting.column(j));
@@ -51,7 +54,7 @@ class ArticulatedLeaf {
         return b;
     }
     /// With the directions that the joint leaves free released.
-    Matrix6 matrix(std::int64_t k, int restricted, Lost& found) const {
+    CATENA_HD_APART Matrix6 matrix(std::int64_t k, int restricted, Lost& found) const {
         Matrix6 m = held(k).matrix;
         for (int i = K - 1; i >= restricted; --i) {
             double const own = release(i, m).own;
@@ -59,9 +62,9 @@ class ArticulatedLeaf {
         }
         return m;
     }
-    Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const { return released(loads, k, restricted).bias; }
-    void accelerate(LoadsView const& loads, std::int64_t k, int restricted, HandleState<double, K> const& inboard, int restricted_outboard,
-                    HandleState<double, K> const& outboard, AccelerationsView const& out) const {
+    CATENA_HD Bias6 bias(LoadsView const& loads, std::int64_t k, int restricted) const { return released(loads, k, restricted).bias; }
+    CATENA_HD void accelerate(LoadsView const& loads, std::int64_t k, int restricted, HandleState<double, K> const& inboard,
+                              int restricted_outboard, HandleState<double, K> const& outboard, AccelerationsView const& out) const {
         if (!out.acceleration.origin) return;
         Released const r = released(loads, k, restricted);
         Vec6 const a = accelerations(r.body.matrix, r.bias, r.direction, inboard, restricted, outboard, restricted_outboard) - r.closure;
@@ -76,11 +79,11 @@ class ArticulatedLeaf {
         Bias6 bias;
         ReleasedDirection<double> direction[K];
     };
-    Released released(LoadsView const& loads, std::int64_t k, int restricted) const {
+    CATENA_HD_APART Released released(LoadsView const& loads, std::int64_t k, int restricted) const {
         Released r{held(k), Vec6::zero(), {}, {}};
         Vec3 const w = read_or_zero(loads.omega, k), force = read_or_zero(loads.force, k);
         Vec3 torque = read_or_zero(loads.torque, k);
-        if (loads.gyroscopic) torque = torque - cross(w, as_symmetric(inertia_.load(k)) * w);
+        if (loads.gyroscopic) torque = torque - cross(w, as_symmetric(group_.inertia.load(k)) * w);
         r.closure = along(r.body.handles.h1, Vec3::zero(), cross(w, cross(w, r.body.state.r1)));
         if (loads.bias) r.closure = r.closure + loads.bias.load<K>(k);
         Matrix6& m = r.body.matrix;
@@ -94,7 +97,7 @@ class ArticulatedLeaf {
         return r;
     }
     /// As turn_to_screw.
-    static void mix(Vec3 const& screw, Held& b) {
+    CATENA_HD static void mix(Vec3 const& screw, Held& b) {
         auto const each = [&](Matrix<double, 3, K>& m) {
             Vec3 const linear = m.column(2), angular = m.column(5);
             m.set_column(2, screw[0] * linear - screw[1] * angular);
@@ -105,8 +108,6 @@ class ArticulatedLeaf {
 
     GroupView group_;
     MeetingFrames<K, sliding> frames_;
-    ConstView<1> mass_;
-    ConstView<6> inertia_;
 };
 
 template <class Leaf>
@@ -117,6 +118,8 @@ struct ArticulatedSweeps {
     using Joint = ArticulatedJoint<double, K>;
     using Offset = ArticulatedOffset<double, K>;
     using State = HandleState<double, K>;
+    static constexpr StageRecords in_stage{static_cast<int>((sizeof(Matrices) + sizeof(Biases)) / sizeof(double)),
+                                           static_cast<int>(sizeof(State) / sizeof(double)), 128};
     struct Node {
         Joint joint;
         Offset offset;
@@ -135,22 +138,23 @@ struct ArticulatedSweeps {
         return schedule.slots * static_cast<std::int64_t>(sizeof(Matrices) + sizeof(Biases)) +
                schedule.joints * static_cast<std::int64_t>(sizeof(Joint) + sizeof(Offset) + sizeof(State));
     }
-    JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
-    void note(Lost const& found) const {
+    CATENA_HD JointAt at(std::int64_t k) const { return {k, restricted[k]}; }
+    CATENA_HD void note(Lost const& found) const {
         if (found.joint != Lost{}.joint) lower_to(lost, found.joint);
     }
-    Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
+    CATENA_HD_APART Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
 };
 
 template <class Leaf>
 struct ArticulatedMatrixSweep {
+    static constexpr bool descends = false, keeps_nodes = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Matrices;
     using Part = NothingRead;
     Sweeps s;
 
-    Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
-    Segment part(Run const& run, int p, Part) const {
+    CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    CATENA_HD Segment part(Run const& run, int p, Part) const {
         Lost found;
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.matrix(begin, s.restricted[begin], found);
@@ -159,13 +163,13 @@ struct ArticulatedMatrixSweep {
         s.note(found);
         return segment;
     }
-    Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Lost found;
         Segment const segment = joined(inboard, outboard, at, found);
         s.note(found);
         return segment;
     }
-    Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Lost& found) const {
+    CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Lost& found) const {
         typename Sweeps::Joint joint;
         Segment const segment = join(inboard, outboard, at.restricted, joint);
         s.joints.store(at.k, joint);
@@ -173,14 +177,15 @@ struct ArticulatedMatrixSweep {
             if (double const pivot = joint.factor.lu(i, i); pivot == 0 || pivot - pivot != 0) lower(found, at.k);
         return segment;
     }
-    Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
-    void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
-    void close(Root const& /*root*/, Segment const& /*whole*/) const {}
+    CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.matrices.store(slot, segment); }
+    CATENA_HD void close(Root const& /*root*/, Segment const& /*whole*/) const {}
 };
 
 /// Biases, then the joints' states and accelerations, with the matrices assembled last. Bodies are computed anew rather than kept.
 template <class Leaf>
 struct ArticulatedBiasSweep {
+    static constexpr bool descends = true, keeps_nodes = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Biases;
     using State = typename Sweeps::State;
@@ -190,30 +195,32 @@ struct ArticulatedBiasSweep {
     LoadsView loads;
     AccelerationsView out;
 
-    Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
-    Segment part(Run const& run, int p, Part) const {
+    CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
+    CATENA_HD Segment part(Run const& run, int p, Part) const {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = s.leaf.bias(loads, begin, s.restricted[begin]);
         for (std::int64_t k = begin + 1; k < end_of(run, p); ++k)
             segment = joined(segment, s.leaf.bias(loads, k, s.restricted[k]), s.at(k));
         return segment;
     }
-    Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+    CATENA_HD_APART Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         typename Sweeps::Offset offset;
         Segment const segment = join(inboard, outboard, s.joints.load(at.k), offset);
         s.offsets.store(at.k, offset);
         return segment;
     }
-    Segment load(std::int64_t slot) const { return s.biases.load(slot); }
-    void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
+    CATENA_HD Segment load(std::int64_t slot) const { return s.biases.load(slot); }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const { s.biases.store(slot, segment); }
     /// The ground's acceleration stands in the biases of the joints to it, and at a free tip there is no force.
-    void close(Root const& root, Segment const& whole) const { s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p}); }
-    Node node(std::int64_t joint) const { return s.node(joint); }
-    State force(Node const& node, State const& first, State const& next) const {
+    CATENA_HD void close(Root const& root, Segment const& whole) const {
+        s.forces.store(root.first, {Vector<double, Leaf::K>::zero(), whole.p});
+    }
+    CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
+    CATENA_HD State force(Node const& node, State const& first, State const& next) const {
         return state_between(node.joint, node.offset, first, next);
     }
     template <bool /*unroll*/>
-    void down(Run const& run, int p, Part, State const& first, State next) const {
+    CATENA_HD void down(Run const& run, int p, Part, State const& first, State next) const {
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
         int restricted_outboard = s.restricted[end == run.body + run.count ? run.next : end];
         for (std::int64_t k = end - 1; k >= begin; --k) {
@@ -225,5 +232,16 @@ struct ArticulatedBiasSweep {
         }
     }
 };
+
+template <bool sliding>
+struct SweepsOf<ArticulatedLeaf<sliding>> {
+    using Sweeps = ArticulatedSweeps<ArticulatedLeaf<sliding>>;
+    using OfMatrices = ArticulatedMatrixSweep<ArticulatedLeaf<sliding>>;
+    using OfBiases = ArticulatedBiasSweep<ArticulatedLeaf<sliding>>;
+};
+template <int K>
+CATENA_HD Vector<double, K> const& force_of(HandleState<double, K> const& joint) {
+    return joint.force;
+}
 
 }  // namespace catena::dca

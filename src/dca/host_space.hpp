@@ -85,7 +85,7 @@ class HostSpace : public HostAccess {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t /*slots*/, std::span<std::uint8_t const> /*restricted*/, int /*directions*/)
+             std::int64_t /*slots*/, std::span<std::uint8_t const> /*restricted*/, dca::StageRecords const& /*records*/)
             : runs_(runs), levels_(levels), roots_(roots) {}
 
       private:

@@ -124,7 +124,7 @@ class SpaceLevels final : public LevelPart {
         space_.over(roots_, loop);
         space_.over(top_roots_, loop);
         descend(top_);
-        space_.over(top_copies_, CopyForces<Leaf>{sweeps_});
+        space_.over(top_copies_, CopyForces<Sweeps>{sweeps_});
         space_.wait();
     }
     void disassemble() override {

@@ -243,17 +243,15 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
     return ends;
 }
 
-StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t together) {
-    std::int64_t const k = directions;
-    std::int64_t const numbers =
-        k * (k + 1) + k * k + 2 * k + 2 * k + 4;  // of a segment with its biases, of two forces, of a merge, of an item
-    StageSizes sizes{stage_threads(directions), 2, together};
+StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t together) {
+    std::int64_t const numbers = records.segment + 2 * records.state + 4;  // and of a merge, of an item
+    StageSizes sizes{records.threads, 2, together};
     auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.
     auto const of_runs = [&](std::int64_t threads) {
         constexpr std::int64_t ranges = 16;
-        return bytes(threads / parts_of_run) + 8 * ((2 * k * k + 3 * k) * (threads + threads / 16 + 1) + ranges);
+        return bytes(threads / parts_of_run) + 8 * (records.segment * (threads + threads / 16 + 1) + ranges);
     };
     while (sizes.threads > fewest_of_block * parts_of_run && of_runs(sizes.threads) > shared_bytes) sizes.threads /= 2;
     return sizes;

@@ -71,10 +71,17 @@ struct StageSizes {
     std::int64_t most = 0;      // items of a block, 2 or more
     std::int64_t together = 0;  // blocks that one launch takes through two stages
 };
-/// Threads of a block that find registers for merges of handles with so many directions.
-constexpr int stage_threads(int directions) { return directions <= 3 ? 256 : 128; }
+/// What a sweep keeps in a block: numbers of a segment with its biases and of what is known at a joint on the way down; threads that find
+/// registers for merges.
+struct StageRecords {
+    int segment = 0, state = 0, threads = 0;
+};
+/// Of mobilities along so many directions.
+constexpr StageRecords stage_records(int directions) {
+    return {directions * (2 * directions + 3), directions, directions <= 3 ? 256 : 128};
+}
 /// Of a GPU whose blocks may share so many bytes, in clusters of so many.
-StageSizes stage_sizes(int directions, std::int64_t shared_bytes, std::int64_t together);
+StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t together);
 /// That a stage needs.
 int threads_for(Stage const&, StageSizes const&);
 

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <optional>
+#include <type_traits>
 #include <vector>
 
 #include "dca/evaluation.hpp"
@@ -18,7 +19,9 @@ namespace catena::dca {
 template <class Leaf, class Space>
 class TreeSolver final : public ChainSolver {
     static constexpr int K = Leaf::K;
-    using Sweeps = TreeSweeps<Leaf>;
+    using Sweeps = typename SweepsOf<Leaf>::Sweeps;
+    using OfMatrices = typename SweepsOf<Leaf>::OfMatrices;
+    using OfBiases = typename SweepsOf<Leaf>::OfBiases;
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
     static constexpr bool has_lanes = goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
@@ -30,8 +33,8 @@ class TreeSolver final : public ChainSolver {
           space_(space),
           communicator_(communicator),
           model_(group),
-          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, K),
-          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, K),
+          tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
+          top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
           top_copies_(schedule_.top_copies),
           matrices_(schedule_.slots),
           biases_(schedule_.slots),
@@ -57,7 +60,7 @@ class TreeSolver final : public ChainSolver {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
         if (!assemble_by_teams()) {
-            MatrixSweep<Leaf> const sweep{sweeps_};
+            OfMatrices const sweep{sweeps_};
             space_.climb(tree_, sweep);
             if (!schedule_.shared.empty()) {
                 gather(of_matrices());
@@ -70,7 +73,7 @@ class TreeSolver final : public ChainSolver {
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         Stopwatch const watch(*this, report_.bias_seconds);
-        up_and_down(tree_, BiasSweep<Leaf>{sweeps_, loads, out}, [&] { gather(of_biases()); }, out);
+        up_and_down(tree_, OfBiases{sweeps_, loads, out}, [&] { gather(of_biases()); }, out);
         ++report_.bias_sweeps;
     }
 
@@ -93,7 +96,7 @@ class TreeSolver final : public ChainSolver {
     }
 
     void invert(InverseView const& out) override {
-        if constexpr (Space::answers_at_once) {
+        if constexpr (Space::answers_at_once && std::is_same_v<Sweeps, TreeSweeps<Leaf>>) {
             if (!inverse_) inverse_.emplace(schedule_);
             InverseSweep<Leaf> const sweep{sweeps_, inverse_->own.view(), inverse_->across.view(), out.beside};
             auto const each = [&](auto const& items) { space_.over(std::span(items), sweep); };
@@ -160,7 +163,7 @@ class TreeSolver final : public ChainSolver {
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
-            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint, K);
+            rest_.emplace_back(runs, levels, roots, schedule_.slots, group_.restricted_of_joint, Sweeps::in_stage);
         };
         add(aside_->other_runs(), no_levels_, no_roots_);
         for (LevelDealtOut const& level : aside_->levels()) add(no_runs_, level.others, no_roots_);
@@ -245,11 +248,11 @@ class TreeSolver final : public ChainSolver {
             space_.climb(tree, sweep);
             gather();
             space_.climb_and_descend(top_, sweep);
-            space_.over(top_copies_, CopyForces<Leaf>{sweeps_});
+            space_.over(top_copies_, CopyForces<Sweeps>{sweeps_});
             space_.descend(tree, sweep);
         }
         if (out.joint_force && group_.neighbour_outboard >= 0)
-            space_.for_each(1, ForceOfNextRank<Leaf>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
+            space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
     }
 
     template <class T>
@@ -283,10 +286,11 @@ class TreeSolver final : public ChainSolver {
     std::vector<Root> no_roots_;
     typename Space::Tree tree_, top_;
     typename Space::template List<TopCopy> top_copies_;
-    Records<SegmentMatrix<double, K>, Order::plain> matrices_;
-    Records<SegmentBias<double, K>, Order::plain> biases_;
-    Records<JointMatrix<double, K>, Order::by_body> joints_;
-    Records<Vector<double, K>, Order::by_body> offsets_, forces_;
+    Records<typename Sweeps::Matrices, Order::plain> matrices_;
+    Records<typename Sweeps::Biases, Order::plain> biases_;
+    Records<typename Sweeps::Joint, Order::by_body> joints_;
+    Records<typename Sweeps::Offset, Order::by_body> offsets_;
+    Records<typename Sweeps::State, Order::by_body> forces_;
     SharedUnits<Space> shown_matrices_, shown_biases_;
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;

@@ -10,7 +10,7 @@
 #include "dca/closure.hpp"
 #include "dca/leaves.hpp"
 #include "dca/records.hpp"
-#include "dca/tree.hpp"
+#include "dca/stages.hpp"
 
 namespace catena::dca {
 
@@ -33,6 +33,9 @@ struct TreeSweeps {
     using Biases = SegmentBias<double, K>;
     using Joint = JointMatrix<double, K>;
     using Directions = Vector<double, K>;
+    using Offset = Directions;
+    using State = Directions;  // what the way down knows of a joint: its force
+    static constexpr StageRecords in_stage = stage_records(K);
 
     Leaf leaf;
     std::uint8_t const* restricted = nullptr;      // of every joint (ChainGroup::restricted_of_joint)
@@ -263,19 +266,31 @@ CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     }
 }
 
-/// Forces at the top of chains that several ranks share, to this rank's own joints.
+/// The sweeps of a kind of handles: these, unless it says otherwise.
 template <class Leaf>
+struct SweepsOf {
+    using Sweeps = TreeSweeps<Leaf>;
+    using OfMatrices = MatrixSweep<Leaf>;
+    using OfBiases = BiasSweep<Leaf>;
+};
+
+/// What is known of joints at the top of chains that several ranks share, to this rank's own joints.
+template <class Sweeps>
 struct CopyForces {
-    TreeSweeps<Leaf> s;
+    Sweeps s;
     CATENA_HD void operator()(TopCopy const& copy) const { s.forces.store(copy.to, s.forces.load(copy.from)); }
 };
+template <int K>
+CATENA_HD Vector<double, K> const& force_of(Vector<double, K> const& force) {
+    return force;
+}
 /// The force of the joint after this rank's last body, which the next rank's first body feels.
-template <class Leaf>
+template <class Sweeps>
 struct ForceOfNextRank {
-    TreeSweeps<Leaf> s;
+    Sweeps s;
     DirectionsView out;
     std::int64_t from, to;
-    CATENA_HD void operator()(std::int64_t) const { out.template store<Leaf::K>(to, s.forces.load(from)); }
+    CATENA_HD void operator()(std::int64_t) const { out.template store<Sweeps::K>(to, force_of(s.forces.load(from))); }
 };
 
 }  // namespace catena::dca

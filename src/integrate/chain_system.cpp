@@ -46,7 +46,7 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (std::string const why = scene.why_host_alone(); uses_gpu(asked) && !why.empty())
+    if (std::string const why = scene.why_not_on(asked); !why.empty())
         throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
@@ -83,6 +83,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda_levels && openmp_is_built());
     SimdLevel const simd = choose_simd_level(scene, communicator);
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
+    if (backend_ == Backend::cuda && openmp_is_built()) of_host_ = openmp_executor(choose_threads(scene, communicator), simd);
     groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, implicit_step > 0);
     if (scene.solver.handles == Handles::articulated)
         for (auto const& group : groups_) refuse_articulated(*group, implicit_step > 0);
@@ -192,7 +193,7 @@ void ChainSystem::solve_joint_groups() {
             group->solve_once();
         else
             group->solve();
-        for (int step = 0; step < scene_.solver.refine; ++step) group->refine();
+        for (int step = 0; step < scene_.solver.refine; ++step) group->refine(of_host());
     }
     seconds_["kinematics and loads"] += moved - start;
     seconds_["bias sweep"] += seconds_now() - finished;
@@ -207,7 +208,7 @@ void ChainSystem::solve_joint_groups_again() {
 
 void ChainSystem::refine() {
     for (auto const& group : joint_) {
-        group->refine();
+        group->refine(of_host());
         group->set_rates();
     }
 }
@@ -256,7 +257,7 @@ void ChainSystem::evaluate(bool project) {
 double ChainSystem::residual() {
     double worst = 0;
     for (auto const& group : absolute_) worst = larger(worst, group->residual());
-    for (auto const& group : joint_) worst = larger(worst, group->residual());
+    for (auto const& group : joint_) worst = larger(worst, group->residual(of_host()));
     return worst;
 }
 

@@ -53,8 +53,9 @@ class JointDynamics : public BeadHost {
     virtual void set_rates() = 0;
     /// One step of iterative refinement of what solve() found last: what the equations of bodies and joints lack is solved for with the
     /// same matrices and added. Digits come back that were lost where a body's forces are far larger than what they leave of them:
-    /// accelerations are carried apart from the forces they came from. Collective. InputError where the solution is on a GPU.
-    virtual void refine() = 0;
+    /// accelerations are carried apart from the forces they came from. `executor`: of the host, which looks for what is lacking.
+    /// Collective.
+    virtual void refine(Executor const& executor) = 0;
     virtual JointRates rates() const = 0;
 
     // Steps, stage by stage: each but the first half of Verlet's follows a solve().
@@ -93,7 +94,7 @@ class JointDynamics : public BeadHost {
     /// Of the solution evaluated last. Collective.
     virtual BodyResults results() = 0;
     /// Largest local backward residual of the solution evaluated last (JointSolution). Over all ranks; collective.
-    virtual double residual() = 0;
+    virtual double residual(Executor const&) = 0;
     /// At the present state. Collective.
     virtual PotentialEnergy potential() = 0;
     /// Corrects positions by so many Newton steps and velocities by one, each by the least in the metric of the masses, so that jointed

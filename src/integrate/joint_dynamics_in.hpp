@@ -19,6 +19,9 @@ namespace catena {
 std::vector<JointedTip> tips_at_start(ChainGroup const&, Scene const&, Communicator const&);
 
 template <class Space>
+struct JointRefinement;
+
+template <class Space>
 class JointDynamicsIn final : public JointDynamics {
     template <int D>
     using FieldOf = typename Space::template FieldOf<D>;
@@ -81,7 +84,7 @@ class JointDynamicsIn final : public JointDynamics {
         if constexpr (has_lanes)
             if (JointLanes lanes(group, given_.springs, space.simd()); lanes.any()) lanes_ = std::move(lanes);
         if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince) pair_.emplace(group);
-        if (scene.solver.refine > 0) need_for_refinement();
+        if (scene.solver.refine > 0) refinement_.emplace(group);
         set_state(make_joint_state(group, scene));
         if (tips() > 0)
             space_.edit(other_end_, [&](View<13> view) {
@@ -131,7 +134,7 @@ class JointDynamicsIn final : public JointDynamics {
         exchange_ends();
     }
     /// What is lacking is looked for on the host.
-    void refine() override;
+    void refine(Executor const& executor) override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
     JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
 
@@ -175,9 +178,9 @@ class JointDynamicsIn final : public JointDynamics {
         solver_->check();
         return with_solution([&](JointSolution const& s) { return s.results(communicator_); });
     }
-    double residual() override {
+    double residual(Executor const& executor) override {
         solver_->check();
-        return with_solution([&](JointSolution const& s) { return s.residual(communicator_); });
+        return with_solution([&](JointSolution const& s) { return s.residual(communicator_, executor); });
     }
     PotentialEnergy potential() override { return potential_of(group_, given_, space_.read(state_.q), motion()); }
 
@@ -291,12 +294,6 @@ class JointDynamicsIn final : public JointDynamics {
         noise_force_ = FieldOf<3>(group_.size);
         if (!group_.has_tips()) zero_ = FieldOf<3>(group_.size);
     }
-    void need_for_refinement() {
-        if (refinement_) return;
-        std::int64_t const n = group_.size, tips = group_.has_tips() ? n : 0;
-        int const k = group_.directions;
-        refinement_ = Refinement{FieldOf<3>(n), FieldOf<3>(n), FieldOf<3>(n), FieldOf<3>(n), {n + 1, k}, {n + 1, k}, {tips, k}, {tips, k}};
-    }
     LoadsView loads() {
         return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
     }
@@ -390,11 +387,7 @@ class JointDynamicsIn final : public JointDynamics {
     FieldOf<13> last_end_, other_end_;  // by tip
     typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
     std::optional<EmbeddedRates<Space>> pair_;
-    struct Refinement {
-        FieldOf<3> torque, force, alpha, acceleration;
-        typename Space::Directions bias, joint_force, tip_bias, tip_force;
-    };
-    std::optional<Refinement> refinement_;
+    std::optional<JointRefinement<Space>> refinement_;
     std::optional<JointLanes> lanes_;
 };
 

@@ -7,6 +7,26 @@
 
 namespace catena {
 
+/// What a solution lacks, and the solver's answer to it.
+template <class Space>
+struct JointRefinement {
+    explicit JointRefinement(ChainGroup const& group) : JointRefinement(group.size, group.has_tips() ? group.size : 0, group.directions) {}
+
+    typename Space::template FieldOf<3> torque, force, alpha, acceleration;
+    typename Space::Directions bias, joint_force, tip_bias, tip_force;
+
+  private:
+    JointRefinement(std::int64_t size, std::int64_t tips, int directions)
+        : torque(size),
+          force(size),
+          alpha(size),
+          acceleration(size),
+          bias(size + 1, directions),
+          joint_force(size + 1, directions),
+          tip_bias(tips, directions),
+          tip_force(tips, directions) {}
+};
+
 template <class Space>
 BodyMotion JointDynamicsIn<Space>::motion() {
     move();
@@ -84,25 +104,25 @@ void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found
 }
 
 template <class Space>
-void JointDynamicsIn<Space>::refine() {
+void JointDynamicsIn<Space>::refine(Executor const& executor) {
     if (!has_matrices_) assemble_matrices();
-    auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_); });
+    auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_, executor); });
     std::int64_t const size = group_.size, of_tip = group_.has_tips() ? size : 0;
-    need_for_refinement();
-    auto& [torque, force, alpha, acceleration, bias, joint_force, tip_bias, tip_force] = *refinement_;
-    fill(space_, torque, lacking.torque);
-    fill(space_, force, lacking.force);
-    space_.write(bias, lacking.bias);
-    space_.write(tip_bias, lacking.tip_bias);
-    solver_->solve({torque.view(), force.view(), {}, bias.view(), of_tips(group_, tip_bias)},
-                   {alpha.view(), acceleration.view(), joint_force.view(), of_tips(group_, tip_force)});
-    space_.for_each(size,
-                    [more = alpha.view(), sum = alpha_.view()] CATENA_LAMBDA(std::int64_t k) { sum.store(k, sum.load(k) + more.load(k)); });
-    space_.for_each(size, [more = acceleration.view(), sum = acceleration_.view()] CATENA_LAMBDA(std::int64_t k) {
+    if (!refinement_) refinement_.emplace(group_);
+    JointRefinement<Space>& r = *refinement_;
+    fill(space_, r.torque, lacking.torque);
+    fill(space_, r.force, lacking.force);
+    space_.write(r.bias, lacking.bias);
+    space_.write(r.tip_bias, lacking.tip_bias);
+    solver_->solve({r.torque.view(), r.force.view(), {}, r.bias.view(), of_tips(group_, r.tip_bias)},
+                   {r.alpha.view(), r.acceleration.view(), r.joint_force.view(), of_tips(group_, r.tip_force)});
+    space_.for_each(
+        size, [more = r.alpha.view(), sum = alpha_.view()] CATENA_LAMBDA(std::int64_t k) { sum.store(k, sum.load(k) + more.load(k)); });
+    space_.for_each(size, [more = r.acceleration.view(), sum = acceleration_.view()] CATENA_LAMBDA(std::int64_t k) {
         sum.store(k, sum.load(k) + more.load(k));
     });
-    add(size + 1, joint_force.view(), joint_force_.view());
-    add(of_tip, tip_force.view(), tip_force_.view());
+    add(size + 1, r.joint_force.view(), joint_force_.view());
+    add(of_tip, r.tip_force.view(), tip_force_.view());
     exchange_ends();
     space_.wait();
 }

@@ -1,7 +1,11 @@
 // The local backward residual of forward dynamics in joint coordinates (formulas, "Residuals").
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <mutex>
+#include <span>
 
+#include "dca/executor.hpp"
 #include "integrate/joint_solution.hpp"
 #include "integrate/ring_ends.hpp"
 
@@ -9,14 +13,15 @@ namespace catena {
 
 /// Forces on a body, and moments about its centre: applied, of the inboard joint, of the outboard joint; B.
 struct JointSolution::Terms {
-    std::vector<Vec3> forces, moments;
+    std::array<Vec3, 3> forces;
+    std::array<Vec3, 5> moments;
     double moment_sizes = 0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
 };
 
 namespace {
 
 /// |inertial - sum of terms| over the sum of their sizes and `more`, what cancelled within them or was taken out of them.
-double balance(Vec3 const& inertial, std::vector<Vec3> const& terms, double more) {
+double balance(Vec3 const& inertial, std::span<Vec3 const> terms, double more) {
     Vec3 difference = inertial;
     double size = norm(inertial) + more;
     for (Vec3 const& t : terms) {
@@ -26,7 +31,7 @@ double balance(Vec3 const& inertial, std::vector<Vec3> const& terms, double more
     return relative(norm(difference), size);
 }
 
-Vec3 sum_of(std::vector<Vec3> const& terms) {
+Vec3 sum_of(std::span<Vec3 const> terms) {
     Vec3 sum = Vec3::zero();
     for (Vec3 const& t : terms) sum = sum + t;
     return sum;
@@ -48,8 +53,8 @@ JointSolution::Terms JointSolution::terms(std::int64_t k) const {
     Mat3 const e1 = axes1(k), e2 = axes2(k);
     Pair const inboard = along_axes(joint_force, k, screw(k)), outboard = outboard_pair(k);
     Vec3 const force1 = e1 * inboard.force, force2 = -(e2 * outboard.force);
-    return {{force.origin ? force.load(k) : Vec3::zero(), force1, force2},
-            {torque.load(k), cross(group.r1[k], force1), e1 * inboard.torque, cross(r2(k), force2), -(e2 * outboard.torque)},
+    return {{{force.origin ? force.load(k) : Vec3::zero(), force1, force2}},
+            {{torque.load(k), cross(group.r1[k], force1), e1 * inboard.torque, cross(r2(k), force2), -(e2 * outboard.torque)}},
             norm(group.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
 }
 
@@ -128,48 +133,57 @@ double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> co
     return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b) + sizes(yields));
 }
 
-double JointSolution::residual(Communicator const& communicator) const {
-    auto const outboard_handle = [&](std::int64_t k) { return handle(k, r2(k), axes2(k)); };
-    Vector<double, 8> before = handle_before_first(communicator);  // handle 2 of body k - 1
+Vector<double, 8> JointSolution::handle_before(std::int64_t k, Vector<double, 8> const& before_first) const {
+    if (group.is_first[k]) return Vector<double, 8>::zero();
+    return k == 0 ? before_first : handle(k - 1, r2(k - 1), axes2(k - 1));
+}
+
+double JointSolution::residual(Communicator const& communicator, Executor const& executor) const {
+    Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);
-    double worst = 0;
-    for (std::int64_t k = 0; k < group.size; ++k) {
+    auto const of_body = [&](std::int64_t k) {
+        double worst = 0;
         Terms const t = terms_solved_for(k);
         // The accelerated ground has taken the weight out of the forces: where bodies fall freely, only its rounding is left.
         double const mass = group.mass.view().at(k, 0), weight = mass * norm(given.gravity);
         worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
         worst = larger(worst, balance(inertial_moment(k), t.moments, t.moment_sizes + weight * norm(group.r1[k])));
-        if (group.is_first[k]) before = Vector<double, 8>::zero();
         double const size = norm(group.r1[k]) + radius_of(group, k);
+        Vector<double, 8> const before = handle_before(k, before_first);
         worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size, yielded(k)));
-        before = outboard_handle(k);
-        if (!group.has_jointed_tip(k)) continue;
-        worst = larger(worst, closing(at_tips[group.tip_index(k)], before, tip_bias, k, outboard_screw(k), group.tip_of(k).restricted,
-                                      norm(r2(k)) + radius_of(group, k), Vec3::zero()));
-    }
+        if (!group.has_jointed_tip(k)) return worst;
+        return larger(worst, closing(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)), tip_bias, k, outboard_screw(k),
+                                     group.tip_of(k).restricted, norm(r2(k)) + radius_of(group, k), Vec3::zero()));
+    };
+    double worst = 0;
+    std::mutex one_at_a_time;
+    executor.for_ranges(group.size, 1, [&](std::int64_t begin, std::int64_t end) {
+        double of_range = 0;
+        for (std::int64_t k = begin; k < end; ++k) of_range = larger(of_range, of_body(k));
+        std::lock_guard const lock(one_at_a_time);
+        worst = larger(worst, of_range);
+    });
     return communicator.max(worst);
 }
 
-JointSolution::Defect JointSolution::defect(Communicator const& communicator) const {
+JointSolution::Defect JointSolution::defect(Communicator const& communicator, Executor const& executor) const {
     std::int64_t const tips = group.has_tips() ? group.size : 0;
     Defect d{Field<3>(group.size), Field<3>(group.size), DirectionsField(group.size + 1, group.directions),
              DirectionsField(tips, group.directions)};
-    Vector<double, 8> before = handle_before_first(communicator);
+    Vector<double, 8> const before_first = handle_before_first(communicator);
     auto const at_tips = handles_at_tips(communicator);
-    for (std::int64_t k = 0; k < group.size; ++k) {
+    executor.for_each(group.size, [&](std::int64_t k) {
         Terms const t = terms_solved_for(k);
         d.torque.set(k, sum_of(t.moments) - inertial_moment(k));
         d.force.set(k, sum_of(t.forces) - group.mass.view().at(k, 0) * acceleration.load(k));
-        if (group.is_first[k]) before = Vector<double, 8>::zero();
-        store_first(
-            d.bias.view(), k, group.directions,
-            opening(handle(k, group.r1[k], axes1(k)), before, load_first(bias, k, group.directions), screw(k), group.restricted(k)));
-        before = handle(k, r2(k), axes2(k));
+        store_first(d.bias.view(), k, group.directions,
+                    opening(handle(k, group.r1[k], axes1(k)), handle_before(k, before_first), load_first(bias, k, group.directions),
+                            screw(k), group.restricted(k)));
         if (group.has_jointed_tip(k))
             store_first(d.tip_bias.view(), k, group.directions,
-                        opening(at_tips[group.tip_index(k)], before, load_first(tip_bias, k, group.directions), outboard_screw(k),
-                                group.tip_of(k).restricted));
-    }
+                        opening(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)), load_first(tip_bias, k, group.directions),
+                                outboard_screw(k), group.tip_of(k).restricted));
+    });
     return d;
 }
 

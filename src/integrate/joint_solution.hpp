@@ -21,14 +21,14 @@ struct JointSolution {
     BodyResults results(Communicator const&) const;
     /// Largest local backward residual: Newton-Euler of every body and the closing of every joint, each relative to the sizes of its
     /// own terms (formulas, "Residuals"). Over all ranks; collective.
-    double residual(Communicator const&) const;
+    double residual(Communicator const&, Executor const&) const;
     /// By how much the equations of bodies and joints fail, as loads for the solver: what it answers to them is missing in the solution.
     /// Collective.
     struct Defect {
         Field<3> torque, force;
         DirectionsField bias, tip_bias;
     };
-    Defect defect(Communicator const&) const;
+    Defect defect(Communicator const&, Executor const&) const;
 
   private:
     void add_across_plane(Communicator const&, BodyResults&) const;
@@ -55,6 +55,8 @@ struct JointSolution {
     Vector<double, 8> handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const;
     /// Handle 2 of the last body on the rank before.
     Vector<double, 8> handle_before_first(Communicator const&) const;
+    /// Handle 2 of the body that body k hangs on.
+    Vector<double, 8> handle_before(std::int64_t k, Vector<double, 8> const& before_first) const;
     /// What each of the group's tips is joined to: the ground's handle, or handle 1 of a ring's first body. Collective.
     std::vector<Vector<double, 8>> handles_at_tips(Communicator const&) const;
     /// What an implicit joint yields to its force along its last three directions; 0 of others.

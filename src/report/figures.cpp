@@ -104,7 +104,7 @@ class CutTree {
         if (counts) spent_.push_back(spent);
     }
     std::vector<SplitSeconds> const& spent() const { return spent_; }
-    double residual() { return dynamics_->residual(); }
+    double residual() { return dynamics_->residual(*serial_executor()); }
     std::int64_t depth() const { return dynamics_->solver().report().depth; }
 
   private:

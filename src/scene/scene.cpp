@@ -116,8 +116,10 @@ std::string DynamicsSpec::why_host_alone() const {
     return "";
 }
 
-std::string Scene::why_host_alone() const {
-    if (solver.handles == Handles::articulated) return "articulated handles are computed on the host";
+std::string Scene::why_not_on(Backend backend) const {
+    if (!uses_gpu(backend)) return "";
+    if (backend == Backend::cuda_levels && solver.handles == Handles::articulated)
+        return "articulated handles are for cuda, which takes all levels, and for the host";
     return dynamics.why_host_alone();
 }
 

@@ -31,24 +31,13 @@ Scene scene_of(ChainSpec const& chain, Backend backend = Backend::segments) {
     return scene;
 }
 
-RandomChainOptions options_of(std::uint64_t seed) {
-    RandomChainOptions options;
-    options.bodies = 1 + seed * 7 % 100;
-    options.joints = static_cast<RandomJoints>(seed % 9);
-    options.base = seed / 9 % 2 ? Base::free : Base::fixed;
-    options.springs = seed / 18 % 2;
-    options.drag = seed / 36 % 3 == 0;
-    options.driven = seed / 72 % 4 == 3 ? 0.2 : 0;
-    return options;
-}
-
 /// As far off as articulated bodies in double, which is what these sweeps are over a tree, and the roundings of n bodies.
 double bound_of(double in_double, std::size_t bodies) { return 8 * in_double + 64 * static_cast<double>(bodies + 8) * eps; }
 
 TEST(ArticulatedHandles, ChainsOfEveryJointAgreeWithArticulatedBodies) {
     for (std::uint64_t seed = 1; seed <= 300; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
-        ChainSpec const chain = random_chain(seed, options_of(seed));
+        ChainSpec const chain = random_chain(seed, options_in_turn(seed, 100));
         Scene const scene = scene_of(chain);
         ChainSystem system(scene, Axes::joint, testing::world());
         system.evaluate();

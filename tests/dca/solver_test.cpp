@@ -41,15 +41,9 @@ double growth(ChainSpec const& chain, oracle::Loads const& loads) {
     return most;
 }
 
-/// Options of the chain of a seed: every kind of joints, base, load and drive in turn.
+/// With tips in turn, too.
 RandomChainOptions options_of(std::uint64_t seed) {
-    RandomChainOptions options;
-    options.bodies = 1 + seed * 7 % 64;
-    options.joints = static_cast<RandomJoints>(seed % 9);
-    options.base = seed / 9 % 2 ? Base::free : Base::fixed;
-    options.springs = seed / 18 % 2;
-    options.drag = seed / 36 % 3 == 0;
-    options.driven = seed / 72 % 4 == 3 ? 0.2 : 0;
+    RandomChainOptions options = options_in_turn(seed, 64);
     JointType const tips[] = {JointType::spherical, JointType::revolute,  JointType::universal,
                               JointType::weld,      JointType::prismatic, JointType::helical};
     // A tip takes up to six coordinates of the chain's; in a plane it is a pin.

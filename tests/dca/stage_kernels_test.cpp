@@ -4,7 +4,9 @@
 #include <set>
 #include <string>
 
+#include "dca/articulated_sweeps.hpp"
 #include "dca/leaf_choice.hpp"
+#include "scene/freedom.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/compared_solver.hpp"
 #include "tests/support/random_chain.hpp"
@@ -17,8 +19,15 @@ std::unique_ptr<ChainSolver> make_stage_solver(ChainGroup const& group, Executor
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
         return std::make_unique<dca::TreeSolver<typename decltype(leaf)::type, StageSpace>>(group, StageSpace(executor), communicator);
     };
+    if (group.handles == Handles::articulated)
+        return group.has_screws ? make(dca::Of<dca::ArticulatedLeaf<true>>{}) : make(dca::Of<dca::ArticulatedLeaf<false>>{});
     return group.beads || group.linked || group.axes == Axes::world ? dca::with_absolute_leaf(group, make)
                                                                     : dca::with_joint_leaf(group, make);
+}
+
+dca::StageRecords records_of(ChainGroup const& group) {
+    return group.handles == Handles::articulated ? dca::ArticulatedSweeps<dca::ArticulatedLeaf<false>>::in_stage
+                                                 : dca::stage_records(group.directions);
 }
 
 struct NamedGpu {
@@ -26,7 +35,7 @@ struct NamedGpu {
     StagedGpu gpu;
 };
 char const* const h100 = "an H100";
-std::vector<NamedGpu> gpus(int directions) {
+std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
     auto const with = [](std::int64_t threads, std::int64_t most, std::int64_t together, bool runs_apart) {
         return NamedGpu{"of " + std::to_string(threads) + " threads and " + std::to_string(most) + " items a block, " +
                             std::to_string(together) + " blocks together" + (runs_apart ? ", runs apart" : ""),
@@ -38,17 +47,22 @@ std::vector<NamedGpu> gpus(int directions) {
             with(128, 8, 8, false),
             with(256, 16, 8, true),
             {"of too few threads", {{128, 32, 4}, false, 32}},
-            {h100, {dca::stage_sizes(directions, cuda_on_host::most_shared_bytes, cuda::kernels::most_in_cluster)}}};
+            {h100, {dca::stage_sizes(records, cuda_on_host::most_shared_bytes, cuda::kernels::most_in_cluster)}}};
 }
 
 class StageKernels : public ::testing::Test {
   protected:
     void SetUp() override { StageSpace::seen = {}; }
     void expect_same(Scene const& scene, Axes axes = Axes::joint) {
-        for (Handles const handles : alone() ? std::vector{Handles::projected, Handles::full} : std::vector{Handles::projected})
+        bool const articulated =
+            axes == Axes::joint && std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
+        std::vector<Handles> kinds{Handles::projected};
+        if (alone()) kinds.push_back(Handles::full);
+        if (articulated) kinds.push_back(Handles::articulated);
+        for (Handles const handles : kinds)
             for (auto const& group : make_groups(scene, axes, handles, false, testing::world())) {
                 std::vector<NamedSolver> solvers;
-                for (NamedGpu const& each : gpus(group->directions)) {
+                for (NamedGpu const& each : gpus(records_of(*group))) {
                     if (h100_alone_ && each.name != h100) continue;
                     StageSpace::gpu = each.gpu;
                     solvers.push_back({each.name, make_stage_solver(*group, *executor_, testing::world())});

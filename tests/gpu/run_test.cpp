@@ -11,7 +11,7 @@ class GpuRun : public WholeRun {
     void SetUp() override { need_gpu(catena::testing::world()); }
     /// Whether the scene is one for the host, which then refuses the GPU in one line.
     bool is_refused(Backend backend) {
-        if (parse_scene(GetParam().text, "scene.yaml").why_host_alone().empty()) return false;
+        if (parse_scene(GetParam().text, "scene.yaml").why_not_on(backend).empty()) return false;
         try {
             run(catena::testing::world(), "refused", 40, "", backend);
             ADD_FAILURE() << "not refused";
@@ -65,6 +65,16 @@ INSTANTIATE_TEST_SUITE_P(Refined, GpuRun,
                          ::testing::Values(refined(joint_chains("rk4_revolute_held", "revolute", held, "rk4")),
                                            refined(joint_chains("verlet_spherical_held", "spherical", held, "velocity-verlet")),
                                            refined(joint_chains("rk4_planar", "planar", "", "rk4"))),
+                         name_of_scene);
+
+RunScene articulated(RunScene scene, std::string const& more = "") {
+    scene.text += "solver: {handles: articulated" + more + "}\n";
+    return scene;
+}
+INSTANTIATE_TEST_SUITE_P(Articulated, GpuRun,
+                         ::testing::Values(articulated(joint_chains("rk4_helical", "helical", "", "rk4")),
+                                           articulated(joint_chains("verlet_mixed", "mixed", "", "velocity-verlet")),
+                                           articulated(joint_chains("rk4_planar_refined", "planar", "", "rk4"), ", refine: 1")),
                          name_of_scene);
 
 INSTANTIATE_TEST_SUITE_P(SharedChains, GpuRun,

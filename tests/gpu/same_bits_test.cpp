@@ -52,13 +52,18 @@ class Gpu : public ::testing::Test {
         scene.solver.handles = handles;
         return scene;
     }
+    static std::vector<Handles> kinds(bool open_bodies) {
+        std::vector<Handles> all{Handles::projected, Handles::full};
+        if (open_bodies) all.push_back(Handles::articulated);
+        return all;
+    }
     std::unique_ptr<Communicator> communicator_ = serial_communicator();
 };
 
 TEST_F(Gpu, EveryKindAndSize) {
     for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld", "mixed"})
         for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 256, 257, 2047, 2048, 2049})
-            for (Handles const handles : {Handles::projected, Handles::full})
+            for (Handles const handles : kinds(std::string(joint) != "link"))
                 for (char const* const base : {"free", "fixed"}) {
                     SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies) + " " + base + " " + name_of(handles));
                     expect_same(scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: " + std::to_string(bodies) +
@@ -72,6 +77,7 @@ TEST_F(Gpu, AMillionAndOne) {
     for (char const* const joint : {"link", "spherical", "revolute"})
         expect_same(scene_of(std::string("{base: fixed, generator: {random: {bodies: 1000001, joint: ") + joint + ", seed: 1}}}",
                              Handles::projected));
+    expect_same(scene_of("{base: fixed, generator: {random: {bodies: 300001, joint: revolute, seed: 1}}}", Handles::articulated));
 }
 
 TEST_F(Gpu, ManyChainsAndTips) {
@@ -94,6 +100,13 @@ TEST_F(Gpu, AbsoluteCoordinates) {
                     Axes::world);
 }
 
+TEST_F(Gpu, ManyArticulatedChains) {
+    expect_same(
+        scene_of("{name: a, count: 3000, generator: {random: {joint: spherical, bodies: 70, seed: 2}}}, "
+                 "{name: b, base: fixed, generator: {random: {joint: helical, bodies: 4000, seed: 2}}}",
+                 Handles::articulated));
+}
+
 /// Wrenches on all bodies, joint torques, springs, dampers, drag, prescribed motions, and every joint at the tip.
 TEST_F(Gpu, LoadsDrivesAndTips) {
     using enum JointType;
@@ -109,21 +122,18 @@ TEST_F(Gpu, LoadsDrivesAndTips) {
                 SCOPED_TRACE("seed " + std::to_string(++seed));
                 ChainSpec const chain = random_chain(
                     seed, {.bodies = 40, .joints = joints, .base = base, .springs = true, .drag = true, .driven = 0.2, .tip = tip});
-                for (Handles const handles : {Handles::projected, Handles::full}) expect_same(scene_of(chain, handles));
+                for (Handles const handles : kinds(!tip)) expect_same(scene_of(chain, handles));
                 if (HasFailure()) return;
             }
 }
 
 /// Short, for the checkers: joints that move their meeting frames, drives, loads and a tip that slides.
 TEST_F(Gpu, SlidingAndDriven) {
-    expect_same(scene_of(random_chain(9, {.bodies = 40,
-                                          .joints = RandomJoints::any,
-                                          .base = Base::fixed,
-                                          .springs = true,
-                                          .drag = true,
-                                          .driven = 0.2,
-                                          .tip = JointType::helical}),
-                         Handles::projected));
+    RandomChainOptions options{
+        .bodies = 40, .joints = RandomJoints::any, .base = Base::fixed, .springs = true, .drag = true, .driven = 0.2};
+    expect_same(scene_of(random_chain(9, options), Handles::articulated));
+    options.tip = JointType::helical;
+    expect_same(scene_of(random_chain(9, options), Handles::projected));
 }
 
 TEST_F(Gpu, LinksWithTips) {

@@ -204,6 +204,17 @@ Vec3 Random::direction() {
 }
 Quat Random::orientation() { return about_axis(direction(), uniform(-3, 3)); }
 
+RandomChainOptions options_in_turn(std::uint64_t seed, std::size_t most) {
+    RandomChainOptions options;
+    options.bodies = 1 + seed * 7 % most;
+    options.joints = static_cast<RandomJoints>(seed % 9);
+    options.base = seed / 9 % 2 ? Base::free : Base::fixed;
+    options.springs = seed / 18 % 2;
+    options.drag = seed / 36 % 3 == 0;
+    options.driven = seed / 72 % 4 == 3 ? 0.2 : 0;
+    return options;
+}
+
 ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options) {
     Random random(seed);
     ChainSpec chain = without_bodies("random", options.base);

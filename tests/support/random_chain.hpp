@@ -42,6 +42,9 @@ struct RandomChainOptions {
     double time = 0;                              // at which they are made to fit: decides the rates of driven joints
 };
 
+/// Open chains of the seeds: every kind of joints, base, load and drive in turn; 1 to `most` bodies.
+RandomChainOptions options_in_turn(std::uint64_t seed, std::size_t most);
+
 /// Rigid bodies of mass 0.3 .. 3, size about 0.3, any shape a real body can have.
 ChainSpec random_chain(std::uint64_t seed, RandomChainOptions const& options);
 

@@ -36,9 +36,9 @@ class StageSpace : public HostSpace {
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, std::span<std::uint8_t const> restricted, int directions)
+             std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
             : runs_(runs), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
-            sizes_.threads = std::min<std::int64_t>(sizes_.threads, dca::stage_threads(directions));
+            sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             plan_ = dca::plan_stages(runs, levels, roots, slots, restricted, sizes_);
             if (gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;

@@ -65,7 +65,7 @@ Errors Problem::errors(ChainInArrays& chain) const {
             std::vector<Vec3> qdd;
             for (std::int64_t k = 0; k < group_->size; ++k) qdd.push_back(rates.qdd[k]);
             e.error[static_cast<std::size_t>(steps)] = error_of(qdd, rates.base_acceleration[0]);
-            e.residual[static_cast<std::size_t>(steps)] = dynamics->residual();
+            e.residual[static_cast<std::size_t>(steps)] = dynamics->residual(*executor_);
         }
     } catch (ComputationError const&) {
         e.definite = false;
