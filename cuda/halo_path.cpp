@@ -1,10 +1,13 @@
-// Beads and OpenMM's particles on the GPU of a rank among several. Beads that others have as ghosts are gathered on the GPU, pass through
-// pinned memory of the host and messages, and are put into OpenMM's arrays on theirs. While they travel, the chains' own work goes on.
+// Beads and OpenMM's particles on the GPU of a rank among several. Beads that others have as ghosts are gathered on the GPU, are written
+// into the memory of theirs, or pass through pinned memory of the host and messages, and are put into OpenMM's arrays there. While they
+// travel, the chains' own work goes on.
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "cuda/gpu_path.hpp"
+#include "cuda/peer_inboxes.hpp"
 #include "error.hpp"
 #include "force/halo.hpp"
 
@@ -65,8 +68,12 @@ class HaloPath final : public GpuPath {
             events_->positions.hold(last);
             next += group->count();
         }
-        if (!out().empty())
+        if (inboxes_) {
+            inboxes_->turn();
+            inboxes_->send(lists().messages, shown_.shown, last);
+        } else if (!out().empty()) {
             check(cudaMemcpyAsync(out().data(), shown_.shown, out().size_bytes(), cudaMemcpyDeviceToHost, last), "show its beads");
+        }
         is_shown_.record(last);
     }
 
@@ -81,8 +88,13 @@ class HaloPath final : public GpuPath {
             make_lists(beads);
             show(beads);
             is_shown_.wait();
+            if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived
         }
-        halo_.carry(out(), in());
+        if (inboxes_)
+            halo_.note_carried();
+        else
+            halo_.carry(out(), in());
+        if (inboxes_ && (halo_.is_audited() || of_this_order_ == 0 || !ghosts_are_placed_)) look_into_inbox();
         if (halo_.is_audited()) halo_.audit(positions(), in());
         exchange_.end = now();
         if (of_this_order_ == 0) {
@@ -94,6 +106,13 @@ class HaloPath final : public GpuPath {
         if (!std::exchange(ghosts_are_placed_, true)) place_ghosts();
         put_ghosts();
         compute(beads);
+    }
+
+    /// For the host.
+    void look_into_inbox() {
+        if (in().empty()) return;
+        check(cudaMemcpyAsync(in().data(), inboxes_->arrived(), in().size_bytes(), cudaMemcpyDeviceToHost, stream_), "take ghosts");
+        check(cudaStreamSynchronize(stream_), "take ghosts");
     }
 
     void look_at_start() {
@@ -114,6 +133,9 @@ class HaloPath final : public GpuPath {
         ghosts_are_placed_ = false;
         has_lists_ = true;
         list_sent(x);
+        if (!has_way_ && halo_.every_rank_has_beads()) inboxes_ = PeerInboxes::make(halo_.communicator());
+        has_way_ = true;
+        if (inboxes_ && !inboxes_->fit(lists().messages)) inboxes_.reset();
         out_.of(lists().sent.size());
         in_.of(lists().particle.size());
     }
@@ -161,12 +183,17 @@ class HaloPath final : public GpuPath {
 
     void put_ghosts() {
         if (in().empty()) return;
-        check(cudaMemcpyAsync((*arrived_).data(), in().data(), in().size_bytes(), cudaMemcpyHostToDevice, stream_), "take ghosts");
-        put(static_cast<std::int64_t>(in().size()), ghosts_from(0), stream_);
+        ArrivedBeads arrived = ghosts_from(0);
+        if (inboxes_)
+            arrived.position = inboxes_->arrived();
+        else
+            check(cudaMemcpyAsync((*arrived_).data(), in().data(), in().size_bytes(), cudaMemcpyHostToDevice, stream_), "take ghosts");
+        put(static_cast<std::int64_t>(in().size()), arrived, stream_);
     }
 
     Halo& halo_;
-    bool has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
+    bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
+    std::unique_ptr<PeerInboxes> inboxes_;  // null: positions pass through the host
     ShownBeads shown_;
     Event is_shown_{Event::For::order};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;

@@ -78,33 +78,47 @@ std::vector<double*> take_spare(Communicator const& communicator) {
 /// Each rank's memory as this rank reaches it; empty where some rank does not reach some other.
 std::vector<double*> mapped(Communicator const& communicator) {
     void* own = nullptr;
-    cudaIpcMemHandle_t handle{};
     check(cudaMalloc(&own, capacity * sizeof(double)), "find memory");
+    std::vector<double*> base;
+    for (void* const there : map_each_others(communicator, own)) base.push_back(static_cast<double*>(there));
+    if (base.empty()) cudaFree(own);
+    return base;
+}
+
+}  // namespace
+
+bool gpus_may_write_to_each_other(Communicator const& communicator) {
+    return communicator.size() > 1 && wanted(communicator) && agreed(communicator, apart_on_one_host(communicator));
+}
+
+std::vector<void*> map_each_others(Communicator const& communicator, void* own) {
+    cudaIpcMemHandle_t handle{};
     bool const shown = cudaIpcGetMemHandle(&handle, own) == cudaSuccess;
     std::vector<cudaIpcMemHandle_t> all(static_cast<std::size_t>(communicator.size()));
     communicator.all_gather(std::as_bytes(std::span(&handle, 1)), std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(handle)));
-    std::vector<double*> base;
+    std::vector<void*> base;
     bool opened = agreed(communicator, shown);
     for (std::size_t r = 0; opened && r < all.size(); ++r) {
         void* there = own;
         if (static_cast<int>(r) != communicator.rank())
             opened = cudaIpcOpenMemHandle(&there, all[r], cudaIpcMemLazyEnablePeerAccess) == cudaSuccess;
-        if (opened) base.push_back(static_cast<double*>(there));
+        if (opened) base.push_back(there);
     }
     cudaGetLastError();  // what a failure leaves behind would fail the next call
     if (agreed(communicator, opened)) return base;
-    for (double* const there : base)
-        if (there != own) cudaIpcCloseMemHandle(there);
+    unmap(base, communicator.rank());
     communicator.barrier();
-    cudaFree(own);
     return {};
 }
 
-}  // namespace
+void unmap(std::vector<void*> const& base, int own_rank) {
+    for (std::size_t r = 0; r < base.size(); ++r)
+        if (static_cast<int>(r) != own_rank) cudaIpcCloseMemHandle(base[r]);
+}
 
 std::shared_ptr<PeerMemory> PeerMemory::connect(Communicator const& communicator) {
-    if (communicator.size() == 1 || !wanted(communicator) || !agreed(communicator, apart_on_one_host(communicator))) return nullptr;
+    if (!gpus_may_write_to_each_other(communicator)) return nullptr;
     std::vector<double*> base = take_spare(communicator);
     if (base.empty()) base = mapped(communicator);
     if (base.empty()) return nullptr;

@@ -241,6 +241,15 @@ void GhostLists::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     ++traffic_.updates;
 }
 
+void GhostLists::note_carried() {
+    traffic_.direct = true;
+    for (Neighbour const& n : neighbours_) {
+        traffic_.messages += n.sent > 0 ? 1 : 0;
+        traffic_.bytes += static_cast<std::int64_t>(n.sent * sizeof(Vec3));
+    }
+    ++traffic_.updates;
+}
+
 void GhostLists::exchange(std::vector<Outgoing> const& out, std::vector<Incoming> const& in) {
     communicator_.exchange_all(out, in);
     traffic_.messages += std::ssize(out);

@@ -49,12 +49,20 @@ class GhostLists {
     /// How far beads may move, nm; none matters where there are no ghosts but partners.
     std::optional<double> farthest() const { return plan_.reach > 0 ? std::optional(plan_.skin / 2) : std::nullopt; }
 
+    /// Positions to and from a rank.
+    struct Neighbour {
+        int rank;
+        std::size_t sent, received;
+    };
+    std::vector<Neighbour> const& neighbours() const { return neighbours_; }
     /// Of own beads, those whose positions are sent, rank after rank; a bead may be there more than once.
     std::vector<std::int64_t> const& sent() const { return sent_; }
     /// Of beads(), those whose positions are received, rank after rank: each once.
     std::vector<std::int64_t> const& received() const { return received_; }
     /// The positions' messages. Collective.
     void carry(std::span<Vec3 const> sent, std::span<Vec3> received);
+    /// They went from GPU to GPU.
+    void note_carried();
     /// Compares ghosts and their positions (of beads()) with a search among all beads. Collective; throws SharedError where one is missed
     /// or stale.
     void audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) const;
@@ -77,11 +85,6 @@ class GhostLists {
         std::int64_t bead;
         Vec3 position;
     };
-    struct Neighbour {
-        int rank;
-        std::size_t sent, received;  // positions
-    };
-
     std::int64_t first() const { return plan_.first_of_rank[communicator_.rank()]; }
     std::int64_t own_count() const { return plan_.first_of_rank[communicator_.rank() + 1] - first(); }
     int owner(std::int64_t bead) const;

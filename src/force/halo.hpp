@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dca/linear.hpp"
+#include "mpi/communicator.hpp"
 
 namespace OpenMM {
 class Context;
@@ -16,7 +17,13 @@ namespace catena {
 
 class Halo {
   public:
+    /// Positions to and from a rank.
+    struct Message {
+        int rank;
+        std::int64_t sent, received;
+    };
     struct Lists {
+        std::vector<Message> messages;   // whose positions follow each other in `sent` and `particle`
         std::vector<std::int64_t> sent;  // own beads whose positions are sent, in this order
         std::vector<int> particle;       // of each position received, in the rank's Context
         std::vector<int> idle;           // particles that stand for no bead, and their places, which nothing feels
@@ -39,6 +46,10 @@ class Halo {
     virtual OpenMM::Context& context() = 0;
     /// Sends and receives positions. Collective.
     virtual void carry(std::span<Vec3 const> sent, std::span<Vec3> received) = 0;
+    /// They went from GPU to GPU, not by carry().
+    virtual void note_carried() = 0;
+    virtual Communicator const& communicator() const = 0;
+    virtual bool every_rank_has_beads() const = 0;
     /// Whether audit() is to be called at every evaluation, on every rank or none: compares the ghosts with a search among all beads.
     /// Collective; throws SharedError.
     virtual bool is_audited() const = 0;

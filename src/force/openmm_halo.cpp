@@ -9,7 +9,10 @@
 namespace catena {
 
 HaloForces::HaloForces(RankPlan const& plan)
-    : share_(plan, skin_of_reach_on_device),
+    : communicator_(plan.communicator),
+      every_rank_has_beads_(std::adjacent_find(plan.beads.first_of_rank.begin(), plan.beads.first_of_rank.end()) ==
+                            plan.beads.first_of_rank.end()),
+      share_(plan, skin_of_reach_on_device),
       ghosts_(plan.communicator, share_.lists()),
       audit_(plan.audit),
       all_(plan.beads.size()),
@@ -58,6 +61,8 @@ void HaloForces::audit(std::span<Vec3 const> own, std::span<Vec3 const> received
 void HaloForces::make_lists(std::span<Vec3 const> positions) {
     ghosts_.make(positions);
     lists_ = {};
+    for (auto const& n : ghosts_.neighbours())
+        lists_.messages.push_back({n.rank, static_cast<std::int64_t>(n.sent), static_cast<std::int64_t>(n.received)});
     lists_.sent = ghosts_.sent();
     lists_.farthest = ghosts_.farthest();
     if (own().empty()) return;

@@ -46,6 +46,9 @@ class HaloForces final : public RankForces, public Halo {
     Lists const& lists() const override { return lists_; }
     OpenMM::Context& context() override { return context_->context(); }
     void carry(std::span<Vec3 const> sent, std::span<Vec3> received) override;
+    void note_carried() override { ghosts_.note_carried(); }
+    Communicator const& communicator() const override { return communicator_; }
+    bool every_rank_has_beads() const override { return every_rank_has_beads_; }
     bool is_audited() const override { return audit_; }
     void audit(std::span<Vec3 const> own, std::span<Vec3 const> received) const override;
 
@@ -62,6 +65,8 @@ class HaloForces final : public RankForces, public Halo {
     Subset subset_of_slots() const;
     void make_context(std::span<std::int64_t const> others);
 
+    Communicator const& communicator_;
+    bool every_rank_has_beads_;
     SplitShare share_;
     GhostLists ghosts_;
     bool audit_;
