@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "integrate/chain_system.hpp"
 #include "integrate/share.hpp"
@@ -49,6 +50,7 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         if (std::getenv("CATENA_NEEDS_GPU") != nullptr) FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
         GTEST_SKIP() << "NOT RUN: " << cuda::why_no_device_path();
     }
+    void TearDown() override { ::unsetenv("CATENA_GPU_EXCHANGE"); }
     static Scene scene_with(std::string const& precision, bool on_device) {
         Scene scene = parse_scene(text_of(GetParam()), "scene.yaml");
         scene.solver.backend = Backend::cuda;
@@ -148,6 +150,18 @@ TEST_P(OpenMmOnGpus, WithoutOverlap) {
     apart.forces.openmm->overlap = false;
     Found const without = found(apart, 20);
     expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
+}
+
+/// From GPU to GPU where that can be, or through pinned memory and messages: the same positions.
+TEST_P(OpenMmOnGpus, GhostsComeEitherWay) {
+    Scene const scene = scene_with("double", true);
+    Found const either = found(scene, 40);
+    ::setenv("CATENA_GPU_EXCHANGE", "host", 1);
+    Found const by_host = found(scene, 40);
+    EXPECT_FALSE(by_host.traffic.direct);
+    EXPECT_EQ(either.traffic.bytes > 0, by_host.traffic.bytes > 0);
+    double constexpr after_steps = 1e-8;  // rounding, grown by the chains' own chaos
+    expect_close(either, by_host, after_steps);
 }
 
 TEST_P(OpenMmOnGpus, ListsAreMadeAnewWhenAsked) {
