@@ -19,7 +19,7 @@ class HaloForces final : public RankForces, public Halo {
   public:
     /// Making lists takes one core 0.16 s for half a million beads, and the GPU waits. The fastest of 14,000 beads of a condensate
     /// (CALVADOS 2, 330 mg/ml, 10 fs) has gone 0.25 nm after 32 steps, 0.5 after 80, 0.75 after 150, 1 nm after 220. With half of the reach
-    /// of 4 nm lists last about as long as OpenMM's order, and a rank with half of a box of 80 nm has 5 % more particles than with an
+    /// of 4 nm lists last about as long as OpenMM's order, and a rank with half of a box of 80 nm has 7 % more particles than with an
     /// eighth.
     static double constexpr skin_of_reach_on_device = 0.5;
 
