@@ -67,6 +67,7 @@ class HaloForces final : public RankForces, public Halo {
 
     Communicator const& communicator_;
     bool every_rank_has_beads_;
+    std::unique_ptr<ForceContext> home_;  // before all Contexts that are made in its GPU context, share_'s among them
     SplitShare share_;
     GhostLists ghosts_;
     bool audit_;
@@ -75,7 +76,6 @@ class HaloForces final : public RankForces, public Halo {
     std::vector<std::int64_t> of_kind_elsewhere_;  // exchangeable beads of other ranks
     GhostSlots slots_;
     Lists lists_;
-    std::unique_ptr<ForceContext> home_;  // before the Contexts that are made in its GPU context
     std::shared_ptr<OpenMM::System> system_;
     std::unique_ptr<ForceContext> context_;
     std::int64_t largest_ = 0, contexts_ = 0;
