@@ -1,5 +1,8 @@
 #include "cuda/peer_memory.hpp"
 
+#include <dlfcn.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <span>
@@ -39,50 +42,85 @@ bool apart_on_one_host(Communicator const& communicator) {
 
 constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB; the widest segments of all ranks' units take three quarters of it
 
-/// Mapped memory that nobody uses now.
-std::vector<std::vector<double*>>& spare() {
-    static auto* const list = new std::vector<std::vector<double*>>;  // outlives what gives memory back
+/// Of the CUDA context that is current: no two have the same, also where one is gone; 0: the driver does not tell.
+unsigned long long context_number() {
+    using Ask = int (*)(void* context, unsigned long long* number);
+    static auto const ask = [] {
+        void* const driver = dlopen("libcuda.so.1", RTLD_LAZY | RTLD_NOLOAD);
+        return driver ? reinterpret_cast<Ask>(dlsym(driver, "cuCtxGetId")) : nullptr;
+    }();
+    unsigned long long number = 0;
+    return ask && ask(nullptr, &number) == 0 ? number : 0;
+}
+
+/// Mapped memory that nobody uses now. What a context has mapped is of use there alone, and goes with it: OpenMM's do.
+struct Spare {
+    unsigned long long context;
+    std::vector<double*> base;
+};
+std::vector<Spare>& spares() {
+    static auto* const list = new std::vector<Spare>;  // outlives what gives memory back
     return *list;
+}
+
+/// Empty where there is none.
+std::vector<double*> take_spare(Communicator const& communicator) {
+    unsigned long long const here = context_number();
+    auto const ranks = static_cast<std::size_t>(communicator.size());
+    auto const found = std::find_if(spares().begin(), spares().end(),
+                                    [&](Spare const& spare) { return here != 0 && spare.context == here && spare.base.size() == ranks; });
+    if (!agreed(communicator, found != spares().end())) return {};
+    std::vector<double*> base = std::move(found->base);
+    spares().erase(found);
+    return base;
 }
 
 /// Each rank's memory as this rank reaches it; empty where some rank does not reach some other.
 std::vector<double*> mapped(Communicator const& communicator) {
     void* own = nullptr;
-    cudaIpcMemHandle_t handle{};
     check(cudaMalloc(&own, capacity * sizeof(double)), "find memory");
+    std::vector<double*> base;
+    for (void* const there : map_each_others(communicator, own)) base.push_back(static_cast<double*>(there));
+    if (base.empty()) cudaFree(own);
+    return base;
+}
+
+}  // namespace
+
+bool gpus_may_write_to_each_other(Communicator const& communicator) {
+    return communicator.size() > 1 && wanted(communicator) && agreed(communicator, apart_on_one_host(communicator));
+}
+
+std::vector<void*> map_each_others(Communicator const& communicator, void* own) {
+    cudaIpcMemHandle_t handle{};
     bool const shown = cudaIpcGetMemHandle(&handle, own) == cudaSuccess;
     std::vector<cudaIpcMemHandle_t> all(static_cast<std::size_t>(communicator.size()));
     communicator.all_gather(std::as_bytes(std::span(&handle, 1)), std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(handle)));
-    std::vector<double*> base;
+    std::vector<void*> base;
     bool opened = agreed(communicator, shown);
     for (std::size_t r = 0; opened && r < all.size(); ++r) {
         void* there = own;
         if (static_cast<int>(r) != communicator.rank())
             opened = cudaIpcOpenMemHandle(&there, all[r], cudaIpcMemLazyEnablePeerAccess) == cudaSuccess;
-        if (opened) base.push_back(static_cast<double*>(there));
+        if (opened) base.push_back(there);
     }
     cudaGetLastError();  // what a failure leaves behind would fail the next call
     if (agreed(communicator, opened)) return base;
-    for (double* const there : base)
-        if (there != own) cudaIpcCloseMemHandle(there);
+    unmap(base, communicator.rank());
     communicator.barrier();
-    cudaFree(own);
     return {};
 }
 
-}  // namespace
+void unmap(std::vector<void*> const& base, int own_rank) {
+    for (std::size_t r = 0; r < base.size(); ++r)
+        if (static_cast<int>(r) != own_rank) cudaIpcCloseMemHandle(base[r]);
+}
 
 std::shared_ptr<PeerMemory> PeerMemory::connect(Communicator const& communicator) {
-    if (communicator.size() == 1 || !wanted(communicator) || !agreed(communicator, apart_on_one_host(communicator))) return nullptr;
-    std::vector<double*> base;
-    auto const ranks = static_cast<std::size_t>(communicator.size());
-    if (agreed(communicator, !spare().empty() && spare().back().size() == ranks)) {
-        base = spare().back();
-        spare().pop_back();
-    } else {
-        base = mapped(communicator);
-    }
+    if (!gpus_may_write_to_each_other(communicator)) return nullptr;
+    std::vector<double*> base = take_spare(communicator);
+    if (base.empty()) base = mapped(communicator);
     if (base.empty()) return nullptr;
     // What was to happen in it has happened, on all ranks.
     check(cudaDeviceSynchronize(), "finish its work");
@@ -94,8 +132,9 @@ std::shared_ptr<PeerMemory> PeerMemory::connect(Communicator const& communicator
     return std::shared_ptr<PeerMemory>(new PeerMemory(communicator.rank(), base));
 }
 
-PeerMemory::PeerMemory(int rank, std::vector<double*> base) : rank_(rank), ranks_(static_cast<int>(base.size())), base_(std::move(base)) {}
-PeerMemory::~PeerMemory() { spare().push_back(base_); }
+PeerMemory::PeerMemory(int rank, std::vector<double*> base)
+    : rank_(rank), ranks_(static_cast<int>(base.size())), context_(context_number()), base_(std::move(base)) {}
+PeerMemory::~PeerMemory() { spares().push_back({context_, base_}); }
 
 PeerBoxes PeerMemory::boxes(int width) {
     PeerBoxes boxes;

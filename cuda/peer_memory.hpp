@@ -35,6 +35,13 @@ struct PeerBoxes {
     }
 };
 
+/// Whether GPUs may write to each other's memory: ranks of one host with a GPU each, and CATENA_GPU_EXCHANGE is not `host`. Collective.
+bool gpus_may_write_to_each_other(Communicator const&);
+/// `own`: what cudaMalloc gave on each rank. Each rank's memory as this rank reaches it, its own among them; empty on all ranks where some
+/// rank does not reach some other. Collective.
+std::vector<void*> map_each_others(Communicator const&, void* own);
+void unmap(std::vector<void*> const& base, int own_rank);
+
 /// Of a rank, as long as the object is there; what was mapped is kept for the next one, because memory that others have mapped is not to be
 /// freed.
 class PeerMemory {
@@ -55,7 +62,8 @@ class PeerMemory {
     PeerMemory(int rank, std::vector<double*> base);
 
     int rank_, ranks_;
-    std::vector<double*> base_;  // of each rank
+    unsigned long long context_;  // in which it is
+    std::vector<double*> base_;   // of each rank
     std::int64_t used_ = 0;
 };
 

@@ -71,6 +71,44 @@ struct DeviceParticles {
     static constexpr std::int64_t most = std::int64_t{0x7ffffffffffff000};  // of fixed-point numbers; what is none lies beyond
 };
 
+/// Where beads go that other ranks have as ghosts, and how far they may be from where they stood. All addresses are the GPU's.
+struct ShownBeads {
+    std::int32_t const *first = nullptr, *place = nullptr;  // bead k goes to places place[first[k]] to place[first[k + 1] - 1]
+    double* shown = nullptr;                                // x, y, z of each place
+    double const* listed = nullptr;                         // x, y, z of each bead when this was made; absent: it may go anywhere
+    double farthest_squared = 0;
+    /// Become 1 where a bead is farther away, and the index of one that is at no finite place.
+    std::int64_t *far = nullptr, *trouble = nullptr;
+    std::int64_t first_bead = 0;
+
+    /// The same for beads that follow others.
+    ShownBeads from(std::int64_t bead_index) const {
+        ShownBeads rest = *this;
+        rest.first += bead_index;
+        if (listed) rest.listed += 3 * bead_index;
+        rest.first_bead += bead_index;
+        return rest;
+    }
+    CATENA_HD void show(std::int64_t k, Vec3 const& x) const {
+        for (std::int32_t i = first[k]; i < first[k + 1]; ++i)
+            for (int c = 0; c < 3; ++c) shown[3 * static_cast<std::int64_t>(place[i]) + c] = x[c];
+        double away = 0;
+        for (int c = 0; c < 3; ++c) {
+            double const d = listed ? x[c] - listed[3 * k + c] : 0.0;
+            away += d * d;
+            if (!(std::fabs(x[c]) < DeviceParticles::far_away)) *trouble = first_bead + k;
+        }
+        if (listed && !(away < farthest_squared)) *far = 1;
+    }
+};
+
+/// Ghosts on their way from messages into OpenMM's arrays.
+struct ArrivedBeads {
+    DeviceParticles particles;  // whose beads are the ghosts
+    double const* position = nullptr;
+    CATENA_HD void operator()(std::int64_t k) const { particles.put(k, {{position[3 * k], position[3 * k + 1], position[3 * k + 2]}}); }
+};
+
 /// Beads of one group of chains, on a GPU.
 class DeviceBeads {
   public:
@@ -80,6 +118,8 @@ class DeviceBeads {
     virtual void* stream() const = 0;
     /// The particles are where the beads are, once the stream has come here.
     virtual void put_positions(DeviceParticles const&) = 0;
+    /// Other ranks' ghosts are where the beads are, once the stream has come here.
+    virtual void show(ShownBeads const&) = 0;
     /// Adds to the forces since set_simple_forces() what the particles feel when the stream comes to where forces are needed: before OpenMM
     /// computes again.
     virtual void add_forces(DeviceParticles const&) = 0;

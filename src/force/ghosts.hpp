@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dca/executor.hpp"
 #include "dca/linear.hpp"
 
 namespace catena {
@@ -14,6 +15,13 @@ namespace catena {
 /// What is near one of `points` is found from either side alike. Preconditions: radius > 0, positions finite.
 std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
                                    std::optional<Vec3> const& box);
+
+/// Both at once: those of `one` near some of `other`, and the other way round.
+struct NearEachOther {
+    std::vector<std::int64_t> one, other;
+};
+NearEachOther near_each_other(std::span<Vec3 const> one, std::span<Vec3 const> other, double radius, std::optional<Vec3> const& box,
+                              Executor const&);
 
 /// Beads that are not among `own` and lie within `radius` of one of these, ascending.
 std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,

@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <unordered_map>
 #include <unordered_set>
 #include <vector>
 
@@ -16,6 +15,8 @@
 namespace catena {
 
 using Cell = std::array<std::int64_t, 3>;
+
+inline bool is_same(Cell const& a, Cell const& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 
 struct CellHash {
     std::size_t operator()(Cell const& c) const {
@@ -26,8 +27,6 @@ struct CellHash {
 };
 
 using CellSet = std::unordered_set<Cell, CellHash>;
-/// Indices of points, by their cells.
-using CellMap = std::unordered_map<Cell, std::vector<std::int64_t>, CellHash>;
 
 class Grid {
   public:
@@ -77,17 +76,18 @@ class Grid {
     double squared_distance(Vec3 const& a, Vec3 const& b) const {
         Vec3 d = a - b;
         if (box_)
-            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::round(d[i] / (*box_)[i]);
+            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] / (*box_)[i]);
         return dot(d, d);
     }
 
-  private:
+    /// A cell's place along an axis, around the box where there is one.
     std::int64_t wrapped(std::int64_t c, int axis) const {
         if (count_[axis] == 0) return c;
         std::int64_t const r = c % count_[axis];
         return r < 0 ? r + count_[axis] : r;
     }
 
+  private:
     std::optional<Vec3> box_;
     Vec3 edge_{};
     Cell count_{};

@@ -1,11 +1,22 @@
 #include "force/openmm_context.hpp"
 
+#include <openmm/internal/ContextImpl.h>
+
 #include <cmath>
 #include <utility>
 
 #include "force/openmm_subset.hpp"
 
 namespace catena {
+namespace {
+
+/// Every force may look into its Context; this one does nothing else.
+struct Key : OpenMM::Force {
+    OpenMM::ContextImpl& open(OpenMM::Context& context) const { return getContextImpl(context); }
+    OpenMM::ForceImpl* createImpl() const override { return nullptr; }
+};
+
+}  // namespace
 
 Placement placement_for(OpenMM::System const& system) {
     bool images = system.usesPeriodicBoundaryConditions();
@@ -20,12 +31,13 @@ Placement placement_for(OpenMM::System const& system) {
     return images ? Placement::wrapped : Placement::shifted;
 }
 
-ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box)
-    : box_(box),
-      placement_(placement_for(*system)),
-      system_(std::move(system)),
-      context_(std::make_unique<OpenMM::Context>(*system_, integrator_, *platform.platform, platform.properties)),
-      positions_(static_cast<std::size_t>(system_->getNumParticles())) {}
+ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box,
+                           ForceContext* home)
+    : box_(box), placement_(placement_for(*system)), system_(std::move(system)) {
+    context_.reset(home ? Key().open(home->context()).createLinkedContext(*system_, integrator_)
+                        : new OpenMM::Context(*system_, integrator_, *platform.platform, platform.properties));
+    positions_.resize(static_cast<std::size_t>(system_->getNumParticles()));
+}
 
 void ForceContext::set_positions(std::span<Vec3 const> positions, std::size_t centred) {
     Vec3 origin = Vec3::zero();

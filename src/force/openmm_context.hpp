@@ -26,8 +26,10 @@ Placement placement_for(OpenMM::System const&);
 
 class ForceContext {
   public:
-    /// Throws what OpenMM throws if it refuses the forces.
-    ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box);
+    /// `home`: another one, which outlives it, in whose GPU context it is to be made; none: in one of its own. Throws what OpenMM throws
+    /// if it refuses the forces.
+    ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box,
+                 ForceContext* home = nullptr);
 
     std::int64_t size() const { return std::ssize(positions_); }
 

@@ -25,8 +25,9 @@ std::string join(std::vector<std::string> const& words) { return fmt::format("{}
 
 class OpenMmForces final : public OpenMmForce {
   public:
-    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, ChainsOnDevice const& chains,
-                 OpenMmModel model);
+    /// `why_no_device`: the same on every rank.
+    OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model,
+                 OpenMmPlatform platform, std::string const& why_no_device);
 
     void begin(ConstView<3> positions) override;
     void finish(View<3> forces) override;
@@ -57,9 +58,8 @@ class OpenMmForces final : public OpenMmForce {
     OpenMmModel model_;
     OpenMmPlatform platform_;
     std::optional<Vec3> box_;  // where the forces are periodic
-    std::vector<std::int64_t> by_rank_;
-    std::unique_ptr<RankForces> rank_;
     PathChoice path_;
+    std::unique_ptr<RankForces> rank_;
     std::unique_ptr<DevicePath> device_;
     std::vector<Vec3> own_, forces_;
     bool under_way_ = false, evaluated_ = false;
@@ -84,46 +84,36 @@ std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
 }
 
 /// Why positions and forces cannot stay on a GPU; empty where they can.
-std::string why_no_device(OpenMmSpec const& spec, OpenMmPlatform const& platform, Communicator const& communicator,
-                          ChainsOnDevice const& chains) {
+std::string cannot_stay_on_device(OpenMmSpec const& spec, OpenMmPlatform const& platform, Communicator const& communicator,
+                                  ChainsOnDevice const& chains) {
     if (!chains.why_not.empty()) return chains.why_not;
     if (platform.name() != "CUDA") return fmt::format("OpenMM's platform is {}", platform.name());
-    if (communicator.size() > 1) return "several ranks, whose beads feel each other";
+    if (communicator.size() > 1 && spec.replicate) return "forces.openmm.replicate: every rank computes the whole System";
     if (spec.device >= 0 && spec.device != chains.device)
         return fmt::format("forces.openmm.device is {} and the chains are on GPU {}", spec.device, chains.device);
     return cuda::why_no_device_path();
 }
 
-OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, ChainsOnDevice const& chains,
-                           OpenMmModel model)
+OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model,
+                           OpenMmPlatform platform, std::string const& why_no_device)
     : communicator_(communicator),
       first_of_rank_(beads.first_of_rank),
       replicate_(spec.replicate),
       overlap_(spec.overlap),
       model_(std::move(model)),
-      platform_(choose_platform(spec, beads, communicator, chains.device)),
+      platform_(std::move(platform)),
       box_(box_of(model_, beads)),
-      by_rank_(beads.by_rank),
+      path_(spec.path, platform_.on_cpu() && spec.overlap, why_no_device, beads.scene_file),
       rank_(make_rank_forces(spec, beads)),
-      path_(spec.path, platform_.on_cpu() && spec.overlap, why_no_device(spec, platform_, communicator, chains), beads.scene_file),
       own_(static_cast<std::size_t>(own_count())),
       forces_(own_.size()) {
-    ForceContext* const whole = rank_->whole_context();
-    if (!path_.on_device() || whole == nullptr) return;
-    DevicePathPlan plan;
-    std::vector<int> particle_of_bead(model_.bead_of_particle.size());
-    for (std::size_t p = 0; p < particle_of_bead.size(); ++p)
-        particle_of_bead[static_cast<std::size_t>(model_.bead_of_particle[p])] = static_cast<int>(p);
-    for (std::int64_t const bead : beads.beads_of(0)) plan.particle.push_back(particle_of_bead[static_cast<std::size_t>(bead)]);
-    if (whole->placement() == Placement::wrapped) plan.box = box_;
-    plan.shifted = whole->placement() == Placement::shifted;
-    plan.overlap = spec.overlap;
-    device_ = cuda::make_device_path(whole->context(), std::move(plan));
+    if (path_.on_device()) device_ = rank_->device_path(spec.overlap);
 }
 
 std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const {
     RankPlan const plan{model_, platform_, beads, communicator_, box_, spec.audit};
-    return communicator_.size() == 1 || spec.replicate ? make_whole_forces(plan) : make_split_forces(plan);
+    if (communicator_.size() == 1 || spec.replicate) return make_whole_forces(plan);
+    return path_.on_device() ? make_halo_forces(plan) : make_split_forces(plan);
 }
 
 void OpenMmForces::evaluate() noexcept {
@@ -179,12 +169,13 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     std::vector<double> values(model_.terms.size());
     std::string failure;
     try {
-        if (ForceContext* const context = rank_->every_bead())
+        if (ForceContext* const context = rank_->every_bead(device_.get()))
             for (std::size_t i = 0; i < values.size(); ++i) values[i] = context->energy(static_cast<int>(i));
     } catch (std::exception const& e) {
         if (communicator_.rank() != 0) throw;
         failure = e.what();
     }
+    if (device_) device_->make_current();  // whatever OpenMM has left
     char failed = failure.empty() ? 0 : 1;
     communicator_.broadcast(std::as_writable_bytes(std::span(&failed, 1)));
     if (failed != 0)
@@ -196,12 +187,8 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
 }
 
 void OpenMmForces::forces_again(View<3> forces) {
-    auto const again = rank_->whole_context()->forces();
-    std::vector<Vec3> of_bead(again.size());
-    for (std::size_t p = 0; p < again.size(); ++p)
-        of_bead[static_cast<std::size_t>(model_.bead_of_particle[p])] = {{again[p][0], again[p][1], again[p][2]}};
-    for (std::int64_t k = 0; k < own_count(); ++k)
-        forces.store(k, of_bead[static_cast<std::size_t>(by_rank_.empty() ? k : by_rank_[static_cast<std::size_t>(k)])]);
+    std::vector<Vec3> const again = rank_->forces_again();
+    for (std::int64_t k = 0; k < own_count(); ++k) forces.store(k, again[static_cast<std::size_t>(k)]);
 }
 
 std::vector<std::string> OpenMmForces::description() const {
@@ -246,9 +233,37 @@ void refuse_what_cannot_be_split(OpenMmModel const& model, std::string const& wh
     }
 }
 
-std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
-                                  ChainsOnDevice const& chains) {
-    std::string const where = beads.scene_file + ": forces.openmm";
+/// What some ranks have to say, in the words of the first of them; empty where none has. Collective.
+std::string first_words(Communicator const& communicator, std::string const& own) {
+    std::int64_t const own_length = std::ssize(own);
+    std::vector<std::int64_t> lengths(static_cast<std::size_t>(communicator.size()));
+    communicator.all_gather(std::as_bytes(std::span(&own_length, 1)), std::as_writable_bytes(std::span(lengths)),
+                            std::vector<std::int64_t>(lengths.size(), sizeof(std::int64_t)));
+    std::int64_t const first = std::find_if(lengths.begin(), lengths.end(), [](std::int64_t n) { return n > 0; }) - lengths.begin();
+    if (first == std::ssize(lengths)) return "";
+    std::int64_t total = 0, begin = 0;
+    for (std::int64_t r = 0; r < std::ssize(lengths); ++r) {
+        total += lengths[r];
+        if (r < first) begin += lengths[r];
+    }
+    std::string all(static_cast<std::size_t>(total), ' ');
+    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), lengths);
+    return all.substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(lengths[first]));
+}
+
+/// Throws the first rank's InputError on every rank: Contexts are made on those with beads alone. Collective.
+template <class Action>
+void on_all(Communicator const& communicator, Action const& action) {
+    std::string error;
+    try {
+        action();
+    } catch (InputError const& e) {
+        error = e.what();
+    }
+    if (std::string const words = first_words(communicator, error); !words.empty()) throw InputError(words);
+}
+
+OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, std::string const& where) {
     if (beads.size() == 0)
         throw InputError("OpenMM has nothing to act on", where, "give the scene a chain of beads, or leave forces.openmm out");
     if (spec.builder != "calvados2" && !(spec.builder.empty() && !spec.system.empty()))
@@ -256,8 +271,14 @@ std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& bead
                          "take builder: calvados2, or system: and topology:");
     OpenMmModel model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
     if (communicator.size() > 1 && !spec.replicate) refuse_what_cannot_be_split(model, where, communicator.size());
+    return model;
+}
+
+/// What `action` makes; what OpenMM throws becomes an InputError.
+template <class Action>
+auto accepted(std::string const& where, Action const& action) {
     try {
-        return std::make_unique<OpenMmForces>(spec, beads, communicator, chains, std::move(model));
+        return action();
     } catch (InputError const&) {
         throw;
     } catch (std::bad_alloc const&) {
@@ -267,36 +288,24 @@ std::unique_ptr<OpenMmForce> make(OpenMmSpec const& spec, BeadSystem const& bead
     }
 }
 
-/// Throws the first rank's InputError on every rank: Contexts are made on those with beads alone.
-void agree(Communicator const& communicator, std::string const& own) {
-    std::int64_t const own_length = std::ssize(own);
-    std::vector<std::int64_t> lengths(static_cast<std::size_t>(communicator.size()));
-    communicator.all_gather(std::as_bytes(std::span(&own_length, 1)), std::as_writable_bytes(std::span(lengths)),
-                            std::vector<std::int64_t>(lengths.size(), sizeof(std::int64_t)));
-    std::int64_t const failed = std::find_if(lengths.begin(), lengths.end(), [](std::int64_t n) { return n > 0; }) - lengths.begin();
-    if (failed == std::ssize(lengths)) return;
-    std::int64_t total = 0, begin = 0;
-    for (std::int64_t r = 0; r < std::ssize(lengths); ++r) {
-        total += lengths[r];
-        if (r < failed) begin += lengths[r];
-    }
-    std::string all(static_cast<std::size_t>(total), ' ');
-    communicator.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), lengths);
-    throw InputError(all.substr(begin, lengths[failed]));
-}
-
 }  // namespace
 
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
                                                ChainsOnDevice const& chains) {
+    std::string const where = beads.scene_file + ": forces.openmm";
+    OpenMmModel model;
+    OpenMmPlatform platform;
+    on_all(communicator, [&] {
+        model = model_of(spec, beads, communicator, where);
+        platform = accepted(where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
+    });
+    std::string const why_no_device = first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));
     std::unique_ptr<OpenMmForce> force;
-    std::string error;
-    try {
-        force = make(spec, beads, communicator, chains);
-    } catch (InputError const& e) {
-        error = e.what();
-    }
-    agree(communicator, error);
+    on_all(communicator, [&] {
+        force = accepted(where, [&]() -> std::unique_ptr<OpenMmForce> {
+            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model), std::move(platform), why_no_device);
+        });
+    });
     return force;
 }
 

@@ -61,7 +61,7 @@ class OpenMmForce {
     /// Starts the computation of the forces at `positions` (own beads in the order of BeadSystem::by_rank, nm, W, unwrapped). Collective.
     /// Returns at once on path `host`.
     virtual void begin(ConstView<3> positions) = 0;
-    /// The path on which positions and forces stay on the GPU: begun, marked and finished there, with all beads in the order of
+    /// The path on which positions and forces stay on the GPU: begun, gone on with and finished there, with all beads in the order of
     /// BeadSystem::by_rank. nullptr: it is another path.
     virtual DevicePath* device_path() = 0;
     /// Path `device`: computes the forces at the positions given last once more, for the host.

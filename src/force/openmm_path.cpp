@@ -27,9 +27,8 @@ PathChoice::PathChoice(std::string const& asked, bool may_compare, std::string c
       why_no_device_(why_no_device) {
     std::string const where = scene_file + ": forces.openmm.path";
     if (asked == "device" && !device_)
-        throw InputError(
-            fmt::format("positions and forces cannot stay on a GPU: {}", why_no_device), where,
-            "take auto, or one rank, chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
+        throw InputError(fmt::format("positions and forces cannot stay on a GPU: {}", why_no_device), where,
+                         "take auto, or chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
     if (asked != "auto" && asked != "device" && asked != "host" && asked != "inline")
         throw InputError(fmt::format("OpenMM's forces have no path \"{}\"", asked), where, "take auto, device, host or inline");
 }

@@ -9,7 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "force/ghost_exchange.hpp"
+#include "force/device_path.hpp"
+#include "force/ghost_traffic.hpp"
 #include "force/openmm_context.hpp"
 #include "force/openmm_model.hpp"
 #include "mpi/communicator.hpp"
@@ -25,11 +26,13 @@ class RankForces {
     /// Forces on own beads at the positions gathered last, on any thread: it sends no messages. Throws ComputationError and what OpenMM
     /// throws.
     virtual void evaluate(std::span<Vec3> own_forces) = 0;
-    /// A Context of every bead at the positions gathered last on rank 0, nullptr on others: for energies. Collective, but that rank 0 may
-    /// throw what OpenMM throws.
-    virtual ForceContext* every_bead() = 0;
-    /// The Context with every particle of the model in its order; nullptr if this rank has none.
-    virtual ForceContext* whole_context() { return nullptr; }
+    /// A Context of every bead at the positions gathered last, or where `device` has them, on rank 0, nullptr on others: for energies.
+    /// Collective, but that rank 0 may throw what OpenMM throws.
+    virtual ForceContext* every_bead(DevicePath* device) = 0;
+    /// The path on which positions and forces stay on the GPU, in the place of gather() and evaluate(). Precondition: they are made for it.
+    virtual std::unique_ptr<DevicePath> device_path(bool /*overlap*/) { return nullptr; }
+    /// Forces on own beads at the positions that the path had last.
+    virtual std::vector<Vec3> forces_again() { return {}; }
 
     /// Lists of ghosts are made anew by the next gather(), here as on every other rank.
     virtual void renew_ghosts() {}
@@ -56,11 +59,14 @@ struct RankPlan {
     bool audit = false;       // compares the ghosts with a search among all beads at every evaluation
 };
 
-/// A Context with every bead on each rank: one rank, or `replicate`. Throws what OpenMM throws if it refuses the forces.
+/// A Context with every bead on each rank: one rank, or `replicate`; for the GPU one rank alone. Throws what OpenMM throws if it refuses
+/// the forces.
 std::unique_ptr<RankForces> make_whole_forces(RankPlan const&);
 /// One with the rank's own beads and their ghosts: every bead within reach + skin, and the partners of own ones in bonded terms. Throws
 /// what OpenMM throws if it refuses the forces. Precondition: every force can be split.
 std::unique_ptr<RankForces> make_split_forces(RankPlan const&);
+/// The same for the path on which positions and forces stay on the GPU.
+std::unique_ptr<RankForces> make_halo_forces(RankPlan const&);
 
 /// Throws ComputationError where one of `vectors` is not finite. `bead`: which each belongs to. `what`: "the position".
 void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> bead, char const* what);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <set>
 #include <string>
 
@@ -251,6 +252,26 @@ bool can_exchange_particles(System const& system) {
             return false;
     }
     return true;
+}
+
+std::vector<int> kinds_of_particles(System const& system) {
+    std::map<std::vector<double>, int> kinds;
+    std::vector<int> kind_of_particle;
+    for (int p = 0; p < system.getNumParticles(); ++p) {
+        std::vector<double> all, of_force(3);
+        for (int i = 0; i < system.getNumForces(); ++i) {
+            if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i)))
+                pairs->getParticleParameters(p, of_force);
+            else if (auto const* charges = dynamic_cast<NonbondedForce const*>(&system.getForce(i)))
+                charges->getParticleParameters(p, of_force[0], of_force[1], of_force[2]);
+            else
+                continue;
+            all.insert(all.end(), of_force.begin(), of_force.end());
+            of_force.resize(3);
+        }
+        kind_of_particle.push_back(kinds.try_emplace(std::move(all), static_cast<int>(kinds.size())).first->second);
+    }
+    return kind_of_particle;
 }
 
 std::unique_ptr<System> system_of(Subset const& subset, System const& whole) {

@@ -28,6 +28,9 @@ struct Subset {
 /// Whether particles of a Subset's System can be exchanged: parameters can, members of interaction groups and of offsets cannot.
 bool can_exchange_particles(OpenMM::System const&);
 
+/// A number for each particle: those of one number have the same parameters in all nonbonded forces.
+std::vector<int> kinds_of_particles(OpenMM::System const&);
+
 /// The System of the subset's particles, in this order: bonded terms that touch own ones, and all pairs, but that exchangeable particles
 /// have no exclusions. Force groups and names stay. Precondition: what shares a bonded term with own particles is among the fixed ones, as
 /// is, where some are exchangeable, what shares an exclusion.

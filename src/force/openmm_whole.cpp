@@ -43,13 +43,27 @@ class WholeForces final : public RankForces {
         for (std::size_t k = 0; k < own_forces.size(); ++k) own_forces[k] = all[particle_[first_ + k]];
     }
 
-    ForceContext* every_bead() override {
+    ForceContext* every_bead(DevicePath*) override {
         if (communicator_.rank() != 0) return nullptr;
         if (!context_) make_context();
         if (!positions_.empty()) context_->set_positions(positions_, positions_.size());  // else they are on a GPU
         return context_.get();
     }
-    ForceContext* whole_context() override { return context_.get(); }
+    std::unique_ptr<DevicePath> device_path(bool overlap) override {
+        DevicePathPlan plan;
+        plan.particle.assign(particle_.begin(), particle_.end());
+        for (std::int64_t const particle : particle_) plan.bead.push_back(model_.bead_of_particle[particle]);
+        if (context_->placement() == Placement::wrapped) plan.box = box_;
+        plan.shifted = context_->placement() == Placement::shifted;
+        plan.overlap = overlap;
+        return cuda::make_device_path(context_->context(), std::move(plan));
+    }
+    std::vector<Vec3> forces_again() override {
+        std::vector<Vec3> own_forces;
+        auto const all = context_->forces();
+        for (std::int64_t const particle : particle_) own_forces.push_back({{all[particle][0], all[particle][1], all[particle][2]}});
+        return own_forces;
+    }
     std::int64_t largest_context() const override { return context_ ? context_->size() : 0; }
     std::int64_t contexts() const override { return context_ ? 1 : 0; }
 

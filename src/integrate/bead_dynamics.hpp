@@ -106,6 +106,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         space_.for_each(group_.size,
                         [particles, x = ConstView<3>(position_.view())] CATENA_LAMBDA(std::int64_t k) { particles.put(k, x.load(k)); });
     }
+    void show(ShownBeads const& shown) override {
+        space_.for_each(group_.size,
+                        [shown, x = ConstView<3>(position_.view())] CATENA_LAMBDA(std::int64_t k) { shown.show(k, x.load(k)); });
+    }
     void add_forces(DeviceParticles const& particles) override { forces_.particles = particles; }
     ConstView<3> host_positions() override { return bead_positions(); }
 

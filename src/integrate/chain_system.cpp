@@ -145,7 +145,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     for (auto const& group : absolute_) group->assemble_matrices();
     for (auto const& group : joint_) group->assemble_matrices();
     if (on_device())
-        openmm_->device_path()->mark(device_beads_);
+        go_on_openmm();
     else if (openmm_ || timeline)
         wait();  // so that the clock sees the sweep; the forces are waited for anyway
     double const assembled = seconds_now();
@@ -162,6 +162,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
         DevicePath::Clock const clock = read_device_clock();
         note("matrix sweep", "catena", clock.chains.begin, clock.chains.end);
         note("forces", "openmm", clock.openmm.begin, clock.openmm.end);
+        if (communicator_.size() > 1) note("exchange of positions", "messages", clock.exchange.begin, clock.exchange.end);
         return;
     }
     note("matrix sweep", "catena", begun, assembled);

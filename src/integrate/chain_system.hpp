@@ -164,6 +164,7 @@ class ChainSystem {
     ConstView<3> own_bead_positions();
     bool on_device() const { return !device_beads_.empty(); }
     void begin_openmm(bool timed);
+    void go_on_openmm();
     DevicePath::Clock read_device_clock();
     void finish_openmm();
     void note_overlap(double start, double begun, double assembled, double waits, double finished);

@@ -147,8 +147,16 @@ void ChainSystem::begin_openmm(bool timed) {
     if (clock_is_due_) read_device_clock();
     ++evaluations_since_clock_;
     clock_is_due_ = timed || !timed_before_ || evaluations_since_clock_ >= evaluations_a_clock;
+    Traffic const before = communicator_.traffic();
     openmm_->device_path()->begin(device_beads_, clock_is_due_);
+    openmm_traffic_ += communicator_.traffic() - before;
     timed_before_ = true;
+}
+
+void ChainSystem::go_on_openmm() {
+    Traffic const before = communicator_.traffic();
+    openmm_->device_path()->go_on(device_beads_);
+    openmm_traffic_ += communicator_.traffic() - before;
 }
 
 DevicePath::Clock ChainSystem::read_device_clock() {
@@ -157,8 +165,11 @@ DevicePath::Clock ChainSystem::read_device_clock() {
     DevicePath::Clock const clock = openmm_->device_path()->clock();
     auto const length = [weight](double begin, double end) { return weight * std::max(0.0, end - begin); };
     double const matrices = length(clock.chains.begin, clock.chains.end);
+    bool const exchanges = communicator_.size() > 1;  // ghosts come, then OpenMM computes: the sweep runs beside both
+    double const begin = exchanges ? clock.exchange.begin : clock.openmm.begin;
     matrix_seconds_ += matrices;
-    hidden_seconds_ += length(std::max(clock.chains.begin, clock.openmm.begin), std::min(clock.chains.end, clock.openmm.end));
+    hidden_seconds_ += length(std::max(clock.chains.begin, begin), std::min(clock.chains.end, clock.openmm.end));
+    if (exchanges) seconds_["exchange"] += length(clock.exchange.begin, clock.exchange.end);
     seconds_["matrix sweep"] += matrices;
     seconds_["forces"] += length(clock.openmm.begin, clock.openmm.end);
     seconds_["waiting for forces"] += length(clock.chains.end, clock.openmm.end);

@@ -30,6 +30,8 @@ json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, s
         own.push_back(system.beads().first_of_rank[rank + 1] - system.beads().first_of_rank[rank]);
     return {{"evaluations", traffic.updates},
             {"rebuilds", traffic.rebuilds},
+            {"direct", traffic.direct},
+            {"seconds_of_lists", system.communicator().max(traffic.seconds_of_lists)},
             {"own_beads", own},
             {"ghosts", of_ranks(communicator, traffic.ghosts)},
             {"most_ghosts", of_ranks(communicator, traffic.most_ghosts)},

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "force/bead_tables.hpp"
+
 namespace catena::testing {
 namespace {
 
@@ -79,6 +81,48 @@ TEST(DeviceBeads, TroubleNamesTheBead) {
     DeviceParticles second = a.single().from(1);
     second.put(0, {{0, -std::numeric_limits<double>::infinity(), 0}});
     EXPECT_EQ(a.trouble, 1);
+}
+
+/// Bead 0 goes to places 1 and 3, bead 2 to place 0.
+TEST(DeviceBeads, ThoseThatOthersHaveAreShown) {
+    std::vector<std::int64_t> const sent{2, 0, 1, 0};
+    ShownTable const table = shown_table(sent, 3);
+    EXPECT_EQ(table.first, (std::vector<std::int32_t>{0, 2, 3, 4}));
+    EXPECT_EQ(table.place, (std::vector<std::int32_t>{1, 3, 2, 0}));
+    std::vector<Vec3> out(4, Vec3::zero());
+    std::vector<Vec3> const listed{{{0, 0, 0}}, {{1, 0, 0}}, {{2, 0, 0}}};
+    std::int64_t far = 0, trouble = -1;
+    ShownBeads shown;
+    shown.first = table.first.data();
+    shown.place = table.place.data();
+    shown.shown = out.front().data;
+    shown.listed = listed.front().data;
+    shown.farthest_squared = 0.25;
+    shown.far = &far;
+    shown.trouble = &trouble;
+    shown.show(0, {{0.1, 0.2, 0.3}});
+    shown.from(2).show(0, {{2, 0.4, -0.2}});
+    for (std::size_t i : {1, 3}) EXPECT_EQ(out[i][2], 0.3);
+    EXPECT_EQ(out[0][1], 0.4);
+    EXPECT_EQ(out[2][0], 0);  // bead 1 was not asked
+    EXPECT_EQ(far, 0);
+    shown.from(1).show(0, {{1, 0.3, -0.4}});
+    EXPECT_EQ(far, 1);  // half a nanometre, to the bit
+    EXPECT_EQ(trouble, -1);
+    far = 0;
+    shown.show(2, {{2, std::numeric_limits<double>::quiet_NaN(), 0}});
+    EXPECT_EQ(trouble, 2);
+    shown.listed = nullptr;
+    far = 0;
+    shown.show(1, {{1e9, 0, 0}});
+    EXPECT_EQ(far, 0);
+}
+
+TEST(DeviceBeads, ABeadsCellIsTheBoxesThatItIsAway) {
+    EXPECT_EQ(bead_at(7, {{-0.1, 5, 21}}, Vec3{{10, 10, 10}}).cell[0], -1);
+    EXPECT_EQ(bead_at(7, {{-0.1, 5, 21}}, Vec3{{10, 10, 10}}).cell[2], 2);
+    EXPECT_EQ(bead_at(7, {{-0.1, 5, 21}}, std::nullopt).cell[2], 0);
+    EXPECT_EQ(bead_at(7, {{-0.1, 5, 21}}, std::nullopt).place, 7);
 }
 
 }  // namespace

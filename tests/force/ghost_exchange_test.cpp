@@ -59,7 +59,7 @@ struct Beads {
     }
 
     int rank;
-    GhostExchange::Plan plan;
+    GhostLists::Plan plan;
     std::mt19937_64 random;
     std::vector<Vec3> positions;
 };

@@ -67,6 +67,24 @@ TEST(Ghosts, AreFoundFromEitherSideAlike) {
                           near_any({&there[i], 1}, {&here[k], 1}, 2.0, box).size());
 }
 
+/// Of two clouds that touch, on any number of threads.
+TEST(Ghosts, OfEachOtherAreThoseOfEither) {
+    auto const here = scattered(3000, 12, 6);
+    auto there = scattered(2000, 12, 7);
+    for (Vec3& x : there) x[0] += 24;
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{55, 25, 25}}}}) {
+        auto const one = near_any(here, there, 3.0, box), other = near_any(there, here, 3.0, box);
+        EXPECT_GT(one.size(), 50U);
+        EXPECT_LT(one.size(), 2000U);
+        for (int const threads : {1, 2, 5}) {
+            auto const executor = openmp_is_built() ? openmp_executor(threads) : serial_executor();
+            NearEachOther const both = near_each_other(here, there, 3.0, box, *executor);
+            EXPECT_EQ(both.one, one);
+            EXPECT_EQ(both.other, other);
+        }
+    }
+}
+
 TEST(Ghosts, DisplacementIsTheLargest) {
     auto const from = scattered(50, 1, 3);
     auto to = from;

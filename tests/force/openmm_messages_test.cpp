@@ -48,9 +48,8 @@ TEST_F(Messages, Platform) {
     spec = on_reference();
     spec.path = "device";
     EXPECT_EQ(of(spec),
-              "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: forces.openmm.path): take auto, or one "
-              "rank, chains "
-              "of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
+              "positions and forces cannot stay on a GPU: the backend is not cuda (scene.yaml: forces.openmm.path): take auto, or "
+              "chains of beads, --backend cuda and forces.openmm.platform: CUDA on a machine with a GPU");
 }
 
 TEST_F(Messages, Builder) {

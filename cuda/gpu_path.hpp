@@ -1,0 +1,88 @@
+// Beads and OpenMM's particles on one GPU. What one rank and several do alike.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cuda/openmm_on_device.hpp"
+#include "cuda/owners.hpp"
+#include "force/bead_tables.hpp"
+#include "force/device_path.hpp"
+
+namespace catena::cuda {
+
+/// Of a Context that outlives it.
+std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context&);
+
+/// Ghosts that arrived go where they belong.
+void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
+
+class GpuPath : public DevicePath {
+  public:
+    /// `home`: a Context that outlives this; what the chains and this keep on the GPU is kept in its CUcontext.
+    GpuPath(OpenMM::Context& home, DevicePathPlan plan);
+    ~GpuPath() override;
+
+    bool make_current() noexcept override { return home_->make_current(); }
+    void finish(std::span<DeviceBeads* const> beads) override;
+    Clock clock() override;
+    std::vector<Vec3> positions() override;
+
+  protected:
+    /// OpenMM's own integrators leave their particles in one order as long.
+    static constexpr int evaluations_of_an_order = 250;
+
+    struct Flags {
+        std::int64_t trouble = -1, far = 0, of_ghosts = -1;
+    };
+    struct Events {
+        Event begun{Event::For::clock}, chains_begin{Event::For::clock}, chains_end{Event::For::clock}, openmm_begin{Event::For::clock},
+            openmm_end{Event::For::clock};
+        Event positions{Event::For::order}, forces{Event::For::order};
+    };
+
+    static cudaStream_t stream_of(DeviceBeads const& group) { return static_cast<cudaStream_t>(group.stream()); }
+    static double now();
+
+    /// The Context that computes; null: none.
+    void compute_with(std::unique_ptr<OpenMmOnDevice> openmm);
+    /// Of an evaluation: the clock goes from here on.
+    void start(std::span<DeviceBeads* const> beads, bool timed);
+    /// Own bead that is in trouble, by its number; -1: none. Forgets it.
+    std::int64_t take_trouble();
+    /// Gives OpenMM's particles a new order. `x`: of own beads, `others`: of the Context's other particles.
+    struct Others {
+        std::span<int const> particle;
+        std::span<Vec3 const> position;
+    };
+    void order(std::vector<Vec3> const& x, std::span<Others const> others);
+    DeviceBead bead_of(int particle, Vec3 const& x) const { return bead_at(place_[static_cast<std::size_t>(particle)], x, plan_.box); }
+    /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.
+    void put_own(std::span<DeviceBeads* const> beads);
+    void compute(std::span<DeviceBeads* const> beads);
+    template <class T>
+    void upload(Buffer<T> const& to, T const* from, std::size_t count) {
+        if (count > 0) check(cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice, stream_), "take OpenMM's order");
+    }
+
+    DevicePathPlan plan_;
+    std::unique_ptr<OpenMmOnDevice> home_, openmm_;
+    cudaStream_t stream_ = nullptr;  // OpenMM's
+    std::unique_ptr<PinnedBuffer<Flags>> flags_;
+    std::unique_ptr<Events> events_;
+    std::unique_ptr<Buffer<DeviceBead>> own_;
+    DeviceParticles particles_;
+    std::vector<std::int32_t> place_;  // of each particle
+    std::vector<DeviceBeads*> beads_;  // of the last evaluation
+    int of_this_order_ = 0;            // evaluations
+    bool timed_ = false;
+    double begun_ = 0;
+    Interval exchange_;
+};
+
+/// Of several ranks.
+std::unique_ptr<DevicePath> make_halo_path(OpenMM::Context& home, DevicePathPlan plan);
+
+}  // namespace catena::cuda

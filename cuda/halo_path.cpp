@@ -1,0 +1,211 @@
+// Beads and OpenMM's particles on the GPU of a rank among several. Beads that others have as ghosts are gathered on the GPU, are written
+// into the memory of theirs, or pass through pinned memory of the host and messages, and are put into OpenMM's arrays there. While they
+// travel, the chains' own work goes on.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "cuda/gpu_path.hpp"
+#include "cuda/peer_inboxes.hpp"
+#include "error.hpp"
+#include "force/halo.hpp"
+
+namespace catena::cuda {
+namespace {
+
+/// Memory that grows where more is needed.
+template <class Owner>
+class Room {
+  public:
+    Owner& of(std::size_t count) {
+        if (!owner_ || capacity_ < count) {
+            owner_.reset();
+            capacity_ = count + count / 8;
+            owner_ = std::make_unique<Owner>(capacity_);
+        }
+        return *owner_;
+    }
+    Owner& operator*() const { return *owner_; }
+
+  private:
+    std::unique_ptr<Owner> owner_;
+    std::size_t capacity_ = 0;
+};
+
+class HaloPath final : public GpuPath {
+  public:
+    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan)), halo_(*plan_.halo) {}
+    ~HaloPath() override { make_current(); }  // what it owns lives there
+
+    void begin(std::span<DeviceBeads* const> beads, bool timed) override {
+        start(beads, timed);
+        own_are_put_ = of_this_order_ > 0;
+        if (own_are_put_) put_own(beads);  // now: OpenMM is not to wait for what the streams are given next
+        if (has_lists_) show(beads);
+        if (!plan_.overlap) exchange_and_compute(beads);
+        if (timed) events_->chains_begin.record(stream_of(*beads.front()));
+    }
+    void go_on(std::span<DeviceBeads* const> beads) override {
+        if (timed_) events_->chains_end.record(stream_of(*beads.back()));
+        if (plan_.overlap) exchange_and_compute(beads);
+    }
+    void refuse_trouble() override { halo_.refuse_trouble(take_trouble()); }
+
+  private:
+    Halo::Lists const& lists() const { return halo_.lists(); }
+    std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
+    std::span<Vec3> in() const { return {(*in_).data(), lists().particle.size()}; }
+
+    /// What the streams do here comes after OpenMM's last forces, for which they waited, and so after the ghosts that these waited for:
+    /// the buffers of the messages before are free again.
+    void show(std::span<DeviceBeads* const> beads) {
+        cudaStream_t const last = stream_of(*beads.back());
+        std::int64_t next = 0;
+        for (DeviceBeads* group : beads) {
+            group->show(shown_.from(next));
+            events_->positions.record(stream_of(*group));
+            events_->positions.hold(last);
+            next += group->count();
+        }
+        if (inboxes_) {
+            inboxes_->turn();
+            inboxes_->send(lists().messages, shown_.shown, last);
+        } else if (!out().empty()) {
+            check(cudaMemcpyAsync(out().data(), shown_.shown, out().size_bytes(), cudaMemcpyDeviceToHost, last), "show its beads");
+        }
+        is_shown_.record(last);
+    }
+
+    void exchange_and_compute(std::span<DeviceBeads* const> beads) {
+        exchange_.begin = now();
+        if (has_lists_)
+            is_shown_.wait();
+        else
+            look_at_start();
+        bool const far = std::exchange(flags_->data()->far, 0) != 0;
+        if (halo_.are_used_up(far, take_trouble())) {
+            make_lists(beads);
+            show(beads);
+            is_shown_.wait();
+            if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived
+        }
+        if (inboxes_)
+            halo_.note_carried();
+        else
+            halo_.carry(out(), in());
+        if (inboxes_ && (halo_.is_audited() || of_this_order_ == 0 || !ghosts_are_placed_)) look_into_inbox();
+        if (halo_.is_audited()) halo_.audit(positions(), in());
+        exchange_.end = now();
+        if (of_this_order_ == 0) {
+            Others const others[] = {{lists().particle, in()}, {lists().idle, lists().aside}};
+            order(positions(), others);
+            own_are_put_ = ghosts_are_placed_ = false;
+        }
+        if (!own_are_put_) put_own(beads);
+        if (!std::exchange(ghosts_are_placed_, true)) place_ghosts();
+        put_ghosts();
+        compute(beads);
+    }
+
+    /// For the host.
+    void look_into_inbox() {
+        if (in().empty()) return;
+        check(cudaMemcpyAsync(in().data(), inboxes_->arrived(), in().size_bytes(), cudaMemcpyDeviceToHost, stream_), "take ghosts");
+        check(cudaStreamSynchronize(stream_), "take ghosts");
+    }
+
+    void look_at_start() {
+        std::vector<Vec3> const x = positions();
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (!std::isfinite(norm(x[i]))) flags_->data()->trouble = static_cast<std::int64_t>(i);
+    }
+
+    /// The Context may be another one afterwards.
+    void make_lists(std::span<DeviceBeads* const> beads) {
+        std::vector<Vec3> const x = positions();
+        for (DeviceBeads* group : beads) check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
+        compute_with(nullptr);
+        halo_.make_lists(x);
+        compute_with(on_device(halo_.context()));
+        if (!make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
+        if (!lists().keeps_particles) of_this_order_ = 0;
+        ghosts_are_placed_ = false;
+        has_lists_ = true;
+        list_sent(x);
+        if (!has_way_ && halo_.every_rank_has_beads()) inboxes_ = PeerInboxes::make(halo_.communicator());
+        has_way_ = true;
+        if (inboxes_ && !inboxes_->fit(lists().messages)) inboxes_.reset();
+        out_.of(lists().sent.size());
+        in_.of(lists().particle.size());
+    }
+
+    /// Of each own bead, the places where it is shown.
+    void list_sent(std::vector<Vec3> const& x) {
+        ShownTable const table = shown_table(lists().sent, x.size());
+        upload(first_.of(table.first.size()), table.first.data(), table.first.size());
+        upload(place_of_shown_.of(table.place.size()), table.place.data(), table.place.size());
+        upload(listed_.of(3 * x.size()), x.front().data, 3 * x.size());
+        check(cudaStreamSynchronize(stream_), "take lists");
+        shown_.first = (*first_).data();
+        shown_.place = (*place_of_shown_).data();
+        shown_.shown = show_.of(3 * lists().sent.size()).data();
+        shown_.listed = lists().farthest ? (*listed_).data() : nullptr;
+        double const farthest = lists().farthest.value_or(0);
+        shown_.farthest_squared = farthest * farthest;
+        shown_.far = &flags_->data()->far;
+        shown_.trouble = &flags_->data()->trouble;
+    }
+
+    /// Where ghosts go from now on, and who stands aside.
+    void place_ghosts() {
+        std::vector<DeviceBead> beads;
+        for (std::size_t i = 0; i < in().size(); ++i) beads.push_back(bead_of(lists().particle[i], in()[i]));
+        std::size_t const ghosts = beads.size(), all = ghosts + lists().idle.size();
+        for (std::size_t i = 0; i < lists().idle.size(); ++i) beads.push_back(bead_of(lists().idle[i], lists().aside[i]));
+        upload(ghost_.of(all), beads.data(), all);
+        arrived_.of(3 * all);
+        if (all > ghosts) {
+            check(cudaMemcpyAsync((*arrived_).data() + 3 * ghosts, lists().aside.data(), (all - ghosts) * sizeof(Vec3),
+                                  cudaMemcpyHostToDevice, stream_),
+                  "take lists");
+            put(static_cast<std::int64_t>(all - ghosts), ghosts_from(ghosts), stream_);
+        }
+        check(cudaStreamSynchronize(stream_), "take lists");
+    }
+
+    ArrivedBeads ghosts_from(std::size_t first) const {
+        ArrivedBeads arrived{particles_, (*arrived_).data() + 3 * first};
+        arrived.particles.bead = (*ghost_).data() + first;
+        arrived.particles.trouble = &flags_->data()->of_ghosts;  // their ranks tell
+        return arrived;
+    }
+
+    void put_ghosts() {
+        if (in().empty()) return;
+        ArrivedBeads arrived = ghosts_from(0);
+        if (inboxes_)
+            arrived.position = inboxes_->arrived();
+        else
+            check(cudaMemcpyAsync((*arrived_).data(), in().data(), in().size_bytes(), cudaMemcpyHostToDevice, stream_), "take ghosts");
+        put(static_cast<std::int64_t>(in().size()), arrived, stream_);
+    }
+
+    Halo& halo_;
+    bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
+    std::unique_ptr<PeerInboxes> inboxes_;  // null: positions pass through the host
+    ShownBeads shown_;
+    Event is_shown_{Event::For::order};
+    Room<Buffer<std::int32_t>> first_, place_of_shown_;
+    Room<Buffer<double>> listed_, show_, arrived_;
+    Room<Buffer<DeviceBead>> ghost_;
+    Room<PinnedBuffer<Vec3>> out_, in_;
+};
+
+}  // namespace
+
+std::unique_ptr<DevicePath> make_halo_path(OpenMM::Context& home, DevicePathPlan plan) {
+    return std::make_unique<HaloPath>(home, std::move(plan));
+}
+
+}  // namespace catena::cuda

@@ -1,0 +1,48 @@
+// Where positions of ghosts arrive on each rank's GPU, written there by the GPUs of the others: they do not pass through the host then.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "cuda/peer_memory.hpp"
+#include "dca/linear.hpp"
+#include "force/halo.hpp"
+
+namespace catena::cuda {
+
+/// Every rank has two inboxes, which are filled in turns: what arrived is read while the next positions come. Between two fillings of one
+/// of them every rank must have heard of every other that it has read it, which asking whether lists are used up does, in between.
+class PeerInboxes {
+  public:
+    /// Null on all ranks where GPUs do not reach each other. Collective.
+    static std::unique_ptr<PeerInboxes> make(Communicator const&);
+    ~PeerInboxes();
+    PeerInboxes(PeerInboxes const&) = delete;
+    PeerInboxes& operator=(PeerInboxes const&) = delete;
+
+    /// Room for the positions of these messages. False on all ranks where GPUs do not reach each other after all. Precondition: nobody
+    /// writes or reads. Collective.
+    bool fit(std::span<Halo::Message const> messages);
+    /// From now on the other one is filled and read. On every rank.
+    void turn() { turn_ = 1 - turn_; }
+    /// Sends `shown`, one message after the other, once the stream comes here.
+    void send(std::span<Halo::Message const> messages, double const* shown, cudaStream_t stream) const;
+    double const* arrived() const { return at(communicator_.rank(), 0); }
+
+  private:
+    explicit PeerInboxes(Communicator const& communicator) : communicator_(communicator) {}
+    bool map_anew(std::int64_t received);
+    /// Of a rank, that position in the inbox that is filled now.
+    double* at(int rank, std::int64_t position) const;
+
+    Communicator const& communicator_;
+    int turn_ = 0;
+    std::int64_t capacity_ = 0;  // positions in each inbox, on every rank alike
+    Buffer<double> own_;
+    std::vector<void*> base_;          // of each rank
+    std::vector<std::int64_t> first_;  // of this rank's positions in each rank's inbox
+};
+
+}  // namespace catena::cuda

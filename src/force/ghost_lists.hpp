@@ -1,0 +1,113 @@
+// The beads of other ranks that a rank's own ones feel, its ghosts: which they are, and what of them travels from rank to rank.
+//
+// The ghosts lie within reach + skin of an own bead when the lists are made, so that none is missed until some bead has moved half the
+// skin. Then every rank makes its lists anew, all at the same evaluation. Each tells the others which cells of space its beads are in,
+// sends those of its beads that are in or around another's cells, and gets that rank's: from the two sets both find the same pairs, so
+// that the sender knows what the receiver keeps. From then on only those positions travel, between the ranks concerned.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dca/executor.hpp"
+#include "dca/linear.hpp"
+#include "force/ghost_traffic.hpp"
+#include "force/grid.hpp"
+#include "mpi/communicator.hpp"
+
+namespace catena {
+
+class GhostLists {
+  public:
+    struct Plan {
+        std::vector<std::int64_t> first_of_rank, by_rank;  // who owns what: BeadSystem's
+        std::vector<std::int64_t> partners;                // beads that are ghosts wherever they are, ascending
+        double reach = 0, skin = 0;                        // reach 0: no other ghosts
+        std::optional<Vec3> box;
+    };
+    GhostLists(Communicator const&, Plan);
+
+    /// What a rank says of its own beads.
+    struct Moves {
+        bool far = false;        // one has moved half the skin since the lists were made
+        std::int64_t bead = -1;  // whose position is not finite; -1: none
+    };
+    /// Whether the lists are to be made anew, because beads of some rank have moved far or renew() was called. Collective. Throws
+    /// SharedError where a bead is in trouble; `trouble`: "the position of bead {} is not finite".
+    bool are_used_up(Moves const&, char const* trouble);
+    /// Throws the SharedError of are_used_up() where a bead of some rank is in trouble. Collective.
+    void refuse_trouble(std::int64_t bead, char const* trouble) const;
+    /// Makes them anew. `own`: this rank's beads in the order of `by_rank`. Collective.
+    void make(std::span<Vec3 const> own);
+    /// They are used up. On every rank or none.
+    void renew() { renew_ = true; }
+    bool is_due() const { return renew_; }
+    /// How far beads may move, nm; none matters where there are no ghosts but partners.
+    std::optional<double> farthest() const { return plan_.reach > 0 ? std::optional(plan_.skin / 2) : std::nullopt; }
+
+    /// Positions to and from a rank.
+    struct Neighbour {
+        int rank;
+        std::size_t sent, received;
+    };
+    std::vector<Neighbour> const& neighbours() const { return neighbours_; }
+    /// Of own beads, those whose positions are sent, rank after rank; a bead may be there more than once.
+    std::vector<std::int64_t> const& sent() const { return sent_; }
+    /// Of beads(), those whose positions are received, rank after rank: each once.
+    std::vector<std::int64_t> const& received() const { return received_; }
+    /// The positions' messages. Collective.
+    void carry(std::span<Vec3 const> sent, std::span<Vec3> received);
+    /// They went from GPU to GPU.
+    void note_carried();
+    /// Compares ghosts and their positions (of beads()) with a search among all beads. Collective; throws SharedError where one is missed
+    /// or stale.
+    void audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) const;
+
+    /// Number of this rank's bead k among all.
+    std::int64_t own_bead(std::int64_t k) const { return plan_.by_rank.empty() ? first() + k : plan_.by_rank[first() + k]; }
+    /// Partners, then the others; each ascending.
+    std::vector<std::int64_t> const& beads() const { return beads_; }
+    /// Places for `count` particles that must not be felt by own beads before the lists are made anew. Precondition: not every bead of
+    /// another rank is a ghost.
+    Vec3 aside(std::int64_t i, std::int64_t count) const;
+    GhostTraffic const& traffic() const { return traffic_; }
+
+  private:
+    struct Lists {
+        std::vector<std::int64_t> send, receive;  // beads
+    };
+    using ListsOfRank = std::map<int, Lists>;
+    struct Candidate {
+        std::int64_t bead;
+        Vec3 position;
+    };
+    std::int64_t first() const { return plan_.first_of_rank[communicator_.rank()]; }
+    std::int64_t own_count() const { return plan_.first_of_rank[communicator_.rank() + 1] - first(); }
+    int owner(std::int64_t bead) const;
+
+    std::vector<Vec3> all_positions(std::span<Vec3 const> own) const;
+    void share_partners();
+    void add_near(std::span<Vec3 const> own, ListsOfRank& lists);
+    std::map<int, std::vector<Candidate>> swap_candidates(std::map<int, std::vector<Candidate>> const& own);
+    void find_place_aside(Grid const&, CellSet const& felt, std::optional<Vec3> const& near_by);
+    void take(ListsOfRank lists);
+    void exchange(std::vector<Outgoing> const& out, std::vector<Incoming> const& in);
+
+    Communicator const& communicator_;
+    Plan plan_;
+    std::vector<std::int64_t> place_;     // of each bead in by_rank
+    std::unique_ptr<Executor> executor_;  // of searches
+    ListsOfRank partners_;                // those of each rank, and own beads that are one's
+    std::vector<Neighbour> neighbours_;
+    std::vector<std::int64_t> sent_, received_, beads_;
+    Vec3 aside_ = Vec3::zero(), edge_ = Vec3::zero();  // the first place aside where space has no end; of a cell
+    std::vector<Vec3> free_;                           // middles of cells aside, where it has
+    bool has_partners_ = false, renew_ = true;
+    GhostTraffic traffic_;
+};
+
+}  // namespace catena

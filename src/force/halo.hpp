@@ -1,0 +1,59 @@
+// Other ranks' beads around a rank's own: what the path on which positions and forces stay on the GPU asks of the ranks.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dca/linear.hpp"
+#include "mpi/communicator.hpp"
+
+namespace OpenMM {
+class Context;
+}
+
+namespace catena {
+
+class Halo {
+  public:
+    /// Positions to and from a rank.
+    struct Message {
+        int rank;
+        std::int64_t sent, received;
+    };
+    struct Lists {
+        std::vector<Message> messages;   // whose positions follow each other in `sent` and `particle`
+        std::vector<std::int64_t> sent;  // own beads whose positions are sent, in this order
+        std::vector<int> particle;       // of each position received, in the rank's Context
+        std::vector<int> idle;           // particles that stand for no bead, and their places, which nothing feels
+        std::vector<Vec3> aside;
+        std::optional<double> farthest;  // how far own beads may move until lists are made anew; any way where it is absent
+        bool keeps_particles = false;    // the Context and its particles' parameters are those of the lists before
+    };
+    virtual ~Halo() = default;
+
+    /// Whether the lists are to be made anew. `far`: an own bead is farther away than `farthest`; `bead`: number of one whose position or
+    /// force is not finite, -1: there is none. Collective. Throws SharedError where some rank has one.
+    virtual bool are_used_up(bool far, std::int64_t bead) = 0;
+    /// Throws SharedError where some rank has a bead whose position or force is not finite. Collective.
+    virtual void refuse_trouble(std::int64_t bead) const = 0;
+    /// Finds the lists at own beads' positions, nm, W. Collective.
+    virtual void make_lists(std::span<Vec3 const> own) = 0;
+    virtual Lists const& lists() const = 0;
+    /// That has a particle for each own bead and each ghost. Precondition: the rank has beads, and lists. Another one only after
+    /// make_lists(). The one before must not be in use then: release() is called before it goes.
+    virtual OpenMM::Context& context() = 0;
+    /// Sends and receives positions. Collective.
+    virtual void carry(std::span<Vec3 const> sent, std::span<Vec3> received) = 0;
+    /// They went from GPU to GPU, not by carry().
+    virtual void note_carried() = 0;
+    virtual Communicator const& communicator() const = 0;
+    virtual bool every_rank_has_beads() const = 0;
+    /// Whether audit() is to be called at every evaluation, on every rank or none: compares the ghosts with a search among all beads.
+    /// Collective; throws SharedError.
+    virtual bool is_audited() const = 0;
+    virtual void audit(std::span<Vec3 const> own, std::span<Vec3 const> received) const = 0;
+};
+
+}  // namespace catena

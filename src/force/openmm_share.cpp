@@ -1,0 +1,78 @@
+#include "force/openmm_share.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numeric>
+
+namespace catena {
+
+namespace {
+
+/// All beads but those, ascending.
+std::vector<std::int64_t> all_but(std::vector<std::int64_t> beads, std::int64_t count) {
+    std::sort(beads.begin(), beads.end());
+    std::vector<std::int64_t> all(static_cast<std::size_t>(count)), rest;
+    std::iota(all.begin(), all.end(), std::int64_t{0});
+    std::set_difference(all.begin(), all.end(), beads.begin(), beads.end(), std::back_inserter(rest));
+    return rest;
+}
+
+}  // namespace
+
+SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
+    : model_(plan.model),
+      platform_(plan.platform),
+      beads_(plan.beads),
+      communicator_(plan.communicator),
+      box_(plan.box),
+      own_(plan.beads.beads_of(plan.communicator.rank())),
+      particle_of_bead_(plan.model.bead_of_particle.size()),
+      reach_(reach_of(*plan.model.system)),
+      skin_(std::isfinite(reach_) ? skin_of_reach * reach_ : 0),
+      exchanges_(can_exchange_particles(*plan.model.system)) {
+    for (std::size_t p = 0; p < particle_of_bead_.size(); ++p) particle_of_bead_[model_.bead_of_particle[p]] = static_cast<int>(p);
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+        std::vector<std::int64_t> const of_rank = beads_.beads_of(rank);
+        bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
+        bead_at_.insert(bead_at_.end(), of_rank.begin(), of_rank.end());
+    }
+    if (own_.empty()) return;
+    if (!std::isfinite(reach_)) {
+        partners_ = all_but(own_, beads_.size());
+        return;
+    }
+    for (int const p : bonded_partners(*model_.system, particles_of(own_))) partners_.push_back(model_.bead_of_particle[p]);
+    std::sort(partners_.begin(), partners_.end());
+}
+
+GhostLists::Plan SplitShare::lists() const {
+    return {beads_.first_of_rank, beads_.by_rank, partners_, std::isfinite(reach_) ? reach_ : 0, skin_, box_};
+}
+
+std::vector<int> SplitShare::particles_of(std::span<std::int64_t const> beads) const {
+    std::vector<int> particles;
+    for (std::int64_t const bead : beads) particles.push_back(particle_of_bead_[bead]);
+    return particles;
+}
+
+Subset SplitShare::subset_of(std::span<std::int64_t const> ghosts) const {
+    Subset subset{particles_of(own_), static_cast<int>(own_.size()), 0};
+    auto const particles = particles_of(ghosts);
+    subset.particles.insert(subset.particles.end(), particles.begin(), particles.end());
+    subset.fixed = exchanges_ ? static_cast<int>(own_.size() + partners_.size()) : static_cast<int>(subset.particles.size());
+    return subset;
+}
+
+ForceContext* SplitShare::every_bead(std::span<Vec3 const> own, ForceContext* home) {
+    std::vector<Vec3> all(communicator_.rank() == 0 ? particle_of_bead_.size() : 0);
+    communicator_.gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)), bytes_of_rank_);
+    if (communicator_.rank() != 0) return nullptr;
+    if (!energies_) energies_ = context_of(model_.system, home);
+    std::vector<Vec3> of_particles(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i) of_particles[particle_of_bead_[bead_at_[i]]] = all[i];
+    energies_->set_positions(of_particles, of_particles.size());
+    return energies_.get();
+}
+
+}  // namespace catena

@@ -1,0 +1,56 @@
+// A rank's share of a System that is split: its own beads, and what acts on them from elsewhere. For files that see OpenMM's headers.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "force/ghost_lists.hpp"
+#include "force/openmm_context.hpp"
+#include "force/openmm_rank.hpp"
+#include "force/openmm_subset.hpp"
+
+namespace catena {
+
+class SplitShare {
+  public:
+    /// `skin_of_reach`: the ghosts' lists are wider by this part of the forces' reach.
+    SplitShare(RankPlan const& plan, double skin_of_reach);
+
+    std::vector<std::int64_t> const& own() const { return own_; }
+    /// Beads of other ranks that share a bonded term with own ones, ascending.
+    std::vector<std::int64_t> const& partners() const { return partners_; }
+    GhostLists::Plan lists() const;
+    OpenMM::System const& system() const { return *model_.system; }
+    double reach() const { return reach_; }
+    double skin() const { return skin_; }
+    /// Whether particles can be exchanged for others.
+    bool exchanges() const { return exchanges_; }
+
+    std::vector<int> particles_of(std::span<std::int64_t const> beads) const;
+    /// Own beads, partners, and others, which are exchangeable where particles are.
+    Subset subset_of(std::span<std::int64_t const> ghosts) const;
+    /// The Context of a subset; `home` as in ForceContext.
+    std::unique_ptr<ForceContext> context_of(std::shared_ptr<OpenMM::System const> system, ForceContext* home = nullptr) const {
+        return std::make_unique<ForceContext>(std::move(system), platform_, box_, home);
+    }
+    /// A Context of every bead on rank 0 with these positions, nullptr on others. Collective.
+    ForceContext* every_bead(std::span<Vec3 const> own, ForceContext* home = nullptr);
+    std::optional<Vec3> const& box() const { return box_; }
+
+  private:
+    OpenMmModel const& model_;
+    OpenMmPlatform const& platform_;
+    BeadSystem const& beads_;
+    Communicator const& communicator_;
+    std::optional<Vec3> box_;
+    std::vector<std::int64_t> own_;
+    std::vector<int> particle_of_bead_;
+    double reach_, skin_;
+    bool exchanges_;
+    std::vector<std::int64_t> partners_, bead_at_, bytes_of_rank_;  // bead_at_: beads of all ranks, one rank after the other
+    std::unique_ptr<ForceContext> energies_;                        // every bead, on rank 0
+};
+
+}  // namespace catena

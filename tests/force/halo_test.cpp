@@ -1,0 +1,234 @@
+// Lists, slots and tables of the path on which positions and forces stay on GPUs, with plain memory in the place of these: forces are
+// those of the replicated System, whatever order the particles are in and whenever lists were made.
+#include "force/openmm_halo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "force/bead_tables.hpp"
+#include "mpi/first_rank.hpp"
+#include "tests/force/beads.hpp"
+#include "tests/force/every_force.hpp"
+#include "tests/force/ranks.hpp"
+
+namespace catena::testing {
+namespace {
+
+/// What cuda/halo_path.cpp does, on the host.
+class PlainMemory {
+  public:
+    PlainMemory(Halo& halo, HaloForces& forces, std::size_t own, std::optional<Vec3> const& box)
+        : halo_(halo), forces_(forces), own_(own), box_(box) {}
+
+    std::vector<Vec3> evaluate(std::vector<Vec3> const& x) {
+        far_ = 0;
+        trouble_ = -1;
+        if (has_lists_) show(x);
+        if (halo_.are_used_up(far_ != 0, trouble_)) {
+            halo_.make_lists(x);
+            if (!halo_.lists().keeps_particles) ++contexts_;
+            take_lists(x);
+            show(x);
+        }
+        std::vector<Vec3> in(halo_.lists().particle.size());
+        halo_.carry(out_, in);
+        halo_.audit(x, in);
+        return own_ == 0 ? std::vector<Vec3>() : forces_at(x, in);
+    }
+    int contexts() const { return contexts_; }  // or exchanges of their particles
+
+  private:
+    void take_lists(std::vector<Vec3> const& x) {
+        table_ = shown_table(halo_.lists().sent, own_);
+        out_.assign(halo_.lists().sent.size(), Vec3::zero());
+        listed_ = x;
+        has_lists_ = true;
+    }
+    void show(std::vector<Vec3> const& x) {
+        ShownBeads shown;
+        shown.first = table_.first.data();
+        shown.place = table_.place.data();
+        shown.shown = out_.empty() ? nullptr : out_.front().data;
+        shown.listed = halo_.lists().farthest && !listed_.empty() ? listed_.front().data : nullptr;
+        shown.farthest_squared = std::pow(halo_.lists().farthest.value_or(0), 2);
+        shown.far = &far_;
+        shown.trouble = &trouble_;
+        std::size_t const half = own_ / 2;  // as if there were two groups of chains
+        for (std::size_t k = 0; k < half; ++k) shown.show(static_cast<std::int64_t>(k), x[k]);
+        for (std::size_t k = half; k < own_; ++k)
+            shown.from(static_cast<std::int64_t>(half)).show(static_cast<std::int64_t>(k - half), x[k]);
+    }
+    std::vector<Vec3> forces_at(std::vector<Vec3> const& x, std::vector<Vec3> const& in) {
+        Halo::Lists const& lists = halo_.lists();
+        ForceContext& context = *forces_.computing();
+        auto const particles = static_cast<std::size_t>(context.size());
+        std::vector<std::int32_t> place(particles);
+        std::iota(place.begin(), place.end(), 0);
+        std::shuffle(place.begin(), place.end(), std::mt19937_64(particles));
+        std::vector<double> position(4 * particles, NAN);
+        std::int64_t trouble = -1;
+        DeviceParticles to;
+        to.double_position = position.data();
+        to.trouble = &trouble;
+        if (box_) to.box = *box_;
+        auto const put = [&](std::vector<int> const& particle, std::vector<Vec3> const& at) {
+            std::vector<DeviceBead> beads;
+            for (std::size_t i = 0; i < particle.size(); ++i)
+                beads.push_back(bead_at(place[static_cast<std::size_t>(particle[i])], at[i], box_));
+            ArrivedBeads arrived{to, at.empty() ? nullptr : at.front().data};
+            arrived.particles.bead = beads.data();
+            for (std::size_t i = 0; i < particle.size(); ++i) arrived(static_cast<std::int64_t>(i));
+        };
+        std::vector<int> own(own_);
+        std::iota(own.begin(), own.end(), 0);
+        put(own, x);
+        put(lists.particle, in);
+        put(lists.idle, lists.aside);
+        EXPECT_EQ(own.size() + lists.particle.size() + lists.idle.size(), particles);
+        EXPECT_EQ(trouble, -1);
+        std::vector<Vec3> of_particle(particles);
+        for (std::size_t p = 0; p < particles; ++p)
+            for (int c = 0; c < 3; ++c) of_particle[p][c] = position[4 * static_cast<std::size_t>(place[p]) + static_cast<std::size_t>(c)];
+        context.set_positions(of_particle, own_);
+        return forces_.forces_again();
+    }
+
+    Halo& halo_;
+    HaloForces& forces_;
+    std::size_t own_;
+    std::optional<Vec3> box_;
+    bool has_lists_ = false;
+    int contexts_ = 0;
+    ShownTable table_;
+    std::vector<Vec3> out_, listed_;
+    std::int64_t far_ = 0, trouble_ = -1;
+};
+
+/// Sums of the same doubles in another order: relative to the largest force.
+double constexpr same = 1e-12;
+
+/// Chains side by side along a box or in the open that swing, and drift past each other.
+std::vector<Vec3> moved(BeadSystem const& beads, int step) {
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> pace(0.02, 0.06), phase(0, 6.28), drift(-0.05, 0.05);
+    std::vector<Vec3> x;
+    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
+        double const speed = drift(random);
+        for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k) {
+            double const along = static_cast<double>(k - beads.chain_offset[c]);
+            Vec3 at{{4.0 * static_cast<double>(c) + 0.8 * std::fmod(along, 5), 0.9 * std::floor(along / 5), 1.5}};
+            for (double& y : at.data) y += 0.15 * std::sin(pace(random) * step + phase(random));
+            at[0] += speed * step;
+            x.push_back(at);
+        }
+    }
+    return x;
+}
+
+struct Walk {
+    std::int64_t rebuilds = 0, changes = 0, contexts = 0, largest = 0;
+};
+
+Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Communicator const& communicator) {
+    BeadSystem const beads = split(all_beads, communicator.size());
+    std::int64_t const first = beads.first_of_rank[communicator.rank()];
+    OpenMmModel const model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
+    OpenMmPlatform const platform = choose_platform(spec, beads, communicator, -1);
+    std::optional<Vec3> const box = model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
+    HaloForces forces({model, platform, beads, communicator, box, true});
+    auto const own = static_cast<std::size_t>(beads.first_of_rank[communicator.rank() + 1] - first);
+    PlainMemory memory(forces, forces, own, placement_for(*model.system) == Placement::wrapped ? box : std::nullopt);
+    OpenMmSpec replicated = spec;
+    replicated.replicate = true;
+    auto const oracle = make_openmm_force(replicated, beads, communicator);
+    for (int step = 0; step <= steps; ++step) {
+        std::vector<Vec3> const x = moved(beads, step);
+        if (step % 7 == 3) forces.renew_ghosts();
+        auto const found = memory.evaluate({x.begin() + first, x.begin() + first + static_cast<std::ptrdiff_t>(own)});
+        if (step % 3 != 0) continue;
+        auto const expected = catena::testing::evaluate(*oracle, beads, communicator.rank(), x);
+        EXPECT_EQ(found.size(), expected.size());
+        EXPECT_LE(difference(found, expected), same * communicator.max(largest(expected)))
+            << "step " << step << " on " << communicator.size() << " ranks, from bead " << first;
+    }
+    return {forces.traffic().rebuilds, memory.contexts(), forces.contexts(), forces.largest_context()};
+}
+
+BeadSystem eight_chains(std::optional<Vec3> const& box) {
+    std::vector<std::string> sequences;
+    for (std::uint64_t c = 0; c < 8; ++c) sequences.push_back(random_sequence(25, c));
+    return proteins(sequences, 1, box);
+}
+
+TEST(Halo, ForcesAreThoseOfTheReplicatedSystem) {
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{40, 8.5, 8.2}}}})
+        on_ranks([&](Communicator const& communicator) {
+            Walk const w = walk(on_reference(), eight_chains(box), 120, communicator);
+            EXPECT_GT(w.rebuilds, 120 / 7);
+            EXPECT_LT(w.rebuilds, 60);
+            EXPECT_LE(w.contexts, 4);
+            if (communicator.size() > 1) {
+                EXPECT_LT(w.changes, w.rebuilds / 2 + 1);
+            }
+        });
+}
+
+TEST(Halo, EveryForce) {
+    BeadSystem const beads = proteins({random_sequence(40, 7), random_sequence(20, 8), random_sequence(30, 9)}, 1, Vec3{{34, 6, 6}});
+    OpenMmSpec spec = on_reference("");
+    spec.system = scratch_file("halo.xml", xml_of(*every_force(beads)));
+    on_ranks([&](Communicator const& communicator) { walk(spec, beads, 15, communicator); });
+}
+
+TEST(Halo, FewerBeadsThanRanks) {
+    on_ranks([&](Communicator const& communicator) { walk(on_reference(), proteins({"KD", "E"}), 15, communicator); });
+}
+
+TEST(Halo, ABeadInTroubleIsEverybodysMessage) {
+    BeadSystem const all_beads = proteins({random_sequence(30, 4)});
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(all_beads, communicator.size());
+        OpenMmSpec const spec = on_reference();
+        OpenMmModel const model = calvados2_model(spec, beads);
+        OpenMmPlatform const platform = choose_platform(spec, beads, communicator, -1);
+        HaloForces forces({model, platform, beads, communicator, std::nullopt, false});
+        bool const last = communicator.rank() + 1 == communicator.size();
+        std::string message;
+        try {
+            forces.are_used_up(false, last ? 28 : -1);
+        } catch (SharedError const& e) {
+            message = e.what();
+        }
+        EXPECT_EQ(message,
+                  "the position of bead 29, or OpenMM's force on it, is not finite: take a smaller step, or a start without overlaps");
+        EXPECT_THROW(forces.refuse_trouble(last ? 0 : -1), SharedError);
+        EXPECT_NO_THROW(forces.refuse_trouble(-1));
+    });
+}
+
+TEST(Slots, GhostsTakeThoseOfTheirKind) {
+    std::vector<int> const kind{0, 1, 0, 1, 2, 0};
+    GhostSlots slots(kind);
+    slots.make({0, 1, 4, 0, 0});
+    EXPECT_EQ(slots.size(), 5);
+    EXPECT_EQ(slots.idle().size(), 5U);
+    EXPECT_TRUE(slots.take(std::vector<std::int64_t>{0, 1, 4}));
+    EXPECT_EQ(slots.idle(), (std::vector<int>{3, 4}));
+    EXPECT_TRUE(slots.take(std::vector<std::int64_t>{0, 2, 3}));  // 3 in the place of 1
+    EXPECT_EQ(slots.slot(0), 0);
+    EXPECT_EQ(slots.slot(2), 3);
+    EXPECT_EQ(slots.slot(3), 1);
+    EXPECT_EQ(slots.idle(), (std::vector<int>{2, 4}));
+    EXPECT_FALSE(slots.take(std::vector<std::int64_t>{1, 3}));  // two of kind 1
+    EXPECT_EQ(slots.slot(3), 1);
+    EXPECT_TRUE(slots.take_of_any_kind(std::vector<std::int64_t>{1, 3}));
+    EXPECT_EQ(slots.slot(3), 1);
+    EXPECT_EQ(kind[static_cast<std::size_t>(slots.like(slots.slot(1)))], 1);
+    EXPECT_EQ(slots.idle().size(), 3U);
+    EXPECT_FALSE(slots.take_of_any_kind(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}));
+}
+
+}  // namespace
+}  // namespace catena::testing

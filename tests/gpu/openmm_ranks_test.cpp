@@ -1,0 +1,221 @@
+// OpenMM's forces on beads that stay on the GPUs of several ranks, which may share one, are those of the whole System.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "integrate/chain_system.hpp"
+#include "integrate/share.hpp"
+#include "integrate/stepper.hpp"
+#include "mpi/first_rank.hpp"
+#include "tests/mpi/world.hpp"
+#include "tests/support/gpu.hpp"
+
+namespace catena::test {
+namespace {
+
+struct Case {
+    char const* name;
+    char const* chains;
+    char const* rest;
+    double edge = 20;            // nm, the longest
+    bool ghosts_change = false;  // there are beads that a rank does not feel
+};
+
+char const* const sequence = "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVV";
+std::string text_of(Case const& c) {
+    std::string chains = c.chains;
+    for (std::size_t at; (at = chains.find("SEQ")) != std::string::npos;) chains.replace(at, 3, sequence);
+    return "chains: [" + chains + "]\n" + c.rest +
+           "\nforces: {gravity: [0, 0, -1], openmm: {builder: calvados2, platform: CUDA}}\n"
+           "dynamics: {integrator: g-baoab, step: 0.01, steps: 10, friction: 0.1, seed: 3}\n";
+}
+
+/// What one way of computing found, and where it stood then.
+struct Found {
+    std::int64_t step = 0;
+    Checkpoint checkpoint;       // with the state, on every rank
+    std::vector<Vec3> own, all;  // forces on this rank's beads, gravity among them; OpenMM's on all, on rank 0
+    std::vector<EnergyTerm> energies;
+    GhostTraffic traffic;
+    std::int64_t contexts = 0;
+};
+
+class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
+  protected:
+    void SetUp() override {
+        need_gpu(world_);
+        if (IsSkipped() || HasFatalFailure()) return;
+        if (world_.max(cuda::why_no_device_path().empty() ? 0 : 1) == 0) return;
+        if (std::getenv("CATENA_NEEDS_GPU") != nullptr) FAIL() << "NOT RUN, though CATENA_NEEDS_GPU is set: " << cuda::why_no_device_path();
+        GTEST_SKIP() << "NOT RUN: " << cuda::why_no_device_path();
+    }
+    void TearDown() override { ::unsetenv("CATENA_GPU_EXCHANGE"); }
+    static Scene scene_with(std::string const& precision, bool on_device) {
+        Scene scene = parse_scene(text_of(GetParam()), "scene.yaml");
+        scene.solver.backend = Backend::cuda;
+        scene.forces.openmm->precision = precision;
+        scene.forces.openmm->path = on_device ? "device" : "host";
+        scene.forces.openmm->audit = on_device;
+        scene.forces.openmm->replicate = !on_device;  // the oracle
+        return scene;
+    }
+    /// At step `last`, from the scene's start or from where another stood.
+    Found found(Scene const& scene, std::int64_t last, Found const* start = nullptr) {
+        ChainSystem system(scene, Axes::world, world_);
+        EXPECT_EQ(system.openmm()->path(), scene.forces.openmm->path);
+        auto stepper = make_stepper(system, scene.dynamics);
+        Found f;
+        f.step = start ? start->step : 0;
+        if (start) {
+            system.set_state(start->checkpoint.arrays);
+            stepper->restore(start->checkpoint);
+        }
+        for (;; ++f.step) {
+            if (f.step == 100) system.openmm()->renew_ghosts();
+            stepper->prepare(nullptr);
+            if (f.step == last) break;
+            stepper->step(f.step, nullptr);
+        }
+        for (AbsoluteDynamics* group : system.absolute()) {
+            View<3> const forces = group->bead_forces();
+            for (std::int64_t k = 0; k < forces.size; ++k) f.own.push_back(forces.load(k));
+        }
+        f.energies = system.potential_energy();
+        f.all = system.bead_forces();
+        stepper->save(f.checkpoint);
+        f.checkpoint.arrays = system.state();
+        share(world_, f.checkpoint);
+        f.traffic = system.openmm()->traffic();
+        f.contexts = system.openmm()->contexts();
+        return f;
+    }
+    double largest(std::vector<Vec3> const& of_rank) const {
+        double value = 0;
+        for (Vec3 const& v : of_rank) value = std::max(value, norm(v));
+        return world_.max(value);
+    }
+    static double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
+        EXPECT_EQ(a.size(), b.size());
+        double value = 0;
+        for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) value = larger(value, norm(a[k] - b[k]));
+        return value;
+    }
+    void expect_close(Found const& a, Found const& b, double tolerance) const {
+        double const size = largest(b.own);
+        EXPECT_GT(size, 1);
+        EXPECT_LE(difference(a.own, b.own), tolerance * size + rounding);
+        EXPECT_LE(difference(a.all, b.all), tolerance * size + rounding);
+        ASSERT_EQ(a.energies.size(), b.energies.size());
+        for (std::size_t i = 0; i < a.energies.size(); ++i) {
+            EXPECT_EQ(a.energies[i].name, b.energies[i].name);
+            EXPECT_TRUE(std::isfinite(a.energies[i].value));
+            EXPECT_NEAR(a.energies[i].value, b.energies[i].value, tolerance * (1 + std::abs(b.energies[i].value)));
+        }
+    }
+    /// OpenMM's pair forces take positions x from some origin and out of some cell, which differ, with a rounding of eps x of their
+    /// precision: 1e-6 nm at 20 nm in single and mixed. Overlaps of 0.05 nm make forces change by all of themselves: 2e-5 of the largest.
+    static double tolerance(std::string const& precision) {
+        double const eps = precision == "double" ? 0x1p-53 : 0x1p-24, overlap = 0.05, at_least = 1e-12;
+        return std::max(at_least, eps * GetParam().edge / overlap);
+    }
+    /// OpenMM adds up forces in units of 2^-32 kJ/mol/nm, and what it rounds to them depends on the order of its particles.
+    static constexpr double rounding = 16.0 / 4294967296.0;
+    Communicator const& world_ = catena::testing::world();
+};
+
+TEST_P(OpenMmOnGpus, ForcesAndEnergiesAreThoseOfTheWholeSystem) {
+    for (char const* const precision : {"double", "mixed", "single"})
+        expect_close(found(scene_with(precision, true), 0), found(scene_with(precision, false), 0), tolerance(precision));
+}
+
+/// Lists, the order of particles and the cells are those of earlier steps.
+TEST_P(OpenMmOnGpus, AfterManySteps) {
+    for (char const* const precision : {"double", "mixed"}) {
+        Found const device = found(scene_with(precision, true), 400);
+        EXPECT_GT(device.traffic.rebuilds, 1);
+        EXPECT_LT(device.traffic.rebuilds, 100);
+        EXPECT_EQ(device.traffic.updates, 401);
+        EXPECT_LE(device.contexts, 3);
+        if (GetParam().ghosts_change) {
+            EXPECT_LT(device.traffic.ghosts, device.all.empty() ? INT64_MAX : std::ssize(device.all) - std::ssize(device.own));
+        }
+        expect_close(device, found(scene_with(precision, false), 400, &device), tolerance(precision));
+        expect_close(device, found(scene_with(precision, true), 400, &device), tolerance(precision));
+    }
+}
+
+TEST_P(OpenMmOnGpus, WithoutOverlap) {
+    Scene apart = scene_with("double", true);
+    apart.forces.openmm->overlap = false;
+    Found const without = found(apart, 20);
+    expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
+}
+
+/// From GPU to GPU where that can be, or through pinned memory and messages: the same positions.
+TEST_P(OpenMmOnGpus, GhostsComeEitherWay) {
+    Scene const scene = scene_with("double", true);
+    Found const either = found(scene, 40);
+    ::setenv("CATENA_GPU_EXCHANGE", "host", 1);
+    Found const by_host = found(scene, 40);
+    EXPECT_FALSE(by_host.traffic.direct);
+    EXPECT_EQ(either.traffic.bytes > 0, by_host.traffic.bytes > 0);
+    double constexpr after_steps = 1e-8;  // rounding, grown by the chains' own chaos
+    expect_close(either, by_host, after_steps);
+}
+
+TEST_P(OpenMmOnGpus, ListsAreMadeAnewWhenAsked) {
+    Scene const scene = scene_with("double", true);
+    ChainSystem system(scene, Axes::world, world_);
+    system.evaluate();
+    std::vector<Vec3> const before = system.bead_forces();
+    for (int i = 0; i < 5; ++i) {
+        system.openmm()->renew_ghosts();
+        system.evaluate();
+    }
+    EXPECT_EQ(system.openmm()->traffic().rebuilds, 6);
+    EXPECT_LE(difference(system.bead_forces(), before), rounding);
+}
+
+TEST_P(OpenMmOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) {
+    Scene const scene = scene_with("mixed", true);
+    ChainSystem system(scene, Axes::world, world_);
+    system.evaluate();
+    Checkpoint c;
+    c.arrays = system.state();
+    share(world_, c);
+    c.arrays["position"][3 * 10 + 1] = NAN;
+    system.set_state(c.arrays);
+    EXPECT_THROW(system.evaluate(), SharedError);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, OpenMmOnGpus,
+    ::testing::Values(Case{"periodic",
+                           "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
+                           "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
+                           "box: {periodic: [16, 17, 18]}"},
+                      Case{"long_box",
+                           "{name: a, count: 40, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
+                           "velocities: thermal}",
+                           "box: {periodic: [90, 13, 12]}", 90, true},
+                      Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""},
+                      Case{"held",
+                           "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
+                           "thermal}",
+                           "box: {periodic: [40, 40, 40]}"}),
+    [](auto const& scene) { return scene.param.name; });
+
+/// A rank that has none takes part in what all do.
+class RanksWithoutBeads : public OpenMmOnGpus {};
+TEST_P(RanksWithoutBeads, TakePart) {
+    Found const device = found(scene_with("double", true), 30);
+    expect_close(device, found(scene_with("double", false), 30, &device), tolerance("double"));
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, RanksWithoutBeads,
+                         ::testing::Values(Case{"pair", "{name: a, sequence: KE, model: calvados2, velocities: thermal}",
+                                                "box: {periodic: [20, 20, 20]}"}),
+                         [](auto const& scene) { return scene.param.name; });
+
+}  // namespace
+}  // namespace catena::test
