@@ -67,4 +67,12 @@ std::int64_t free_memory(Communicator const& communicator) {
     return static_cast<std::int64_t>(free) / sharing;
 }
 
+std::int64_t stacks(std::int64_t bytes_of_thread) {
+    int device = 0, multiprocessors = 0, threads = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device), "say how large it is");
+    check(cudaDeviceGetAttribute(&threads, cudaDevAttrMaxThreadsPerMultiProcessor, device), "say how large it is");
+    return bytes_of_thread * multiprocessors * threads;
+}
+
 }  // namespace catena::cuda

@@ -78,11 +78,13 @@ class HaloPath final : public GpuPath {
     }
 
     void exchange_and_compute(std::span<DeviceBeads* const> beads) {
-        exchange_.begin = now();
         if (has_lists_)
             is_shown_.wait();
         else
             look_at_start();
+        exchange_.begin = now();
+        // The GPU may have been behind: its clock is the host's where both are known to be.
+        if (has_lists_ && timed_) begun_ = exchange_.begin - is_shown_.seconds_since(events_->begun);
         bool const far = std::exchange(flags_->data()->far, 0) != 0;
         if (halo_.are_used_up(far, take_trouble())) {
             make_lists(beads);
@@ -195,7 +197,7 @@ class HaloPath final : public GpuPath {
     bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
     std::unique_ptr<PeerInboxes> inboxes_;  // null: positions pass through the host
     ShownBeads shown_;
-    Event is_shown_{Event::For::order};
+    Event is_shown_{Event::For::clock};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;
     Room<Buffer<double>> listed_, show_, arrived_;
     Room<Buffer<DeviceBead>> ghost_;

@@ -18,7 +18,7 @@ namespace {
 
 using namespace dca;
 
-/// A tree's memory depends on the directions alone: one leaf stands for all that have so many.
+/// Where runs float a tree's memory depends on the directions alone: one leaf stands for all that have so many.
 template <class Use>
 auto with_directions(ChainGroup const& group, Use const& use) {
     switch (group.directions) {

@@ -24,6 +24,9 @@ DeviceMemory memory_needed(ChainGroup const&, Scene const&, Backend, Communicato
 /// Bytes that are free on the GPU chosen last, or this rank's part of them where ranks of a host share it.
 std::int64_t free_memory(Communicator const&);
 
+/// What the driver keeps on the GPU chosen last where a kernel's threads have so many bytes of stack each: of all that fit on it at once.
+std::int64_t stacks(std::int64_t bytes_of_thread);
+
 /// The GPU cannot hold the scene. Where nobody asked for it, the next choice may.
 class TooLittleMemory : public InputError {
   public:

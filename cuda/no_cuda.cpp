@@ -15,6 +15,7 @@ std::string device_name() { throw ComputationError(why_not()); }
 
 std::string choose_device(Communicator const&) { return why_not(); }
 std::int64_t free_memory(Communicator const&) { throw ComputationError(why_not()); }
+std::int64_t stacks(std::int64_t) { throw ComputationError(why_not()); }
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }
 
 std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Communicator const&) {

@@ -53,8 +53,8 @@ __device__ inline int lanes_of_block() {
 template <class Sweep>
 using NodesOfParts = SharedRecords<typename Sweep::Sweeps::Node>;
 /// The segments of runs `first` + RunPart(...).run, as many as the block's threads do at once: take(run, segment) by one thread each. All
-/// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its bodies. `nodes_stay`: a sweep that
-/// keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
+/// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its
+/// bodies. `nodes_stay`: a sweep that keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
 template <bool nodes_stay, class Sweep, class Take>
 __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
                                 typename Sweep::Part& part, Take const& take) {
@@ -99,7 +99,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
 }
 
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a force a thread; `part`: as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
+/// those after it. `memory`: for a state a thread; `part`: as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {

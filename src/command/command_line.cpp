@@ -50,8 +50,7 @@ void add_common(CLI::App& command, Words& words) {
                     "joints: keeps the digits of badly conditioned ones)")
         ->type_name("KIND");
     command
-        .add_option("--threads", c.threads,
-                    "threads a rank of openmp, and of what cuda-levels leaves to the host (0: its cores over its ranks)")
+        .add_option("--threads", c.threads, "threads a rank of openmp, and of what GPUs leave to the host (0: its cores over its ranks)")
         ->type_name("N");
     command
         .add_option("--simd", c.simd,
@@ -147,7 +146,7 @@ void add_commands(CLI::App& app, Words& words) {
                      "without --quick beside Simbody and Pinocchio where they are here (tests/bench/peers/README.md)")
         ->type_name("NAME");
     command->add_option("--sizes", words.sizes, "of the suite: coils and dills of so many bodies alone")->type_name("N,...");
-    command->add_option("--cases", words.cases, "of the suite: those whose family holds one of these words")->type_name("WORD,...");
+    command->add_option("--cases", words.cases, "of the suite: those whose family's name holds one of these")->type_name("WORD,...");
     command->add_flag("--quick", words.quick, "fewer and smaller cases, within a minute");
     command->add_option("--output", words.output, "folder for report.html, report.json and pictures (default catena-report)")
         ->type_name("DIR");

@@ -97,6 +97,25 @@ ReportPart integrators_of(ReportScenes const& scenes, Communicator const& commun
     return integrator_part(studies, drifts);
 }
 
+std::vector<StabilityCase> cases_of(ReportRequest const& request) {
+    std::vector<StabilityCase> cases =
+        request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes);
+    std::vector<std::string> const& words = request.cases;
+    auto const holds = [](StabilityCase const& each, std::string const& word) { return each.family.find(word) != std::string::npos; };
+    for (std::string const& word : words)
+        if (std::none_of(cases.begin(), cases.end(), [&](StabilityCase const& each) { return holds(each, word); })) {
+            std::set<std::string> families;
+            for (StabilityCase const& each : cases) families.insert(each.family);
+            throw InputError("no family of cases has '" + word + "'", "--cases",
+                             fmt::format("take parts of these names: {}", fmt::join(families, "; ")));
+        }
+    if (!words.empty())
+        std::erase_if(cases, [&](StabilityCase const& each) {
+            return std::none_of(words.begin(), words.end(), [&](std::string const& word) { return holds(each, word); });
+        });
+    return cases;
+}
+
 }  // namespace
 
 Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicator, ReportRequest const& request) {
@@ -127,26 +146,11 @@ Outcome report_scenes(ReportScenes const& scenes, Communicator const& communicat
     return conclude("error against run time", parts, left_out, communicator, request);
 }
 
-std::vector<StabilityCase> chosen(std::vector<StabilityCase> cases, std::vector<std::string> const& words) {
-    auto const holds = [](StabilityCase const& each, std::string const& word) { return each.family.find(word) != std::string::npos; };
-    for (std::string const& word : words)
-        if (std::none_of(cases.begin(), cases.end(), [&](StabilityCase const& each) { return holds(each, word); })) {
-            std::set<std::string> families;
-            for (StabilityCase const& each : cases) families.insert(each.family);
-            throw InputError("no family of cases has '" + word + "'", "--cases",
-                             fmt::format("take words of: {}", fmt::join(families, ", ")));
-        }
-    if (!words.empty())
-        std::erase_if(cases, [&](StabilityCase const& each) {
-            return std::none_of(words.begin(), words.end(), [&](std::string const& word) { return holds(each, word); });
-        });
-    return cases;
-}
-
 Outcome report_stability(Communicator const& communicator, ReportRequest const& request) {
     if (communicator.size() > 1)
         throw InputError("the stability suite on " + counted(communicator.size(), "rank", "ranks"), "--suite", "run it without mpirun");
     std::vector<Backend> const backends = backends_of(request);
+    std::vector<StabilityCase> const cases = cases_of(request);
     std::vector<std::string> left_out;
     make_folder(communicator, request.output);
     std::optional<PeerAnswers> peers;
@@ -158,9 +162,6 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
         return peers ? (*peers)(each, scene) : std::vector<PeerAnswer>{};
     };
     std::vector<StabilityStudy> studies;
-    auto const cases =
-        chosen(request.sizes.empty() ? stability_cases(request.quick ? 1 << 10 : 1 << 20, request.quick) : coils_and_dills(request.sizes),
-               request.cases);
     for (StabilityCase const& each : cases) {
         int const seeds = each.bodies > 100000 ? 1 : 3;
         StabilityStudy study = study_stability(each, backends, handles_of(request), seeds, ask);
@@ -171,6 +172,9 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
         studies.push_back(std::move(study));
         spdlog::info("{}, {}: {}", each.family, each.name, name_of(studies.back().verdict()));
     }
+    if (studies.empty())
+        throw InputError("nothing to solve: " + left_out.back(), "--handles " + request.handles,
+                         "take projected or full handles, or open chains of bodies and another backend than cuda-levels");
     std::vector<ReportPart> parts{stability_part(studies)};
     if (peers) {
         for (std::string const& line : peers->not_run()) left_out.push_back(line);

@@ -6,11 +6,6 @@
 
 namespace catena::dca {
 
-CATENA_HD void lower(Lost& found, std::int64_t k) {
-    auto const bad = static_cast<unsigned long long>(k);
-    found.joint = bad < found.joint ? bad : found.joint;
-}
-
 /// One body with its inboard joint. `sliding`: some joint is prismatic or helical.
 template <bool sliding>
 class ArticulatedLeaf {
@@ -58,7 +53,7 @@ class ArticulatedLeaf {
         Matrix6 m = held(k).matrix;
         for (int i = K - 1; i >= restricted; --i) {
             double const own = release(i, m).own;
-            if (!(own > 0 && own - own == 0)) lower(found, k);
+            if (!(own > 0 && own - own == 0)) found.add(k);
         }
         return m;
     }
@@ -174,7 +169,7 @@ struct ArticulatedMatrixSweep {
         Segment const segment = join(inboard, outboard, at.restricted, joint);
         s.joints.store(at.k, joint);
         for (int i = 0; i < Leaf::K; ++i)
-            if (double const pivot = joint.factor.lu(i, i); pivot == 0 || pivot - pivot != 0) lower(found, at.k);
+            if (double const pivot = joint.factor.lu(i, i); pivot == 0 || pivot - pivot != 0) found.add(at.k);
         return segment;
     }
     CATENA_HD Segment load(std::int64_t slot) const { return s.matrices.load(slot); }

@@ -1,4 +1,4 @@
-// The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in segment.hpp and leaf.hpp.
+// The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in segment.hpp, leaf.hpp, articulated.hpp.
 #pragma once
 
 #include <chrono>

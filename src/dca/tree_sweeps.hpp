@@ -1,10 +1,10 @@
 // One item of every sweep over the canonical tree, host and device: a part of a run, a run, a merge, a root. Who calls them for which
 // items is the driver's business (tree_solver.hpp) and the space's.
 //
-// A sweep is an object with its TreeSweeps `s`, Segment (what travels upwards), Part (what read(begin, end) finds of a part's bodies),
-// part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots, close(Root, segment) and, if it `descends`, node(joint),
-// force(node, first, next) and down<unroll>(Run, p, Part, first, next) from the forces at the ends of part p. One that `keeps_nodes` has
-// joined(..., node) and keep(joint, node) as well.
+// A sweep is an object with its sweeps `s` (TreeSweeps, or another of SweepsOf with all its members), Segment (what travels upwards), Part
+// (what read(begin, end) finds of a part's bodies), part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots,
+// close(Root, segment) and, if it `descends`, node(joint), force(node, first, next) and down<unroll>(Run, p, Part, first, next) from the
+// states at the ends of part p. One that `keeps_nodes` has joined(..., node) and keep(joint, node) as well.
 #pragma once
 
 #include "dca/closure.hpp"
@@ -23,6 +23,10 @@ struct JointAt {
 /// A joint whose matrix is not positive definite; none at first.
 struct Lost {
     unsigned long long joint = ~0ULL;
+    CATENA_HD void add(std::int64_t k) {
+        auto const bad = static_cast<unsigned long long>(k);
+        joint = bad < joint ? bad : joint;
+    }
 };
 
 template <class Leaf_>

@@ -193,6 +193,7 @@ Vec3 GhostLists::aside(std::int64_t i, std::int64_t count) const {
     Vec3 place;
     if (plan_.box) {
         std::int64_t const cells = std::ssize(free_);
+        if (cells == 0) throw ComputationError("no place in the box is out of the beads' reach");  // every bead there is a ghost
         place = free_[static_cast<std::size_t>(i % cells)];
         auto const [at, side] = in_cube(i / cells, (count + cells - 1) / cells);
         for (int c = 0; c < 3; ++c) place[c] += edge_[c] * ((static_cast<double>(at[c]) + 0.5) / side - 0.5);
@@ -240,6 +241,7 @@ void GhostLists::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
         received = received.subspan(n.received);
     }
     exchange(out, in);
+    traffic_.direct = false;
     ++traffic_.updates;
 }
 

@@ -42,7 +42,7 @@ class Halo {
     virtual void make_lists(std::span<Vec3 const> own) = 0;
     virtual Lists const& lists() const = 0;
     /// That has a particle for each own bead and each ghost. Precondition: the rank has beads, and lists. Another one only after
-    /// make_lists(). The one before must not be in use then: release() is called before it goes.
+    /// make_lists(), before which the caller lets go of the one before and makes the GPU context of all of them its thread's.
     virtual OpenMM::Context& context() = 0;
     /// Sends and receives positions. Collective.
     virtual void carry(std::span<Vec3 const> sent, std::span<Vec3> received) = 0;

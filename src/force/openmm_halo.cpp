@@ -41,8 +41,9 @@ std::unique_ptr<DevicePath> HaloForces::device_path(bool overlap) {
     DevicePathPlan plan;
     for (int k = 0; k < static_cast<int>(own().size()); ++k) plan.particle.push_back(k);
     plan.bead = own();
-    if (home_->placement() == Placement::wrapped) plan.box = share_.box();
-    plan.shifted = home_->placement() == Placement::shifted;
+    Placement const placement = placement_for(share_.system());  // of all forces: a small part may allow more
+    if (placement == Placement::wrapped) plan.box = share_.box();
+    plan.shifted = placement == Placement::shifted;
     plan.overlap = overlap;
     plan.halo = this;
     return cuda::make_device_path(home_->context(), std::move(plan));

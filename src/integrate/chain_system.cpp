@@ -15,6 +15,8 @@ namespace {
 
 /// What kernels, graphs and streams take by themselves.
 constexpr std::int64_t gpu_reserve = std::int64_t{128} << 20;
+/// Of a thread of their sweeps' kernels, bytes (ptxas: 15,512 at most on sm_90).
+constexpr std::int64_t stack_of_articulated_handles = 16 << 10;
 constexpr char const* without_gpu = "use auto, another backend, or a build with CUDA on a machine with a GPU";
 constexpr char const* without_memory = "use more GPUs (ranks on several hosts), another backend, or fewer bodies";
 
@@ -47,7 +49,9 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
     if (std::string const why = scene.why_not_on(asked); !why.empty())
-        throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
+        throw InputError(why, "solver.backend: " + std::string(name_of(asked)),
+                         scene.why_not_on(Backend::cuda).empty() ? "use cuda, auto, segments, openmp or serial"
+                                                                 : "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").
@@ -80,10 +84,9 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
       backend_(choose_backend(scene, communicator)),
       implicit_step_(implicit_step) {
     if (uses_gpu(backend_)) refuse_cuda(communicator, name_of(backend_), cuda::choose_device(communicator), without_gpu);
-    bool const threads = backend_ == Backend::openmp || (backend_ == Backend::cuda_levels && openmp_is_built());
+    bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
     SimdLevel const simd = choose_simd_level(scene, communicator);
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
-    if (backend_ == Backend::cuda && openmp_is_built()) of_host_ = openmp_executor(choose_threads(scene, communicator), simd);
     groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, implicit_step > 0);
     if (scene.solver.handles == Handles::articulated)
         for (auto const& group : groups_) refuse_articulated(*group, implicit_step > 0);
@@ -108,6 +111,7 @@ bool ChainSystem::is_current() noexcept {
 /// Before anything is there.
 void ChainSystem::require_gpu_memory() const {
     std::int64_t needed = gpu_reserve;
+    if (scene_.solver.handles == Handles::articulated) needed += cuda::stacks(stack_of_articulated_handles);
     for (auto const& group : groups_) needed += cuda::memory_needed(*group, scene_, backend_, communicator_).sum();
     refuse_cuda<cuda::TooLittleMemory>(communicator_, name_of(backend_), cuda::too_little_memory(needed, cuda::free_memory(communicator_)),
                                        without_memory);
@@ -160,6 +164,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     if (on_device()) {
         if (!timeline) return;  // the next evaluation asks: the GPU need not be waited for
         DevicePath::Clock const clock = read_device_clock();
+        if (clock.openmm.end == 0) return;  // this rank has no beads
         note("matrix sweep", "catena", clock.chains.begin, clock.chains.end);
         note("forces", "openmm", clock.openmm.begin, clock.openmm.end);
         if (communicator_.size() > 1) note("exchange of positions", "messages", clock.exchange.begin, clock.exchange.end);
@@ -193,7 +198,7 @@ void ChainSystem::solve_joint_groups() {
             group->solve_once();
         else
             group->solve();
-        for (int step = 0; step < scene_.solver.refine; ++step) group->refine(of_host());
+        for (int step = 0; step < scene_.solver.refine; ++step) group->refine(*executor_);
     }
     seconds_["kinematics and loads"] += moved - start;
     seconds_["bias sweep"] += seconds_now() - finished;
@@ -208,7 +213,7 @@ void ChainSystem::solve_joint_groups_again() {
 
 void ChainSystem::refine() {
     for (auto const& group : joint_) {
-        group->refine(of_host());
+        group->refine(*executor_);
         group->set_rates();
     }
 }
@@ -257,7 +262,7 @@ void ChainSystem::evaluate(bool project) {
 double ChainSystem::residual() {
     double worst = 0;
     for (auto const& group : absolute_) worst = larger(worst, group->residual());
-    for (auto const& group : joint_) worst = larger(worst, group->residual(of_host()));
+    for (auto const& group : joint_) worst = larger(worst, group->residual(*executor_));
     return worst;
 }
 

@@ -174,15 +174,13 @@ class ChainSystem {
                                  int width) const;
     /// Into an array of a checkpoint.
     void add_part(ChainGroup const&, std::vector<double> own, int width, std::string const& name, OwnState&) const;
-    /// Of what is done with solutions on the host, wherever the chains are.
-    Executor const& of_host() const { return of_host_ ? *of_host_ : *executor_; }
     Scene const& scene_;
     Communicator const& communicator_;
     Axes axes_;
     Backend backend_;
     double implicit_step_;
     bool keeps_matrices_ = false;
-    std::unique_ptr<Executor> executor_, of_host_;
+    std::unique_ptr<Executor> executor_;  // of the host, wherever the chains are
     std::vector<std::unique_ptr<ChainGroup>> groups_;
     std::vector<ChainGroup const*> bead_groups_;  // those that are beads or carry some, in the order of bead_hosts_
     BeadSystem bead_system_;

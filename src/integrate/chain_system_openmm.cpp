@@ -172,7 +172,7 @@ DevicePath::Clock ChainSystem::read_device_clock() {
     if (exchanges) seconds_["exchange"] += length(clock.exchange.begin, clock.exchange.end);
     seconds_["matrix sweep"] += matrices;
     seconds_["forces"] += length(clock.openmm.begin, clock.openmm.end);
-    seconds_["waiting for forces"] += length(clock.chains.end, clock.openmm.end);
+    seconds_["waiting for forces"] += length(std::max(clock.chains.end, exchanges ? clock.exchange.end : 0.0), clock.openmm.end);
     return clock;
 }
 

@@ -212,7 +212,11 @@ TEST(Report, TheStabilitySuiteGivesAVerdictForEveryCase) {
     ASSERT_EQ(dill.at("stability").size(), 1U);
     EXPECT_EQ(dill.at("stability")[0].at("family"), "dill");
     expect_refused(catena({"report", "--suite", "stability", "--sizes", "64", "--cases", "knot"}), 2,
-                   "no family of cases has 'knot' (--cases): take words of: coil, dill");
+                   "no family of cases has 'knot' (--cases): take parts of these names: coil; dill");
+    expect_refused(
+        catena({"report", "--suite", "stability", "--quick", "--cases", "beads", "--handles", "articulated", "--output", folder / "n"}), 2,
+        "nothing to solve: ");
+    expect_refused(catena({"report", "--cases", "dill"}), 2, "--cases without --suite (command line)");
 }
 
 TEST(Report, BackendAndHandlesCanBeChosen) {

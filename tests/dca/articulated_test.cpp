@@ -14,6 +14,7 @@
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
+#include "tests/support/same_bits.hpp"
 
 namespace catena::test {
 namespace {
@@ -150,6 +151,34 @@ TEST(ArticulatedHandles, TurnedDirectionsAreUpperTriangular) {
                 }
             for (int i = 0; i < turned.rank; ++i)
                 for (int k = 0; k < i; ++k) EXPECT_EQ(turned.upper(i, turned.order[k]), 0);
+        }
+}
+
+/// What refined solutions lack, and residuals, are found by all threads: to the bit what one finds.
+TEST(ArticulatedHandles, RefinementDoesNotHangOnThreads) {
+    for (Handles const handles : {Handles::articulated, Handles::projected})
+        for (bool const held : {false, true}) {
+            if (held && handles == Handles::articulated) continue;
+            RandomChainOptions options{.bodies = 700, .joints = RandomJoints::any, .base = Base::fixed, .springs = true};
+            if (held) options.tip = JointType::spherical;
+            ChainSpec const chain = random_chain(21, options);
+            ChainSystem::Accelerations found[2];
+            double residual[2];
+            for (Backend const backend : {Backend::segments, Backend::openmp}) {
+                if (backend == Backend::openmp && !openmp_is_built()) GTEST_SKIP() << "NOT RUN: built without OpenMP";
+                Scene scene = scene_of(chain, backend);
+                scene.solver.handles = handles;
+                scene.solver.threads = 3;
+                ChainSystem system(scene, Axes::joint, testing::world());
+                system.evaluate();
+                system.refine();
+                int const which = backend == Backend::openmp;
+                residual[which] = system.residual();
+                found[which] = system.accelerations();
+            }
+            EXPECT_EQ(residual[0], residual[1]);
+            EXPECT_TRUE(same_bits(found[0].joint_acceleration, found[1].joint_acceleration));
+            EXPECT_TRUE(same_bits(found[0].joint_force, found[1].joint_force));
         }
 }
 

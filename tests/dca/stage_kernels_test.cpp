@@ -124,6 +124,8 @@ TEST_F(StageKernels, LoadsDrivesTipsAndRings) {
                 options.tip = type;
                 options.ring = ring;
                 expect_same(scene_of({random_chain(seed, options)}));
+                options.tip = std::nullopt;
+                if (!ring) expect_same(scene_of({random_chain(seed, options), random_chain(seed + 100, options)}));
                 if (HasFailure()) return;
             }
 }
