@@ -6,20 +6,22 @@
 #include <cstdlib>
 #include <cstring>
 #include <span>
+#include <string>
 #include <utility>
 
 namespace catena::cuda {
 namespace {
 
 /// Rank 0's CATENA_GPU_EXCHANGE: launchers bring variables to other hosts only when told to.
-bool wanted(Communicator const& communicator) {
+std::string asked_for(Communicator const& communicator) {
     char text[16] = {};
     if (char const* const own = std::getenv("CATENA_GPU_EXCHANGE")) std::strncpy(text, own, sizeof(text) - 1);
     communicator.broadcast(std::as_writable_bytes(std::span(text)));
     if (text[0] != 0 && std::strcmp(text, "host") != 0 && std::strcmp(text, "direct") != 0)
         throw InputError("`" + std::string(text) + "` is no way for GPUs to exchange numbers", "CATENA_GPU_EXCHANGE", "use direct or host");
-    return std::strcmp(text, "host") != 0;
+    return text;
 }
+bool wanted(Communicator const& communicator) { return asked_for(communicator) != "host"; }
 
 bool agreed(Communicator const& communicator, bool here) { return communicator.sum(here ? 0 : 1) == 0; }
 
@@ -87,6 +89,7 @@ std::vector<double*> mapped(Communicator const& communicator) {
 
 }  // namespace
 
+bool direct_is_asked_for(Communicator const& communicator) { return asked_for(communicator) == "direct"; }
 bool gpus_may_write_to_each_other(Communicator const& communicator) {
     return communicator.size() > 1 && wanted(communicator) && agreed(communicator, apart_on_one_host(communicator));
 }

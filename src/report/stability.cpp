@@ -64,7 +64,10 @@ void add(Variant& to, Scene& scene, ExactSolution const& exact) {
     try {
         ChainSystem system(scene, Axes::joint, *communicator);
         system.evaluate();  // the first one finds its memory
-        double const evaluation = seconds_of([&] { system.evaluate(); });
+        double const evaluation = seconds_of([&] {
+            system.evaluate();
+            system.wait();
+        });
         to.residual_bound.push_back(system.residual_bound());
         to.bound.push_back(system.residual_bound() * exact.growth);
         auto const look = [&](Variant::Errors& errors) {

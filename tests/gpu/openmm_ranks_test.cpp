@@ -158,6 +158,7 @@ TEST_P(OpenMmOnGpus, WithoutOverlap) {
 /// From GPU to GPU where that can be, or through pinned memory and messages: the same positions.
 TEST_P(OpenMmOnGpus, GhostsComeEitherWay) {
     Scene const scene = scene_with("double", true);
+    ::setenv("CATENA_GPU_EXCHANGE", "direct", 1);
     Found const either = found(scene, 40);
     ::setenv("CATENA_GPU_EXCHANGE", "host", 1);
     Found const by_host = found(scene, 40);
