@@ -8,6 +8,7 @@ std::unique_ptr<dca::LevelPart> make_absolute_levels(ChainGroup const& group, dc
 }
 
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const& group, dca::LevelWork const& work) {
+    if (group.handles == Handles::articulated) return make_articulated_levels(group, work);
     return group.beads || group.axes == Axes::world ? make_absolute_levels(group, work) : make_joint_levels(group, work);
 }
 

@@ -1,4 +1,4 @@
-// Levels of the tree on a device, compiled in two files.
+// Levels of the tree on a device, compiled one by one.
 #pragma once
 
 #include "cuda/device_crossing.cuh"
@@ -8,6 +8,7 @@
 namespace catena::cuda {
 
 std::unique_ptr<dca::LevelPart> make_absolute_levels(ChainGroup const&, dca::LevelWork const&);
+std::unique_ptr<dca::LevelPart> make_articulated_levels(ChainGroup const&, dca::LevelWork const&);
 std::unique_ptr<dca::LevelPart> make_joint_levels(ChainGroup const&, dca::LevelWork const&);
 
 struct MakeLevels {

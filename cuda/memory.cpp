@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "cuda/counting_space.hpp"
-#include "dca/articulated_sweeps.hpp"
 #include "dca/leaf_choice.hpp"
 #include "dca/space_levels.hpp"
 #include "dca/tree_solver.hpp"
@@ -37,11 +36,16 @@ auto with_directions(ChainGroup const& group, Use const& use) {
     }
 }
 
+template <class Use>
+auto with_leaf(ChainGroup const& group, Use const& use) {
+    return group.handles == Handles::articulated ? use(Of<ArticulatedLeaf<false>>{}) : with_directions(group, use);
+}
+
 std::unique_ptr<ChainSolver> tree_of(ChainGroup const& group, Communicator const& communicator) {
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
         return std::make_unique<TreeSolver<typename decltype(leaf)::type, CountingSpace>>(group, CountingSpace(), communicator);
     };
-    return group.handles == Handles::articulated ? make(Of<ArticulatedLeaf<false>>{}) : with_directions(group, make);
+    return with_leaf(group, make);
 }
 
 /// The lowest levels, with what crosses where they are cut: at most the bodies' segments, forces and joints.
@@ -50,15 +54,16 @@ void count_levels(ChainGroup const& group, Scene const& scene) {
     Schedule const& s = group.schedule;
     auto const within = [&](int l) { return std::min(static_cast<std::size_t>(l), s.levels.size()); };
     LevelCut const cut = cut_levels(s, levels);
-    with_directions(group, [&](auto leaf) {
-        using Part = SpaceLevels<typename decltype(leaf)::type, CountingSpace, CountingCrossing>;
+    with_leaf(group, [&](auto leaf) {
+        using Leaf = typename decltype(leaf)::type;
+        using Sweeps = typename SweepsOf<Leaf>::Sweeps;
+        using Part = SpaceLevels<Leaf, CountingSpace, CountingCrossing>;
         LevelWork const work{levels.up > 0, levels.down > 0, 0, within(levels.up), 0, within(levels.down), false};
         Part part(group, work, CountingSpace());
         for (auto const* places : {&cut.segments, &cut.forces, &cut.joints_up, &cut.joints_down}) part.choose(*places);
-        std::size_t const K = static_cast<std::size_t>(group.directions);
-        std::size_t const matrix = K * (K + 1) + K * K, joint = sizeof(JointMatrix<double, 6>) / sizeof(double);
-        std::size_t const items = std::max(cut.segments.size() * matrix, std::max(cut.joints_up.size(), cut.joints_down.size()) * joint);
-        Count::add(static_cast<std::int64_t>(items * sizeof(double)));
+        std::size_t const items = std::max(cut.segments.size() * sizeof(typename Sweeps::Matrices),
+                                           std::max(cut.joints_up.size(), cut.joints_down.size()) * sizeof(typename Sweeps::Joint));
+        Count::add(static_cast<std::int64_t>(items));
     });
 }
 

@@ -42,7 +42,7 @@ Predictions predict(plan::Planner& planner, Scene const& scene, Axes axes, int r
     Predictions found;
     found.all = planner.predict(shares);
     found.no_gpu = planner.machine().no_gpu;
-    if (found.no_gpu.empty() && scene.why_not_on(Backend::cuda_levels).empty()) {
+    if (found.no_gpu.empty()) {
         found.levels = planner.plan_levels(shares);
         bool const given = scene.solver.backend == Backend::cuda_levels && !plan::leaves_open(scene);
         found.all.push_back(planner.predict(shares, *found.levels, given ? scene.solver.levels_on_gpu() : found.levels->best()));

@@ -174,7 +174,7 @@ Outcome report_stability(Communicator const& communicator, ReportRequest const& 
     }
     if (studies.empty())
         throw InputError("nothing to solve: " + left_out.back(), "--handles " + request.handles,
-                         "take projected or full handles, or open chains of bodies and another backend than cuda-levels");
+                         "take projected or full handles, or cases of open chains of bodies");
     std::vector<ReportPart> parts{stability_part(studies)};
     if (peers) {
         for (std::string const& line : peers->not_run()) left_out.push_back(line);

@@ -9,6 +9,7 @@ LevelPartMaker host_levels(Executor const& executor) {
             using Leaf = typename decltype(leaf)::type;
             return std::make_unique<SpaceLevels<Leaf, HostSpace, HostCrossing>>(group, work, HostSpace(executor));
         };
+        if (group.handles == Handles::articulated) return with_articulated_leaf(group, make);
         return group.beads || group.axes == Axes::world ? with_absolute_leaf(group, make) : with_joint_leaf(group, make);
     };
 }

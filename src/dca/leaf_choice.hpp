@@ -1,6 +1,7 @@
 // Which Leaf a group's bodies are: calls use(Of<Leaf>{}) and returns what it returns.
 #pragma once
 
+#include "dca/articulated_sweeps.hpp"
 #include "dca/leaves.hpp"
 
 namespace catena::dca {
@@ -18,7 +19,13 @@ auto with_absolute_leaf(ChainGroup const& group, Use const& use) {
     return group.directions == 3 ? use(Of<BodyLeaf<3, GroundFrames<3>>>{}) : use(Of<BodyLeaf<6, GroundFrames<6>>>{});
 }
 
-/// Bodies in joint coordinates.
+/// Bodies in joint coordinates, held at their inboard joints.
+template <class Use>
+auto with_articulated_leaf(ChainGroup const& group, Use const& use) {
+    return group.has_screws ? use(Of<ArticulatedLeaf<true>>{}) : use(Of<ArticulatedLeaf<false>>{});
+}
+
+/// And floating.
 template <class Use>
 auto with_joint_leaf(ChainGroup const& group, Use const& use) {
     switch (group.directions) {

@@ -45,7 +45,7 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     throw ComputationError(what + " is not positive definite (chain " + group.name[chain] +
                            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
                            "): masses, inertias or positions there are extreme or not finite" +
-                           (may ? "; `handles: articulated` keep more digits (any backend but cuda-levels)" : ""));
+                           (may ? "; `handles: articulated` keep more digits" : ""));
 }
 
 }  // namespace catena

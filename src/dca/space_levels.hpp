@@ -57,7 +57,9 @@ class HostCrossing {
 template <class Leaf, class Space, class Crossing>
 class SpaceLevels final : public LevelPart {
     static constexpr int K = Leaf::K;
-    using Sweeps = TreeSweeps<Leaf>;
+    using Sweeps = typename SweepsOf<Leaf>::Sweeps;
+    using OfMatrices = typename SweepsOf<Leaf>::OfMatrices;
+    using OfBiases = typename SweepsOf<Leaf>::OfBiases;
     template <class T>
     using List = typename Space::template List<T>;
     template <class T>
@@ -102,24 +104,24 @@ class SpaceLevels final : public LevelPart {
         space_.wait();
     }
     void assemble_matrices() override {
-        space_.over(leaves_up_, loops::Climb<MatrixSweep<Leaf>>{{sweeps_}});
-        climb(up_, loops::Climb<MatrixSweep<Leaf>>{{sweeps_}});
+        space_.over(leaves_up_, loops::Climb<OfMatrices>{{sweeps_}});
+        climb(up_, loops::Climb<OfMatrices>{{sweeps_}});
         space_.wait();
     }
     void close_matrices() override {
-        loops::Climb<MatrixSweep<Leaf>> const loop{{sweeps_}};
+        loops::Climb<OfMatrices> const loop{{sweeps_}};
         climb(top_, loop);
         space_.over(roots_, loop);
         space_.over(top_roots_, loop);
         space_.wait();
     }
     void assemble_biases() override {
-        space_.over(leaves_up_, loops::Climb<BiasSweep<Leaf>>{biases()});
-        climb(up_, loops::Climb<BiasSweep<Leaf>>{biases()});
+        space_.over(leaves_up_, loops::Climb<OfBiases>{biases()});
+        climb(up_, loops::Climb<OfBiases>{biases()});
         space_.wait();
     }
     void close_biases() override {
-        loops::Climb<BiasSweep<Leaf>> const loop{biases()};
+        loops::Climb<OfBiases> const loop{biases()};
         climb(top_, loop);
         space_.over(roots_, loop);
         space_.over(top_roots_, loop);
@@ -129,13 +131,14 @@ class SpaceLevels final : public LevelPart {
     }
     void disassemble() override {
         descend(down_);
-        space_.over(leaves_down_, loops::Descend<BiasSweep<Leaf>>{biases()});
+        space_.over(leaves_down_, loops::Descend<OfBiases>{biases()});
         space_.wait();
     }
     void fetch() override {
         if (work_.leaves_down) crossing_.fetch(host_out_);
         // Of the joint after this rank's last body: the top alone knows it.
-        if (work_.top && out_.joint_force) host_out_.joint_force.template store<K>(schedule_.bodies, sweeps_.forces.load(schedule_.halo));
+        if (work_.top && out_.joint_force)
+            host_out_.joint_force.template store<K>(schedule_.bodies, force_of(sweeps_.forces.load(schedule_.halo)));
     }
     std::int64_t first_indefinite() override {
         unsigned long long const lost = space_.get(lost_.data());
@@ -169,7 +172,7 @@ class SpaceLevels final : public LevelPart {
         List<std::int64_t> list;
     };
 
-    BiasSweep<Leaf> biases() const { return {sweeps_, loads_, out_}; }
+    OfBiases biases() const { return {sweeps_, loads_, out_}; }
     static std::vector<List<Merge>> lists(std::vector<std::vector<Merge>> const& levels, std::size_t first, std::size_t end) {
         std::vector<List<Merge>> all;
         for (std::size_t l = first; l < end; ++l) all.emplace_back(levels[l]);
@@ -180,7 +183,7 @@ class SpaceLevels final : public LevelPart {
         for (List<Merge> const& level : levels) space_.over(level, action);
     }
     void descend(std::vector<List<Merge>> const& levels) const {
-        for (std::size_t l = levels.size(); l-- > 0;) space_.over(levels[l], loops::Descend<BiasSweep<Leaf>>{biases()});
+        for (std::size_t l = levels.size(); l-- > 0;) space_.over(levels[l], loops::Descend<OfBiases>{biases()});
     }
 
     template <class Use>
@@ -232,10 +235,11 @@ class SpaceLevels final : public LevelPart {
     std::vector<List<Merge>> up_, down_, top_;
     List<Root> roots_, top_roots_;
     List<TopCopy> top_copies_;
-    Records<SegmentMatrix<double, K>, Order::plain> matrices_;
-    Records<SegmentBias<double, K>, Order::plain> biases_;
-    Records<JointMatrix<double, K>, Order::by_body> joints_;
-    Records<Vector<double, K>, Order::by_body> offsets_, forces_;
+    Records<typename Sweeps::Matrices, Order::plain> matrices_;
+    Records<typename Sweeps::Biases, Order::plain> biases_;
+    Records<typename Sweeps::Joint, Order::by_body> joints_;
+    Records<typename Sweeps::Offset, Order::by_body> offsets_;
+    Records<typename Sweeps::State, Order::by_body> forces_;
     Array<unsigned long long> lost_;
     Array<double> parcel_;
     std::vector<std::unique_ptr<Places>> places_;

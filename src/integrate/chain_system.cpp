@@ -49,9 +49,7 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
     if (std::string const why = scene.why_not_on(asked); !why.empty())
-        throw InputError(why, "solver.backend: " + std::string(name_of(asked)),
-                         scene.why_not_on(Backend::cuda).empty() ? "use cuda, auto, segments, openmp or serial"
-                                                                 : "use auto, segments, openmp or serial");
+        throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
     // Threads pay once each has some thousand bodies' work (README, "Numbers").

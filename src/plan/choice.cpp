@@ -80,8 +80,7 @@ bool leaves_open(Scene const& scene) { return scene.solver.backend == Backend::a
 Choice choose(Scene const& scene, Axes axes, Planner& planner, int ranks) {
     SolverSpec const& solver = scene.solver;
     if (solver.backend == Backend::automatic) return choose_backend(scene, axes, planner, ranks);
-    if (levels_are_open(solver) && planner.machine().no_gpu.empty() && scene.why_not_on(solver.backend).empty())
-        return choose_levels(scene, axes, planner, ranks);
+    if (levels_are_open(solver) && planner.machine().no_gpu.empty()) return choose_levels(scene, axes, planner, ranks);
     return {{solver.backend, solver.threads}, solver.levels_on_gpu(), "asked for"};
 }
 

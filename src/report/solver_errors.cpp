@@ -79,7 +79,7 @@ SolverStudy study_solver_errors(Scene const& given, Communicator const& communic
     bool const takes_articulated = std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles);
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
-            if (kind == Handles::articulated && (backend == Backend::cuda_levels || !takes_articulated)) continue;
+            if (kind == Handles::articulated && !takes_articulated) continue;
             Scene variant = scene;
             variant.solver.backend = backend;
             variant.solver.handles = kind;

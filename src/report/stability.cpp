@@ -42,7 +42,7 @@ std::vector<Variant> variants_of(ChainSpec const& chain, std::vector<Backend> co
     std::vector<Variant> all;
     for (Backend const backend : backends)
         for (Handles const kind : handles) {
-            if (kind == Handles::articulated && (backend == Backend::cuda_levels || !scene::takes_articulated_handles(chain))) continue;
+            if (kind == Handles::articulated && !scene::takes_articulated_handles(chain)) continue;
             Variant variant;
             variant.solver.backend = backend;
             variant.solver.handles = kind;

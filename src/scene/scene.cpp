@@ -116,12 +116,7 @@ std::string DynamicsSpec::why_host_alone() const {
     return "";
 }
 
-std::string Scene::why_not_on(Backend backend) const {
-    if (!uses_gpu(backend)) return "";
-    if (backend == Backend::cuda_levels && solver.handles == Handles::articulated)
-        return "articulated handles are for cuda, which takes all levels, and for the host";
-    return dynamics.why_host_alone();
-}
+std::string Scene::why_not_on(Backend backend) const { return uses_gpu(backend) ? dynamics.why_host_alone() : ""; }
 
 char const* name_of(Integrator integrator) {
     switch (integrator) {

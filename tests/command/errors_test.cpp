@@ -26,12 +26,6 @@ TEST(Errors, AGpuThatIsNotThere) {
                            cuda::why_not() + " (solver.backend: " + backend + ")");
 }
 
-TEST(Errors, LevelsHaveNoArticulatedHandles) {
-    expect_refused(
-        catena({"solve", input("arm.yaml"), "--backend", "cuda-levels", "--handles", "articulated"}), 2,
-        "articulated handles are for cuda, which takes all levels, and for the host (solver.backend: cuda-levels): use cuda, auto,");
-}
-
 TEST(Errors, TheScene) {
     expect_refused(catena({"check", "missing.yaml"}), 2, "missing.yaml");
     expect_refused(catena({"check", "."}), 2, "(.)");

@@ -2,6 +2,9 @@
 // several.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "scene/freedom.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/level_solvers.hpp"
 #include "tests/support/random_chain.hpp"
@@ -12,7 +15,10 @@ namespace {
 class Levels : public ::testing::Test {
   protected:
     void expect_same(Scene const& scene, Axes axes = Axes::joint, bool many = false) const {
-        for (Handles const handles : {Handles::projected, Handles::full})
+        std::vector<Handles> kinds{Handles::projected, Handles::full};
+        if (axes == Axes::joint && std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles))
+            kinds.push_back(Handles::articulated);
+        for (Handles const handles : kinds)
             expect_same_bits_at_every_cut(scene, axes, handles, dca::host_levels(*executor_), testing::world(), many);
     }
     static Scene scene_of(std::string const& chains) {

@@ -4,7 +4,6 @@
 #include <set>
 #include <string>
 
-#include "dca/articulated_sweeps.hpp"
 #include "dca/leaf_choice.hpp"
 #include "scene/freedom.hpp"
 #include "tests/mpi/world.hpp"
@@ -19,8 +18,7 @@ std::unique_ptr<ChainSolver> make_stage_solver(ChainGroup const& group, Executor
     auto const make = [&](auto leaf) -> std::unique_ptr<ChainSolver> {
         return std::make_unique<dca::TreeSolver<typename decltype(leaf)::type, StageSpace>>(group, StageSpace(executor), communicator);
     };
-    if (group.handles == Handles::articulated)
-        return group.has_screws ? make(dca::Of<dca::ArticulatedLeaf<true>>{}) : make(dca::Of<dca::ArticulatedLeaf<false>>{});
+    if (group.handles == Handles::articulated) return dca::with_articulated_leaf(group, make);
     return group.beads || group.linked || group.axes == Axes::world ? dca::with_absolute_leaf(group, make)
                                                                     : dca::with_joint_leaf(group, make);
 }

@@ -1,7 +1,10 @@
 // The tree cut between GPU and host leaves the bits of `serial`, wherever it is cut.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "integrate/chain_system.hpp"
+#include "scene/freedom.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/level_solvers.hpp"
 #include "tests/support/random_chain.hpp"
@@ -17,8 +20,10 @@ class GpuLevels : public ::testing::Test {
         ASSERT_EQ(cuda::choose_device(*communicator_), "");
     }
     void expect_same(Scene const& scene, Axes axes = Axes::joint) const {
-        for (Handles const handles : {Handles::projected, Handles::full})
-            expect_same_bits_at_every_cut(scene, axes, handles, cuda::make_levels, *communicator_);
+        std::vector<Handles> kinds{Handles::projected, Handles::full};
+        if (axes == Axes::joint && std::all_of(scene.chains.begin(), scene.chains.end(), scene::takes_articulated_handles))
+            kinds.push_back(Handles::articulated);
+        for (Handles const handles : kinds) expect_same_bits_at_every_cut(scene, axes, handles, cuda::make_levels, *communicator_);
     }
     static Scene scene_of(std::string const& chains) {
         return parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");

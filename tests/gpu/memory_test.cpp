@@ -9,9 +9,9 @@
 namespace catena::test {
 namespace {
 
-std::vector<plan::Family> families(Backend backend) {
+std::vector<plan::Family> families() {
     std::vector<plan::Family> all = plan::all_families();
-    if (backend == Backend::cuda) all.push_back({scene::RandomJoint::revolute, false, Axes::joint, Handles::articulated});
+    all.push_back({scene::RandomJoint::revolute, false, Axes::joint, Handles::articulated});
     return all;
 }
 
@@ -24,7 +24,7 @@ TEST_F(GpuMemoryTaken, IsWhatWasCounted) {
     auto const alone = serial_communicator();
     ASSERT_EQ(cuda::choose_device(*alone), "");
     for (Backend const backend : {Backend::cuda, Backend::cuda_levels})
-        for (plan::Family const& family : families(backend)) {
+        for (plan::Family const& family : families()) {
             SCOPED_TRACE(family.name() + ", " + name_of(backend));
             Scene scene = plan::sample(family, 300000);
             scene.solver.backend = backend;
