@@ -52,11 +52,11 @@ class GpuPath : public DevicePath {
     void start(std::span<DeviceBeads* const> beads, bool timed);
     /// Own bead that is in trouble, by its number; -1: none. Forgets it.
     std::int64_t take_trouble();
-    /// Gives OpenMM's particles a new order. `x`: of own beads, `others`: of the Context's other particles.
     struct Others {
         std::span<int const> particle;
         std::span<Vec3 const> position;
     };
+    /// Gives OpenMM's particles a new order. `x`: of own beads, `others`: of the Context's other particles.
     void order(std::vector<Vec3> const& x, std::span<Others const> others);
     DeviceBead bead_of(int particle, Vec3 const& x) const { return bead_at(place_[static_cast<std::size_t>(particle)], x, plan_.box); }
     /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.

@@ -184,7 +184,7 @@ void GhostLists::find_place_aside(Grid const& grid, CellSet const& felt, std::op
 }
 
 /// Out of each other's reach where there is room, in a cube: a row would be so long that OpenMM could not sort own beads among them. In a
-/// box scattered over all the cells that are free: in one of them they would all feel each other.
+/// box scattered over the cells that are free, thousands of them where there are so many: in one they would all feel each other.
 Vec3 GhostLists::aside(std::int64_t i, std::int64_t count) const {
     auto const in_cube = [](std::int64_t k, std::int64_t of) {
         auto const side = static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(of))));

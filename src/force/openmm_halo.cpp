@@ -36,8 +36,7 @@ std::vector<std::int64_t> HaloForces::every_number(std::int64_t count) {
     return all;
 }
 
-std::unique_ptr<DevicePath> HaloForces::device_path(bool overlap) {
-    if (own().empty()) return make_idle_path(*this, overlap);
+DevicePathPlan HaloForces::plan(bool overlap) {
     DevicePathPlan plan;
     for (int k = 0; k < static_cast<int>(own().size()); ++k) plan.particle.push_back(k);
     plan.bead = own();
@@ -46,7 +45,10 @@ std::unique_ptr<DevicePath> HaloForces::device_path(bool overlap) {
     plan.shifted = placement == Placement::shifted;
     plan.overlap = overlap;
     plan.halo = this;
-    return cuda::make_device_path(home_->context(), std::move(plan));
+    return plan;
+}
+std::unique_ptr<DevicePath> HaloForces::device_path(bool overlap) {
+    return own().empty() ? make_idle_path(*this, overlap) : cuda::make_device_path(home_->context(), plan(overlap));
 }
 
 bool HaloForces::are_used_up(bool far, std::int64_t bead) { return ghosts_.are_used_up({far, bead}, in_trouble); }

@@ -29,6 +29,7 @@ class HaloForces final : public RankForces, public Halo {
     void gather(std::span<Vec3 const> own) override;
     void evaluate(std::span<Vec3> own_forces) override;
     ForceContext* every_bead(DevicePath* device) override;
+    DevicePathPlan plan(bool overlap);
     std::unique_ptr<DevicePath> device_path(bool overlap) override;
     std::vector<Vec3> forces_again() override;
     void renew_ghosts() override { ghosts_.renew(); }

@@ -34,7 +34,7 @@ class RankForces {
     /// Forces on own beads at the positions that the path had last.
     virtual std::vector<Vec3> forces_again() { return {}; }
 
-    /// Lists of ghosts are made anew by the next gather(), here as on every other rank.
+    /// Lists of ghosts are made anew when positions are brought next, here as on every other rank.
     virtual void renew_ghosts() {}
     virtual bool ghosts_are_due() const { return false; }
     virtual GhostTraffic traffic() const { return {}; }

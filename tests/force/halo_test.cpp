@@ -139,7 +139,7 @@ Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Commun
     std::optional<Vec3> const box = model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
     HaloForces forces({model, platform, beads, communicator, box, true});
     auto const own = static_cast<std::size_t>(beads.first_of_rank[communicator.rank() + 1] - first);
-    PlainMemory memory(forces, forces, own, placement_for(*model.system) == Placement::wrapped ? box : std::nullopt);
+    PlainMemory memory(forces, forces, own, forces.plan(true).box);
     OpenMmSpec replicated = spec;
     replicated.replicate = true;
     auto const oracle = make_openmm_force(replicated, beads, communicator);
@@ -179,6 +179,25 @@ TEST(Halo, EveryForce) {
     BeadSystem const beads = proteins({random_sequence(40, 7), random_sequence(20, 8), random_sequence(30, 9)}, 1, Vec3{{34, 6, 6}});
     OpenMmSpec spec = on_reference("");
     spec.system = scratch_file("halo.xml", xml_of(*every_force(beads)));
+    on_ranks([&](Communicator const& communicator) { walk(spec, beads, 15, communicator); });
+}
+
+/// Exceptions that do not look for nearest images, of chains that reach beyond a face of the box: no bead may be moved by itself.
+TEST(Halo, ExceptionsAcrossAFace) {
+    BeadSystem const beads = eight_chains(Vec3{{40, 3, 8.2}});
+    OpenMM::System system;
+    for (double const mass : beads.mass) system.addParticle(mass);
+    system.setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0}, {0, 0, (*beads.box)[2]});
+    auto* charges = new OpenMM::NonbondedForce;
+    charges->setNonbondedMethod(OpenMM::NonbondedForce::CutoffPeriodic);
+    charges->setCutoffDistance(1.4);
+    for (std::int64_t i = 0; i < beads.size(); ++i) charges->addParticle(0.2 * static_cast<double>(i % 5 - 2), 0.3, 0.5);
+    for (int i = 0; i + 5 < static_cast<int>(beads.size()); i += 3)
+        if (i % 25 < 20) charges->addException(i, i + 5, 0.3, 0.4, 0.1);
+    charges->setExceptionsUsePeriodicBoundaryConditions(false);
+    system.addForce(charges);
+    OpenMmSpec spec = on_reference("");
+    spec.system = scratch_file("face.xml", xml_of(system));
     on_ranks([&](Communicator const& communicator) { walk(spec, beads, 15, communicator); });
 }
 
