@@ -37,8 +37,9 @@ bool PeerInboxes::fit(std::span<Halo::Message const> messages) {
 bool PeerInboxes::map_anew(std::int64_t received) {
     unmap(base_, communicator_.rank());
     base_.clear();
-    communicator_.barrier();  // nobody has it mapped
-    capacity_ = std::max<std::int64_t>(received + received / 8, 1 << 12);
+    communicator_.barrier();                     // nobody has it mapped
+    std::int64_t constexpr own_block = 1 << 16;  // less shares a block of the driver's with others', which cannot be mapped by itself
+    capacity_ = std::max<std::int64_t>(received + received / 8, own_block);
     own_ = Buffer<double>();
     own_ = Buffer<double>(static_cast<std::size_t>(2 * 3 * capacity_));
     base_ = map_each_others(communicator_, own_.data());

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <iterator>
 #include <set>
 #include <utility>
 
+#include "clock.hpp"
 #include "force/cells.hpp"
 #include "force/ghosts.hpp"
 #include "mpi/first_rank.hpp"
@@ -44,8 +44,6 @@ std::vector<std::vector<T>> blocks_of_ranks(Communicator const& communicator, st
     throw SharedError(fmt::format(fmt::runtime(std::string(trouble) + ": take a smaller step, or a start without overlaps"), bead + 1));
 }
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 void sort_unique(std::vector<std::int64_t>& values) {
     if (std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end()) return;  // as it is mostly
     std::sort(values.begin(), values.end());
@@ -78,7 +76,7 @@ void GhostLists::share_partners() {
 /// The same answer on every rank: the largest of a number each.
 bool GhostLists::are_used_up(Moves const& moves, char const* trouble) {
     double constexpr good = 0, used_up = 1, in_trouble = 2;  // and the bead's number
-    bool const far = std::exchange(renew_, false) || (moves.far && plan_.reach > 0);
+    bool const far = std::exchange(renew_, false) || (moves.far && !plan_.ranges.empty());
     double const state = communicator_.max(moves.bead >= 0 ? in_trouble + static_cast<double>(moves.bead) : far ? used_up : good);
     if (state >= in_trouble) throw_trouble(state - in_trouble, trouble);
     return state == used_up;
@@ -90,24 +88,27 @@ void GhostLists::refuse_trouble(std::int64_t bead, char const* trouble) const {
 }
 
 void GhostLists::make(std::span<Vec3 const> own) {
-    double const begin = now();
+    double const begin = seconds_now();
     if (!std::exchange(has_partners_, true)) share_partners();
     ListsOfRank lists = partners_;
-    if (plan_.reach > 0) add_near(own, lists);
+    if (!plan_.ranges.empty()) add_near(own, lists);
     take(std::move(lists));
     ++traffic_.rebuilds;
     traffic_.ghosts = std::ssize(beads_);
     traffic_.most_ghosts = std::max(traffic_.most_ghosts, traffic_.ghosts);
-    traffic_.seconds_of_lists += now() - begin;
+    traffic_.seconds_of_lists += seconds_now() - begin;
 }
 
-/// Adds what lies within reach + skin of another rank's beads to what it is sent, and the other way round.
+/// Adds what acts on another rank's beads within reach + skin to what it is sent, and the other way round. Where some rank finds no place
+/// aside all beads are looked for over the longest range: then every bead of another rank is a candidate there, and one that is no ghost
+/// is as far away as a place aside must be.
 void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
-    double const radius = plan_.reach + plan_.skin;
-    Grid const grid(radius, plan_.box);
-    PointsInCells const in_cells(grid, own);
+    PairRange const longest{longest_reach(plan_.ranges), {}};
+    Grid const grid(longest.reach + plan_.skin, plan_.box);
+    PointsInCells const in_cells(grid, own, *executor_);
+    bool const has_room = own.empty() || find_place_aside(grid, in_cells.cells());
+    std::vector<PairRange> const ranges = communicator_.max(has_room ? 0.0 : 1.0) > 0 ? std::vector{longest} : plan_.ranges;
     std::vector<std::vector<Cell>> const cells = blocks_of_ranks(communicator_, in_cells.cells());
-
     std::map<int, std::vector<Candidate>> candidates;
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         if (rank == communicator_.rank()) continue;
@@ -116,23 +117,53 @@ void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
             if (around.contains(in_cells.cells()[i]))
                 for (std::int64_t const k : in_cells.points(i)) candidates[rank].push_back({own_bead(k), own[k]});
     }
-    std::optional<Vec3> rejected;
     auto const of_others = swap_candidates(candidates);
-    for (auto const& [rank, theirs] : of_others) {
-        std::vector<Candidate> const& mine = candidates.at(rank);
-        auto const positions = [](std::vector<Candidate> const& from) {
-            std::vector<Vec3> x(from.size());
-            std::transform(from.begin(), from.end(), x.begin(), [](Candidate const& c) { return c.position; });
-            return x;
-        };
-        std::vector<Vec3> const here = positions(mine), there = positions(theirs);
-        auto const [shown, near] = near_each_other(here, there, radius, plan_.box, *executor_);
-        for (std::int64_t const i : shown) lists[rank].send.push_back(mine[static_cast<std::size_t>(i)].bead);
-        for (std::int64_t const i : near) lists[rank].receive.push_back(theirs[static_cast<std::size_t>(i)].bead);
-        for (std::int64_t i = 0; i < std::ssize(theirs) && !rejected; ++i)
-            if (!std::binary_search(near.begin(), near.end(), i)) rejected = there[i];
+    for (auto const& [rank, theirs] : of_others)
+        for (PairRange const& range : ranges) add_near(candidates.at(rank), theirs, range, lists[rank]);
+}
+
+void GhostLists::add_near(std::vector<Candidate> const& mine, std::vector<Candidate> const& theirs, PairRange const& range, Lists& lists) {
+    struct Acting {
+        Acting(std::vector<Candidate> const& from, PairRange const& range) {
+            for (Candidate const& c : from) {
+                if (!range.is_for(c.bead)) continue;
+                bead.push_back(c.bead);
+                position.push_back(c.position);
+            }
+        }
+        std::vector<std::int64_t> bead;
+        std::vector<Vec3> position;
+    };
+    Acting const here(mine, range), there(theirs, range);
+    auto const [shown, near] = near_each_other(here.position, there.position, range.reach + plan_.skin, plan_.box, *executor_);
+    for (std::int64_t const i : shown) lists.send.push_back(here.bead[static_cast<std::size_t>(i)]);
+    for (std::int64_t const i : near) lists.receive.push_back(there.bead[static_cast<std::size_t>(i)]);
+    for (std::int64_t i = 0; i < std::ssize(there.bead) && plan_.box && free_.empty(); ++i) {
+        if (std::binary_search(near.begin(), near.end(), i)) continue;
+        free_ = {there.position[static_cast<std::size_t>(i)]};  // own beads may come nearer by half the skin
+        edge_ = Vec3{{plan_.skin / 4, plan_.skin / 4, plan_.skin / 4}};
     }
-    find_place_aside(grid, grid.with_surroundings(cells[communicator_.rank()]), rejected);
+}
+
+/// In cells that are not in or around own beads', or far out where space has no end: nothing acts on own beads from there. False where
+/// every cell of the box is.
+bool GhostLists::find_place_aside(Grid const& grid, std::vector<Cell> const& own) {
+    CellSet const felt = grid.with_surroundings(own);
+    free_.clear();
+    edge_ = grid.edge();
+    if (!grid.ends()) {
+        Cell farthest = *std::max_element(felt.begin(), felt.end());
+        farthest[0] += 2;
+        aside_ = grid.middle(farthest);
+        return true;
+    }
+    Cell const& count = grid.cells();
+    std::size_t constexpr enough = 4096;
+    for (std::int64_t i = 0; i < count[0] * count[1] * count[2] && free_.size() < enough; ++i) {
+        Cell const cell{i % count[0], i / count[0] % count[1], i / (count[0] * count[1])};
+        if (!felt.contains(cell)) free_.push_back(grid.middle(cell));
+    }
+    return !free_.empty();
 }
 
 /// Being in or around another's cells is mutual: who sends candidates gets some.
@@ -156,31 +187,6 @@ std::map<int, std::vector<GhostLists::Candidate>> GhostLists::swap_candidates(st
     }
     exchange(out, in);
     return others;
-}
-
-/// `felt`: cells in and around those of own beads. A cell that is not among them is farther away than reach + skin. Where all are, every
-/// bead of another rank was a candidate, and one that is no ghost is as far away.
-void GhostLists::find_place_aside(Grid const& grid, CellSet const& felt, std::optional<Vec3> const& rejected) {
-    if (felt.empty()) return;
-    if (!grid.ends()) {
-        Cell farthest = *std::max_element(felt.begin(), felt.end());
-        farthest[0] += 2;
-        aside_ = grid.middle(farthest);
-        edge_ = grid.edge();
-        return;
-    }
-    Cell const& count = grid.cells();
-    std::size_t constexpr enough = 4096;
-    free_.clear();
-    for (std::int64_t i = 0; i < count[0] * count[1] * count[2] && free_.size() < enough; ++i) {
-        Cell const cell{i % count[0], i / count[0] % count[1], i / (count[0] * count[1])};
-        if (!felt.contains(cell)) free_.push_back(grid.middle(cell));
-    }
-    edge_ = grid.edge();
-    if (free_.empty() && rejected) {  // own beads may come nearer by half the skin
-        free_ = {*rejected};
-        edge_ = Vec3{{plan_.skin / 4, plan_.skin / 4, plan_.skin / 4}};
-    }
 }
 
 /// Out of each other's reach where there is room, in a cube: a row would be so long that OpenMM could not sort own beads among them. In a
@@ -272,16 +278,24 @@ std::vector<Vec3> GhostLists::all_positions(std::span<Vec3 const> own) const {
 
 void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) const {
     std::vector<Vec3> const all = all_positions(own);
-    std::vector<std::int64_t> own_beads;
-    for (std::int64_t k = 0; k < own_count(); ++k) own_beads.push_back(own_bead(k));
     std::set<std::int64_t> const known(beads_.begin(), beads_.end());
     double const no_bead = -1, count = static_cast<double>(all.size());
     double worst = no_bead;  // a stale ghost's bead, or `count` + a missed one
     for (std::size_t i = 0; i < beads_.size(); ++i)
         if (!std::equal(ghosts[i].data, ghosts[i].data + 3, all[beads_[i]].data)) worst = std::max(worst, static_cast<double>(beads_[i]));
-    if (plan_.reach > 0)
-        for (std::int64_t const bead : ghosts_of(all, own_beads, plan_.reach, plan_.box))
-            if (!known.contains(bead)) worst = count + static_cast<double>(bead);
+    for (PairRange const& range : plan_.ranges) {
+        std::vector<Vec3> here, there;
+        std::vector<std::int64_t> bead;  // of `there`
+        for (std::int64_t i = 0; i < std::ssize(place_); ++i) {
+            if (!range.is_for(i)) continue;
+            bool const is_own = owner(i) == communicator_.rank();
+            (is_own ? here : there).push_back(all[static_cast<std::size_t>(i)]);
+            if (!is_own) bead.push_back(i);
+        }
+        for (std::int64_t const i : near_any(there, here, range.reach, plan_.box))
+            if (std::int64_t const missed = bead[static_cast<std::size_t>(i)]; !known.contains(missed))
+                worst = std::max(worst, count + static_cast<double>(missed));
+    }
     worst = communicator_.max(worst);
     if (worst >= count)
         throw SharedError(fmt::format("forces.openmm.audit: bead {:.0f} is felt on a rank that has no ghost of it", worst - count + 1));

@@ -1,9 +1,10 @@
 // The beads of other ranks that a rank's own ones feel, its ghosts: which they are, and what of them travels from rank to rank.
 //
 // The ghosts lie within reach + skin of an own bead when the lists are made, so that none is missed until some bead has moved half the
-// skin. Then every rank makes its lists anew, all at the same evaluation. Each tells the others which cells of space its beads are in,
-// sends those of its beads that are in or around another's cells, and gets that rank's: from the two sets both find the same pairs, so
-// that the sender knows what the receiver keeps. From then on only those positions travel, between the ranks concerned.
+// skin. Where beads act on each other over several ranges a bead is looked for in those alone in which it acts: neutral ones are not
+// ghosts as far out as charged ones. Then every rank makes its lists anew, all at the same evaluation. Each tells the others which cells of
+// space its beads are in, sends those of its beads that are in or around another's cells, and gets that rank's: from the two sets both find
+// the same pairs, so that the sender knows what the receiver keeps. From then on only those positions travel, between the ranks concerned.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +18,7 @@
 #include "dca/linear.hpp"
 #include "force/ghost_traffic.hpp"
 #include "force/grid.hpp"
+#include "force/pair_ranges.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena {
@@ -26,7 +28,8 @@ class GhostLists {
     struct Plan {
         std::vector<std::int64_t> first_of_rank, by_rank;  // who owns what: BeadSystem's
         std::vector<std::int64_t> partners;                // beads that are ghosts wherever they are, ascending
-        double reach = 0, skin = 0;                        // reach 0: no other ghosts
+        std::vector<PairRange> ranges;                     // without any: no other ghosts
+        double skin = 0;
         std::optional<Vec3> box;
     };
     GhostLists(Communicator const&, Plan);
@@ -47,7 +50,7 @@ class GhostLists {
     void renew() { renew_ = true; }
     bool is_due() const { return renew_; }
     /// How far beads may move, nm; none matters where there are no ghosts but partners.
-    std::optional<double> farthest() const { return plan_.reach > 0 ? std::optional(plan_.skin / 2) : std::nullopt; }
+    std::optional<double> farthest() const { return plan_.ranges.empty() ? std::nullopt : std::optional(plan_.skin / 2); }
 
     /// Positions to and from a rank.
     struct Neighbour {
@@ -92,8 +95,9 @@ class GhostLists {
     std::vector<Vec3> all_positions(std::span<Vec3 const> own) const;
     void share_partners();
     void add_near(std::span<Vec3 const> own, ListsOfRank& lists);
+    bool find_place_aside(Grid const&, std::vector<Cell> const& own);
+    void add_near(std::vector<Candidate> const& mine, std::vector<Candidate> const& theirs, PairRange const&, Lists& lists);
     std::map<int, std::vector<Candidate>> swap_candidates(std::map<int, std::vector<Candidate>> const& own);
-    void find_place_aside(Grid const&, CellSet const& felt, std::optional<Vec3> const& near_by);
     void take(ListsOfRank lists);
     void exchange(std::vector<Outgoing> const& out, std::vector<Incoming> const& in);
 

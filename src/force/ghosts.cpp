@@ -183,14 +183,15 @@ Grid grid_for(double radius, std::optional<Vec3> const& box) {
 std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
                                    std::optional<Vec3> const& box) {
     Grid const grid = grid_for(radius, box);
-    PointsInCells const a(grid, points), b(grid, others);
-    return Search(grid, radius, points, a, others, b).run(*serial_executor());
+    auto const executor = serial_executor();
+    PointsInCells const a(grid, points, *executor), b(grid, others, *executor);
+    return Search(grid, radius, points, a, others, b).run(*executor);
 }
 
 NearEachOther near_each_other(std::span<Vec3 const> one, std::span<Vec3 const> other, double radius, std::optional<Vec3> const& box,
                               Executor const& executor) {
     Grid const grid = grid_for(radius, box);
-    PointsInCells const a(grid, one), b(grid, other);
+    PointsInCells const a(grid, one, executor), b(grid, other, executor);
     return {Search(grid, radius, one, a, other, b).run(executor), Search(grid, radius, other, b, one, a).run(executor)};
 }
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <new>
 #include <utility>
 
+#include "clock.hpp"
 #include "error.hpp"
 #include "force/openmm_path.hpp"
 #include "force/openmm_rank.hpp"
@@ -18,8 +18,6 @@
 namespace catena {
 
 namespace {
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string join(std::vector<std::string> const& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
@@ -83,6 +81,15 @@ std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
     return model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
 }
 
+std::string split_text(RankForces const& rank) {
+    if (!std::isfinite(rank.reach())) return "split: every bead on each rank (a force has no cutoff)";
+    std::string text = fmt::format("split: own beads and those within {} + {} nm on each rank", rank.reach(), rank.skin());
+    std::vector<PairRange> const ranges = rank.ranges();
+    for (std::size_t i = 1; i < ranges.size(); ++i)
+        text += fmt::format(", {} + {} nm where forces reach no farther", ranges[i].reach, rank.skin());
+    return text;
+}
+
 /// Why positions and forces cannot stay on a GPU; empty where they can.
 std::string cannot_stay_on_device(OpenMmSpec const& spec, OpenMmPlatform const& platform, Communicator const& communicator,
                                   ChainsOnDevice const& chains) {
@@ -117,21 +124,21 @@ std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spe
 }
 
 void OpenMmForces::evaluate() noexcept {
-    interval_.begin = now();
+    interval_.begin = seconds_now();
     try {
         rank_->evaluate(forces_);
     } catch (...) {
         error_ = std::current_exception();
     }
-    interval_.end = now();
+    interval_.end = seconds_now();
 }
 
 void OpenMmForces::begin(ConstView<3> positions) {
     wait();
-    begun_ = now();
+    begun_ = seconds_now();
     for (std::int64_t k = 0; k < own_count(); ++k) own_[k] = positions.load(k);
     rank_->gather(own_);
-    gathering_ = {begun_, now()};
+    gathering_ = {begun_, seconds_now()};
     path_.settle(communicator_);
     error_ = nullptr;
     under_way_ = evaluated_ = true;
@@ -160,7 +167,7 @@ void OpenMmForces::finish(View<3> forces) {
     }
     for (std::int64_t k = 0; k < own_count(); ++k)
         for (int c = 0; c < 3; ++c) forces.at(k, c) += forces_[k][c];
-    path_.note(now() - begun_);
+    path_.note(seconds_now() - begun_);
 }
 
 std::vector<EnergyTerm> OpenMmForces::energies() {
@@ -204,10 +211,7 @@ std::vector<std::string> OpenMmForces::description() const {
     if (platform_.threads > cores)
         lines.push_back(fmt::format("warning: {} threads share {} cores of this rank", platform_.threads, cores));
     if (communicator_.size() > 1 && replicate_) lines.push_back("replicated: every rank computes the whole System");
-    if (communicator_.size() > 1 && !replicate_ && own_count() > 0)
-        lines.push_back(std::isfinite(rank_->reach())
-                            ? fmt::format("split: own beads and those within {} + {} nm on each rank", rank_->reach(), rank_->skin())
-                            : "split: every bead on each rank (a force has no cutoff)");
+    if (communicator_.size() > 1 && !replicate_ && own_count() > 0) lines.push_back(split_text(*rank_));
     for (auto const& failure : load_openmm_plugins()) lines.push_back("plugin not loaded: " + failure);
     return lines;
 }

@@ -38,6 +38,7 @@ class HaloForces final : public RankForces, public Halo {
     std::int64_t largest_context() const override { return largest_; }
     std::int64_t contexts() const override { return contexts_; }
     double reach() const override { return share_.reach(); }
+    std::vector<PairRange> ranges() const override { return share_.ranges(); }
     double skin() const override { return share_.skin(); }
 
     // Halo

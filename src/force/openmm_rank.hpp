@@ -13,6 +13,7 @@
 #include "force/ghost_traffic.hpp"
 #include "force/openmm_context.hpp"
 #include "force/openmm_model.hpp"
+#include "force/pair_ranges.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena {
@@ -44,6 +45,8 @@ class RankForces {
     /// How far forces reach, and by how much more ghosts' lists do, nm; where nothing is split, or forces have no end, infinite and 0.
     virtual double reach() const { return std::numeric_limits<double>::infinity(); }
     virtual double skin() const { return 0; }
+    /// The longest first, where something is split and forces have an end.
+    virtual std::vector<PairRange> ranges() const { return {}; }
 
     /// Part of the reach by which the ghosts' list is wider.
     static double constexpr skin_of_reach = 0.125;
@@ -62,8 +65,8 @@ struct RankPlan {
 /// A Context with every bead on each rank: one rank, or `replicate`; for the GPU one rank alone. Throws what OpenMM throws if it refuses
 /// the forces.
 std::unique_ptr<RankForces> make_whole_forces(RankPlan const&);
-/// One with the rank's own beads and their ghosts: every bead within reach + skin, and the partners of own ones in bonded terms. Throws
-/// what OpenMM throws if it refuses the forces. Precondition: every force can be split.
+/// One with the rank's own beads and their ghosts: every bead that acts within reach + skin, and the partners of own ones in bonded terms.
+/// Throws what OpenMM throws if it refuses the forces. Precondition: every force can be split.
 std::unique_ptr<RankForces> make_split_forces(RankPlan const&);
 /// The same for the path on which positions and forces stay on the GPU.
 std::unique_ptr<RankForces> make_halo_forces(RankPlan const&);

@@ -5,6 +5,8 @@
 #include <iterator>
 #include <numeric>
 
+#include "force/openmm_ranges.hpp"
+
 namespace catena {
 
 namespace {
@@ -28,8 +30,9 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
       box_(plan.box),
       own_(plan.beads.beads_of(plan.communicator.rank())),
       particle_of_bead_(plan.model.bead_of_particle.size()),
-      reach_(reach_of(*plan.model.system)),
-      skin_(std::isfinite(reach_) ? skin_of_reach * reach_ : 0),
+      ends_(std::isfinite(reach_of(*plan.model.system))),
+      ranges_(ends_ ? pair_ranges(*plan.model.system, plan.model.bead_of_particle) : std::vector<PairRange>{}),
+      skin_(skin_of_reach * longest_reach(ranges_)),
       exchanges_(can_exchange_particles(*plan.model.system)) {
     for (std::size_t p = 0; p < particle_of_bead_.size(); ++p) particle_of_bead_[model_.bead_of_particle[p]] = static_cast<int>(p);
     for (int rank = 0; rank < communicator_.size(); ++rank) {
@@ -38,7 +41,7 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
         bead_at_.insert(bead_at_.end(), of_rank.begin(), of_rank.end());
     }
     if (own_.empty()) return;
-    if (!std::isfinite(reach_)) {
+    if (!ends_) {
         partners_ = all_but(own_, beads_.size());
         return;
     }
@@ -46,9 +49,7 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
     std::sort(partners_.begin(), partners_.end());
 }
 
-GhostLists::Plan SplitShare::lists() const {
-    return {beads_.first_of_rank, beads_.by_rank, partners_, std::isfinite(reach_) ? reach_ : 0, skin_, box_};
-}
+GhostLists::Plan SplitShare::lists() const { return {beads_.first_of_rank, beads_.by_rank, partners_, ranges_, skin_, box_}; }
 
 std::vector<int> SplitShare::particles_of(std::span<std::int64_t const> beads) const {
     std::vector<int> particles;

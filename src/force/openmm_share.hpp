@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "force/openmm_context.hpp"
 #include "force/openmm_rank.hpp"
 #include "force/openmm_subset.hpp"
+#include "force/pair_ranges.hpp"
 
 namespace catena {
 
@@ -23,7 +25,8 @@ class SplitShare {
     std::vector<std::int64_t> const& partners() const { return partners_; }
     GhostLists::Plan lists() const;
     OpenMM::System const& system() const { return *model_.system; }
-    double reach() const { return reach_; }
+    double reach() const { return ends_ ? longest_reach(ranges_) : std::numeric_limits<double>::infinity(); }
+    std::vector<PairRange> const& ranges() const { return ranges_; }
     double skin() const { return skin_; }
     /// Whether particles can be exchanged for others.
     bool exchanges() const { return exchanges_; }
@@ -47,7 +50,9 @@ class SplitShare {
     std::optional<Vec3> box_;
     std::vector<std::int64_t> own_;
     std::vector<int> particle_of_bead_;
-    double reach_, skin_;
+    bool ends_;  // every force has a cutoff
+    std::vector<PairRange> ranges_;
+    double skin_;
     bool exchanges_;
     std::vector<std::int64_t> partners_, bead_at_, bytes_of_rank_;  // bead_at_: beads of all ranks, one rank after the other
     std::unique_ptr<ForceContext> energies_;                        // every bead, on rank 0

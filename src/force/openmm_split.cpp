@@ -43,6 +43,7 @@ class SplitForces final : public RankForces {
     std::int64_t largest_context() const override { return largest_; }
     std::int64_t contexts() const override { return contexts_; }
     double reach() const override { return share_.reach(); }
+    std::vector<PairRange> ranges() const override { return share_.ranges(); }
     double skin() const override { return share_.skin(); }
 
   private:

@@ -207,7 +207,8 @@ void exchange_parameters(Subset const& subset, NonbondedForce const& from, Nonbo
     to.updateParametersInContext(context);
 }
 
-/// How far one force reaches; negative: it cannot be split.
+}  // namespace
+
 double reach_of(Force const& force) {
     double constexpr everywhere = std::numeric_limits<double>::infinity();
     if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&force))
@@ -221,8 +222,6 @@ double reach_of(Force const& force) {
     NoTerm filter;
     return copy_bonded(force, filter) ? 0 : -1;
 }
-
-}  // namespace
 
 bool can_be_split(Force const& force) { return reach_of(force) >= 0; }
 

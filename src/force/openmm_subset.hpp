@@ -12,7 +12,9 @@ namespace catena {
 /// Whether forces on some particles can be had without the others: the cutoff kinds of nonbonded forces, all the common bonded ones.
 bool can_be_split(OpenMM::Force const&);
 
-/// How far nonbonded forces reach: 0 without any, infinite where one has no cutoff. Precondition: every force can be split.
+/// How far a nonbonded force reaches: infinite without a cutoff; 0: a bonded one; negative: it cannot be split.
+double reach_of(OpenMM::Force const&);
+/// The longest. Precondition: every force can be split.
 double reach_of(OpenMM::System const&);
 
 /// Particles, ascending, that share a bonded term, an exception or an exclusion with one of `own` and are not among them.

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <limits>
 #include <random>
+#include <set>
 
 #include "force/ghosts.hpp"
 #include "mpi/first_rank.hpp"
@@ -30,7 +31,7 @@ struct Beads {
             for (std::int64_t k = 0; k < count; ++k) plan.by_rank.push_back(k);
             std::shuffle(plan.by_rank.begin(), plan.by_rank.end(), random);
         }
-        plan.reach = reach;
+        plan.ranges = {{reach, {}}};
         plan.skin = skin;
     }
 
@@ -50,12 +51,22 @@ struct Beads {
         for (Vec3& x : positions)
             for (double& c : x.data) c += step(random);
     }
-    /// All ghosts within `radius`, partners included.
-    std::vector<std::int64_t> expected(double radius) const {
-        auto const near = ghosts_of(positions, own_beads(), radius, plan.box);
-        std::vector<std::int64_t> all;
-        std::set_union(near.begin(), near.end(), plan.partners.begin(), plan.partners.end(), std::back_inserter(all));
-        return all;
+    /// All ghosts that act within the ranges' reach and so much more, partners included.
+    std::vector<std::int64_t> expected(double more) const {
+        std::set<std::int64_t> all(plan.partners.begin(), plan.partners.end());
+        for (PairRange const& range : plan.ranges) {
+            std::vector<std::int64_t> acting, own;  // of `there`: numbers among all; own ones by their places in it
+            std::vector<Vec3> there;
+            for (std::int64_t k = 0; k < std::ssize(positions); ++k)
+                if (range.is_for(k)) {
+                    acting.push_back(k);
+                    there.push_back(positions[k]);
+                }
+            for (std::int64_t const k : own_beads())
+                if (range.is_for(k)) own.push_back(std::lower_bound(acting.begin(), acting.end(), k) - acting.begin());
+            for (std::int64_t const i : ghosts_of(there, own, range.reach + more, plan.box)) all.insert(acting[i]);
+        }
+        return {all.begin(), all.end()};
     }
 
     int rank;
@@ -86,9 +97,9 @@ std::int64_t walk_along(Beads& beads, Communicator const& communicator, int step
     for (int n = 0; n < steps; ++n) {
         ghosts.update(beads.own());
         if (n == 0) {
-            EXPECT_EQ(sorted(ghosts.beads()), beads.expected(reach + skin));
+            EXPECT_EQ(sorted(ghosts.beads()), beads.expected(skin));
         }
-        auto const held = sorted(ghosts.beads()), needed = beads.expected(reach);
+        auto const held = sorted(ghosts.beads()), needed = beads.expected(0);
         EXPECT_TRUE(std::includes(held.begin(), held.end(), needed.begin(), needed.end())) << "step " << n;
         for (std::size_t i = 0; i < ghosts.beads().size(); ++i)
             for (int c = 0; c < 3; ++c) EXPECT_EQ(ghosts.positions()[i][c], beads.positions[ghosts.beads()[i]][c]);
@@ -119,6 +130,48 @@ TEST(GhostExchange, HoldsNearestImagesInABox) {
     });
 }
 
+TEST(GhostExchange, BeadsThatActNotSoFarAreGhostsNearbyAlone) {
+    on_ranks([](Communicator const& communicator) {
+        for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{60, 12, 12}}}}) {
+            Beads beads(300, 12, communicator, true);
+            beads.plan.box = box;
+            PairRange few{reach, {}};
+            for (std::int64_t k = 0; k < 300; ++k) few.acts.push_back(k % 3 == 0 ? 1 : 0);
+            beads.plan.ranges = {few, {0.4 * reach, {}}};
+            walk_along(beads, communicator, 40, 0.02);
+            Beads all = beads;
+            all.plan.ranges = {{reach, {}}};
+            if (communicator.size() > 1) {
+                EXPECT_LT(beads.expected(0).size(), all.expected(0).size());
+            }
+        }
+    });
+}
+
+/// Where a rank's beads leave no cell of the box free, beads are looked for over the longest range, and some are none's ghosts still.
+TEST(GhostExchange, SeveralRangesInAFullBox) {
+    on_ranks([](Communicator const& communicator) {
+        Beads beads(60, 9, communicator, true);
+        beads.plan.box = Vec3{{9, 9, 9}};
+        PairRange few{reach, {}};
+        for (std::int64_t k = 0; k < 60; ++k) few.acts.push_back(k % 3 == 0 ? 1 : 0);
+        beads.plan.ranges = {few, {0.4 * reach, {}}};
+        GhostExchange ghosts(communicator, beads.plan);
+        for (int n = 0; n < 20; ++n) {
+            ghosts.update(beads.own());
+            auto const held = sorted(ghosts.beads()), needed = beads.expected(0);
+            EXPECT_TRUE(std::includes(held.begin(), held.end(), needed.begin(), needed.end())) << "step " << n;
+            EXPECT_NO_THROW(ghosts.audit(beads.own()));
+            auto const own = beads.own();
+            if (!own.empty() && own.size() + held.size() < beads.positions.size()) {
+                Vec3 const place = ghosts.aside(0, 1);
+                EXPECT_TRUE(near_any({&place, 1}, own, reach, beads.plan.box).empty());
+            }
+            beads.walk(0.05);
+        }
+    });
+}
+
 TEST(GhostExchange, PartnersAreGhostsWhereverTheyAre) {
     on_ranks([](Communicator const& communicator) {
         Beads beads(60, 40, communicator);
@@ -128,7 +181,7 @@ TEST(GhostExchange, PartnersAreGhostsWhereverTheyAre) {
             if (std::find(own.begin(), own.end(), 59 - k) == own.end()) beads.plan.partners.push_back(59 - k);
         std::sort(beads.plan.partners.begin(), beads.plan.partners.end());
         walk_along(beads, communicator, 10, 0.1);
-        beads.plan.reach = 0;
+        beads.plan.ranges.clear();
         GhostExchange ghosts(communicator, beads.plan);
         for (int n = 0; n < 5; ++n) {
             ghosts.update(beads.own());

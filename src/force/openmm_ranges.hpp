@@ -1,0 +1,18 @@
+// How far the particles of a System act on each other. For files that see OpenMM's headers.
+#pragma once
+
+#include <OpenMM.h>
+
+#include <cstdint>
+#include <vector>
+
+#include "force/pair_ranges.hpp"
+
+namespace catena {
+
+/// Of its nonbonded forces, the longest first; none whose particles all act in a longer one. A particle does not act in a
+/// CustomNonbondedForce whose energy is zero for its parameters, whatever those of the other are (a product of charges), nor in a
+/// NonbondedForce without charge and epsilon. Precondition: every force can be split and has a cutoff.
+std::vector<PairRange> pair_ranges(OpenMM::System const&, std::vector<std::int64_t> const& bead_of_particle);
+
+}  // namespace catena
