@@ -21,8 +21,6 @@ std::string asked_for(Communicator const& communicator) {
         throw InputError("`" + std::string(text) + "` is no way for GPUs to exchange numbers", "CATENA_GPU_EXCHANGE", "use direct or host");
     return text;
 }
-bool wanted(Communicator const& communicator) { return asked_for(communicator) != "host"; }
-
 bool agreed(Communicator const& communicator, bool here) { return communicator.sum(here ? 0 : 1) == 0; }
 
 /// One host, each rank on a GPU of its own, whatever each of them calls it.
@@ -89,9 +87,8 @@ std::vector<double*> mapped(Communicator const& communicator) {
 
 }  // namespace
 
-bool direct_is_asked_for(Communicator const& communicator) { return asked_for(communicator) == "direct"; }
 bool gpus_may_write_to_each_other(Communicator const& communicator) {
-    return communicator.size() > 1 && wanted(communicator) && agreed(communicator, apart_on_one_host(communicator));
+    return communicator.size() > 1 && asked_for(communicator) != "host" && agreed(communicator, apart_on_one_host(communicator));
 }
 
 std::vector<void*> map_each_others(Communicator const& communicator, void* own) {

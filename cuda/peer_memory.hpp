@@ -37,10 +37,8 @@ struct PeerBoxes {
 
 /// Whether GPUs may write to each other's memory: ranks of one host with a GPU each, and CATENA_GPU_EXCHANGE is not `host`. Collective.
 bool gpus_may_write_to_each_other(Communicator const&);
-/// Whether CATENA_GPU_EXCHANGE is `direct`. Collective.
-bool direct_is_asked_for(Communicator const&);
 /// `own`: what cudaMalloc gave on each rank. Each rank's memory as this rank reaches it, its own among them; empty on all ranks where some
-/// rank does not reach some other. Collective.
+/// rank does not reach some other: CUDA lets one context of a process alone open what another process has on a GPU. Collective.
 std::vector<void*> map_each_others(Communicator const&, void* own);
 void unmap(std::vector<void*> const& base, int own_rank);
 
