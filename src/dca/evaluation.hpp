@@ -6,9 +6,10 @@
 
 namespace catena::dca {
 
-/// Bodies read one by one with what a leaf takes from the configuration.
-template <class Leaf>
+/// Bodies read one by one with what a leaf takes from the configuration. `ahead`: each while the one before it is joined.
+template <class Leaf, bool ahead = false>
 struct Resting {
+    static constexpr bool reads_ahead = ahead;
     template <class Place>
     struct Body : Leaf::template Body<Place> {
         int restricted;
@@ -34,6 +35,10 @@ struct Resting {
     CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
         leaf.accelerate(loads, part.begin + i, inboard, outboard, out);
+    }
+    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
+        leaf.accelerate(loads, static_cast<typename Leaf::template Body<std::int64_t> const&>(body), inboard, outboard, out);
     }
     /// Of several bodies side by side, whose joints restrict what handles carry.
     template <class Place>
@@ -70,23 +75,40 @@ struct Evaluation {
     using Node = typename Sweeps::Node;
     using Part = typename Bodies::Part;
     using Body = typename Bodies::template Body<std::int64_t>;
+    using Passed = OneSided<double, K>;
     Sweeps s;
     Bodies bodies;
     AccelerationsView out;
 
     CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const { return this->part(run, p, part, Forgotten{}); }
+    /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
+    template <class Kept>
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part, Kept&& kept) const {
         Lost found;
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
+        auto const count = static_cast<int>(end - begin);
         Segment segment{};
-        each_body<unrolled<K>>(0, static_cast<int>(end - begin), [&](int i) {
-            Body const body = bodies.body(part, i);
+        Body next;
+        if constexpr (Bodies::reads_ahead) next = bodies.body(part, 0);
+        each_body<unrolled<K>>(0, count, [&](int i) {
+            Body body;
+            if constexpr (Bodies::reads_ahead) {
+                body = next;
+                if (i + 1 < count) next = bodies.body(part, i + 1);
+            } else {
+                body = bodies.body(part, i);
+            }
             Joint joint;
             Directions offset;
-            if (i == 0)
-                segment = bodies.segment(body);
-            else
-                append(segment, bodies.segment(body), {begin + i, body.restricted}, joint, offset, found);
+            Segment const own = bodies.segment(body);
+            if (i == 0) {
+                segment = own;
+                kept.put(i, Passed{{}, own.matrix.z12, own.bias});
+            } else {
+                append(segment, own, {begin + i, body.restricted}, joint, offset, found);
+                kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
+            }
         });
         s.note(found);
         return segment;
@@ -116,6 +138,14 @@ struct Evaluation {
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
+    }
+    /// Of a whole chain whose tip is free, at its first joint: as close().
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating) const {
+        Lost found;
+        auto const factor = factorize(floating.matrix.z11, at.restricted);
+        s.watch(at, factor, found);
+        s.note(found);
+        return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
@@ -147,7 +177,41 @@ struct Evaluation {
         });
     }
 
+    /// The same with what was kept on the way up.
+    template <bool unroll, class Kept>
+    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Kept const& kept, Directions const& first, Directions next) const {
+        constexpr bool unrolled_here = unroll || unrolled<K>;
+        std::int64_t const k = begin_of(run, p);
+        int const count = static_cast<int>(end_of(run, p) - k);
+        Elimination<double, K> passed[part_length] = {};
+        Directions b2{};
+        each_body<unrolled_here>(0, count, [&](int i) {
+            Passed const joint = kept.get(i);
+            if (i > 0)
+                passed[i] = pass(b2, joint);
+            else
+                b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
+        });
+        Body ahead;
+        if constexpr (Bodies::reads_ahead) ahead = bodies.body(part, count - 1);
+        each_body_back<unrolled_here>(0, count, [&](int i) {
+            Directions const at_i = i > 0 ? passed[i].gain * next + passed[i].offset : first;
+            if constexpr (Bodies::reads_ahead) {
+                Body const body = ahead;
+                if (i > 0) ahead = bodies.body(part, i - 1);
+                bodies.accelerate(body, at_i, next, out);
+            } else {
+                bodies.accelerate(part, i, at_i, next, out);
+            }
+            store_forces(s.leaf.group(), out, k + i, at_i, next);
+            next = at_i;
+        });
+    }
+
   private:
+    struct Forgotten {
+        CATENA_HD static void put(int, Passed const&) {}
+    };
     CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset,
                           Lost& found) const {
         dca::append(segment.matrix, outboard.matrix, at.restricted, joint);
