@@ -1,11 +1,11 @@
 #include "cuda/device_solver.cuh"
-#include "dca/articulated_sweeps.hpp"
+#include "dca/leaf_choice.hpp"
 
 namespace catena::cuda {
 
 std::unique_ptr<ChainSolver> make_articulated_solver(ChainGroup const& group, DeviceSpace const& space, Communicator const& communicator) {
-    if (group.has_screws) return make_solver<dca::ArticulatedLeaf<true>>(group, space, communicator);
-    return make_solver<dca::ArticulatedLeaf<false>>(group, space, communicator);
+    return dca::with_articulated_leaf(group,
+                                      [&](auto leaf) { return make_solver<typename decltype(leaf)::type>(group, space, communicator); });
 }
 
 }  // namespace catena::cuda

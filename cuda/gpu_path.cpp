@@ -1,9 +1,9 @@
 #include "cuda/gpu_path.hpp"
 
-#include <chrono>
 #include <cmath>
 #include <utility>
 
+#include "clock.hpp"
 #include "error.hpp"
 
 namespace catena::cuda {
@@ -65,8 +65,6 @@ GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan) : plan_(std::move(p
 
 GpuPath::~GpuPath() { home_->make_current(); }  // what it owns lives there
 
-double GpuPath::now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 void GpuPath::compute_with(std::unique_ptr<OpenMmOnDevice> openmm) {
     openmm_ = std::move(openmm);
     stream_ = openmm_ ? static_cast<cudaStream_t>(openmm_->arrays().stream) : nullptr;
@@ -75,7 +73,7 @@ void GpuPath::compute_with(std::unique_ptr<OpenMmOnDevice> openmm) {
 void GpuPath::start(std::span<DeviceBeads* const> beads, bool timed) {
     beads_.assign(beads.begin(), beads.end());
     timed_ = timed;
-    begun_ = now();
+    begun_ = seconds_now();
     if (timed) events_->begun.record(stream_of(*beads.front()));
 }
 

@@ -44,7 +44,6 @@ class GpuPath : public DevicePath {
     };
 
     static cudaStream_t stream_of(DeviceBeads const& group) { return static_cast<cudaStream_t>(group.stream()); }
-    static double now();
 
     /// The Context that computes; null: none.
     void compute_with(std::unique_ptr<OpenMmOnDevice> openmm);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "clock.hpp"
 #include "cuda/gpu_path.hpp"
 #include "cuda/peer_inboxes.hpp"
 #include "error.hpp"
@@ -82,7 +83,7 @@ class HaloPath final : public GpuPath {
             is_shown_.wait();
         else
             look_at_start();
-        exchange_.begin = now();
+        exchange_.begin = seconds_now();
         // The GPU may have been behind: its clock is the host's where both are known to be.
         if (has_lists_ && timed_) begun_ = exchange_.begin - is_shown_.seconds_since(events_->begun);
         bool const far = std::exchange(flags_->data()->far, 0) != 0;
@@ -98,7 +99,7 @@ class HaloPath final : public GpuPath {
             halo_.carry(out(), in());
         if (inboxes_ && (halo_.is_audited() || of_this_order_ == 0 || !ghosts_are_placed_)) look_into_inbox();
         if (halo_.is_audited()) halo_.audit(positions(), in());
-        exchange_.end = now();
+        exchange_.end = seconds_now();
         if (of_this_order_ == 0) {
             Others const others[] = {{lists().particle, in()}, {lists().idle, lists().aside}};
             order(positions(), others);

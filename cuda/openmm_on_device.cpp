@@ -4,16 +4,11 @@
 #include <cuda.h>
 #include <openmm/cuda/CudaContext.h>
 #include <openmm/cuda/CudaPlatform.h>
-#include <openmm/internal/ContextImpl.h>
+
+#include "force/openmm_impl.hpp"
 
 namespace catena::cuda {
 namespace {
-
-/// Every force may look into its Context; this one does nothing else.
-struct Key : OpenMM::Force {
-    OpenMM::ContextImpl& open(OpenMM::Context& context) const { return getContextImpl(context); }
-    OpenMM::ForceImpl* createImpl() const override { return nullptr; }
-};
 
 OpenMM::CudaContext& gpu_of(OpenMM::ContextImpl& context) {
     return *static_cast<OpenMM::CudaPlatform::PlatformData*>(context.getPlatformData())->contexts.at(0);
@@ -23,7 +18,7 @@ void* address(OpenMM::CudaArray& array) { return array.isInitialized() ? reinter
 
 class OnDevice final : public OpenMmOnDevice {
   public:
-    explicit OnDevice(OpenMM::Context& context) : context_(context), impl_(Key().open(context)), gpu_(gpu_of(impl_)) {
+    explicit OnDevice(OpenMM::Context& context) : context_(context), impl_(impl_of(context)), gpu_(gpu_of(impl_)) {
         cuCtxGetCurrent(&before_);
     }
     ~OnDevice() override {

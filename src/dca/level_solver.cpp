@@ -1,7 +1,8 @@
 #include "dca/level_solver.hpp"
 
 #include <algorithm>
-#include <chrono>
+
+#include "clock.hpp"
 
 namespace catena::dca {
 namespace {
@@ -10,19 +11,17 @@ using Items = LevelPart::Items;
 
 std::size_t within(int levels, Schedule const& schedule) { return std::min(static_cast<std::size_t>(levels), schedule.levels.size()); }
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
 /// Adds the time since the last call, or since it was made, to one of the sums.
 class Clock {
   public:
     void to(double& sum) {
-        double const moment = now();
+        double const moment = seconds_now();
         sum += moment - last_;
         last_ = moment;
     }
 
   private:
-    double last_ = now();
+    double last_ = seconds_now();
 };
 
 class LevelSolver final : public ChainSolver {
@@ -51,7 +50,7 @@ class LevelSolver final : public ChainSolver {
     }
 
     void assemble_matrices(ConfigurationView const& configuration) override {
-        double const start = now();
+        double const start = seconds_now();
         SplitSeconds& spent = report_.split;
         Clock clock;
         lower_.part->set(configuration);
@@ -74,12 +73,12 @@ class LevelSolver final : public ChainSolver {
         ++report_.matrix_sweeps;
         std::int64_t bad = upper_.part->first_indefinite();
         if (has_lower_) bad = std::min(bad, lower_.part->first_indefinite());
-        report_.matrix_seconds += now() - start;
+        report_.matrix_seconds += seconds_now() - start;
         if (bad < group_.schedule.joints) refuse_indefinite(group_, communicator_.rank(), bad);
     }
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
-        double const start = now();
+        double const start = seconds_now();
         SplitSeconds& spent = report_.split;
         Clock clock;
         lower_.part->set(loads, out);
@@ -109,7 +108,7 @@ class LevelSolver final : public ChainSolver {
         upper_.part->fetch();
         clock.to(spent.download);
         ++report_.bias_sweeps;
-        report_.bias_seconds += now() - start;
+        report_.bias_seconds += seconds_now() - start;
     }
 
     SolverReport report() const override {
@@ -130,7 +129,7 @@ class LevelSolver final : public ChainSolver {
     void gather_shared(Items items) {
         Schedule const& s = group_.schedule;
         if (s.shared.empty()) return;
-        double const start = now();
+        double const start = seconds_now();
         std::vector<double> own, all;
         upper_.part->get(items, own_units_, own);
         upper_.part->get(items, all_units_, all);  // for its size
@@ -139,7 +138,7 @@ class LevelSolver final : public ChainSolver {
         for (SharedUnit const& unit : s.shared) bytes[unit.owner] += static_cast<std::int64_t>(unit_bytes);
         communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
         upper_.part->put(items, all_units_, all);
-        report_.exchange_seconds += now() - start;
+        report_.exchange_seconds += seconds_now() - start;
     }
 
     ChainGroup const& group_;

@@ -1,11 +1,11 @@
 // The driver, for any Space: which segment meets which, and when ranks speak. All mathematics is in segment.hpp, leaf.hpp, articulated.hpp.
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <type_traits>
 #include <vector>
 
+#include "clock.hpp"
 #include "dca/evaluation.hpp"
 #include "dca/host_space.hpp"
 #include "dca/inverse_sweep.hpp"
@@ -225,14 +225,13 @@ class TreeSolver final : public ChainSolver {
     /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
     class Stopwatch {
       public:
-        Stopwatch(TreeSolver& solver, double& seconds) : solver_(solver), seconds_(seconds), start_(now()) {}
+        Stopwatch(TreeSolver& solver, double& seconds) : solver_(solver), seconds_(seconds), start_(seconds_now()) {}
         ~Stopwatch() {
             if (solver_.measured_) solver_.space_.wait();
-            if (solver_.measured_ || Space::answers_at_once) seconds_ += now() - start_;
+            if (solver_.measured_ || Space::answers_at_once) seconds_ += seconds_now() - start_;
         }
         Stopwatch(Stopwatch const&) = delete;
         Stopwatch& operator=(Stopwatch const&) = delete;
-        static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
       private:
         TreeSolver& solver_;
@@ -263,11 +262,11 @@ class TreeSolver final : public ChainSolver {
     /// The shared units' records, to all ranks.
     template <class... T>
     void gather(Shown<T> const&... shown) {
-        auto const start = Stopwatch::now();
+        auto const start = seconds_now();
         (shown.units.show(space_, shown.numbers), ...);
         (shown.units.bring(space_, communicator_, shown.numbers), ...);
         if (measured_) space_.wait();
-        report_.exchange_seconds += Stopwatch::now() - start;
+        report_.exchange_seconds += seconds_now() - start;
     }
     Shown<typename Sweeps::Matrices> of_matrices() {
         return {shown_matrices_, {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};

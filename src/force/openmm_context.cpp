@@ -1,23 +1,12 @@
 #include "force/openmm_context.hpp"
 
-#include <openmm/internal/ContextImpl.h>
-
 #include <cmath>
 #include <utility>
 
+#include "force/openmm_impl.hpp"
 #include "force/openmm_subset.hpp"
 
 namespace catena {
-namespace {
-
-/// Every force may look into its Context; this one does nothing else.
-struct Key : OpenMM::Force {
-    OpenMM::ContextImpl& open(OpenMM::Context& context) const { return getContextImpl(context); }
-    OpenMM::ForceImpl* createImpl() const override { return nullptr; }
-};
-
-}  // namespace
-
 Placement placement_for(OpenMM::System const& system) {
     bool images = system.usesPeriodicBoundaryConditions();
     for (int i = 0; i < system.getNumForces(); ++i) {
@@ -34,7 +23,7 @@ Placement placement_for(OpenMM::System const& system) {
 ForceContext::ForceContext(std::shared_ptr<OpenMM::System const> system, OpenMmPlatform const& platform, std::optional<Vec3> const& box,
                            ForceContext* home)
     : box_(box), placement_(placement_for(*system)), system_(std::move(system)) {
-    context_.reset(home ? Key().open(home->context()).createLinkedContext(*system_, integrator_)
+    context_.reset(home ? impl_of(home->context()).createLinkedContext(*system_, integrator_)
                         : new OpenMM::Context(*system_, integrator_, *platform.platform, platform.properties));
     positions_.resize(static_cast<std::size_t>(system_->getNumParticles()));
 }

@@ -48,7 +48,7 @@ void refuse_articulated(ChainGroup const& group, bool implicit) {
 
 Backend choose_backend(Scene const& scene, Communicator const& communicator) {
     Backend const asked = scene.solver.backend;
-    if (std::string const why = scene.why_not_on(asked); !why.empty())
+    if (std::string const why = scene.dynamics.why_host_alone(); uses_gpu(asked) && !why.empty())
         throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;

@@ -1,10 +1,11 @@
 // When each phase of a step ran, and how much of the matrix sweep was hidden behind the forces.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "clock.hpp"
 
 namespace catena {
 
@@ -16,7 +17,5 @@ struct StepTimeline {
     std::int64_t step = 0;
     std::vector<Phase> phases;
 };
-
-inline double seconds_now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 }  // namespace catena

@@ -3,9 +3,9 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "clock.hpp"
 #include "io/output.hpp"
 
 namespace catena {
@@ -14,8 +14,6 @@ namespace {
 constexpr double seconds_between_redraws = 0.2;
 constexpr double first_interval = 1, longest_interval = 30;  // seconds, of a log
 constexpr std::int64_t widest_bar = 30, narrowest_bar = 8;   // characters
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 std::string duration(double seconds) {
     if (!std::isfinite(seconds) || seconds > 1e8) return "?";
@@ -46,14 +44,14 @@ Progress::Progress(bool quiet, std::int64_t first_step, std::int64_t last_step, 
       last_(last_step),
       now_(first_step),
       time_step_(time_step),
-      start_(now()),
+      start_(seconds_now()),
       last_shown_(start_),
       interval_(terminal_ ? seconds_between_redraws : first_interval) {}
 
 void Progress::update(std::int64_t step) {
     now_ = step;
     if (quiet_) return;
-    double const moment = now();
+    double const moment = seconds_now();
     if (moment - last_shown_ < interval_) return;
     last_shown_ = moment;
     if (!terminal_) interval_ = std::min(2 * interval_, longest_interval);
@@ -65,7 +63,7 @@ void Progress::finish() {
 }
 
 double Progress::rate() const {
-    double const elapsed = now() - start_;
+    double const elapsed = seconds_now() - start_;
     return elapsed > 0 ? static_cast<double>(now_ - first_) / elapsed : 0;
 }
 
@@ -74,7 +72,7 @@ std::string Progress::line(bool last) const {
     double const fraction = steps > 0 ? std::clamp(done / steps, 0.0, 1.0) : 1;
     std::string text = fmt::format("{:5.1f} %  step {} of {}  {:.4g} steps/s", 100 * fraction, now_, last_, speed);
     if (!si_) text += fmt::format("  {:.4g} ns/day", speed * time_step_ * 86.4);
-    text += last ? "  took " + duration(now() - start_) : "  " + duration((steps - done) / speed) + " left";
+    text += last ? "  took " + duration(seconds_now() - start_) : "  " + duration((steps - done) / speed) + " left";
     return text;
 }
 

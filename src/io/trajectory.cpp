@@ -1,8 +1,8 @@
 // The writer of trajectory.h5md; what lies where in the file: trajectory_layout.hpp.
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 
+#include "clock.hpp"
 #include "error.hpp"
 #include "io/file_way.hpp"
 #include "io/hdf5_data.hpp"
@@ -20,8 +20,6 @@ std::string const writing = "write the trajectory";
 constexpr double seconds_between_flushes = 10;
 
 static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Quat) == 4 * sizeof(double), "frames are handed to HDF5 as they lie");
-
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
 /// Metadata stay in memory between flushes: a killed run leaves the file as its last flush left it, whole.
 Properties access_of(Writers const& writers, std::string const& file) {
@@ -106,7 +104,7 @@ class H5mdWriter final : public TrajectoryWriter {
             writers_->make_room(file_, 0, name_, writing);
             writers_->flush_to_disk(file_, name_, writing);
         });
-        flushed_ = now();
+        flushed_ = seconds_now();
     }
     void close() override {
         if (!file_) return;
@@ -203,11 +201,11 @@ class H5mdWriter final : public TrajectoryWriter {
         put_from_first(series_.step, &step_);
         ++at_.frames;
         at_.last_step = step_;
-        bool const due = writers_->is_first() && now() - flushed_ >= seconds_between_flushes;
+        bool const due = writers_->is_first() && seconds_now() - flushed_ >= seconds_between_flushes;
         if (writers_->sum(due ? 1 : 0) == 0) return;
         writers_->make_room(file_, 0, name_, writing);
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
-        flushed_ = now();
+        flushed_ = seconds_now();
     }
     void put_from_first(Series& series, void const* values) { series.put(place(), at_.frames, writers_->is_first() ? values : nullptr); }
     Place place() const { return {file_.get(), name_, writing}; }

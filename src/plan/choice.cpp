@@ -15,7 +15,7 @@ namespace {
 std::string no_gpu_for(Scene const& scene, Machine const& machine) {
     if (!machine.no_gpu.empty()) return machine.no_gpu;
     if (scene.solver.refine > 0) return "what refined solutions lack is looked for on the host";
-    return scene.why_not_on(Backend::cuda);
+    return scene.dynamics.why_host_alone();
 }
 /// Where OpenMM is free to take the GPU for its forces, and beads could stay there between it and the solver.
 bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {

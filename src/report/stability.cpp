@@ -145,13 +145,38 @@ void add(PeerErrors& to, PeerAnswer const& answer, Scene const& scene, Solution 
 
 StabilityPeer peer_of(PeerErrors const& p) { return {p.name, p.why_not.empty() ? median(p.error) : infinite, p.why_not}; }
 
-double error_of(std::future<std::vector<double>>& in_double, Scene const& scene, Solution layout, ExactSolution const& exact) {
+/// A case with one seed, its answer and what articulated bodies in double find.
+struct KnownCase {
+    Scene scene;
+    Solution layout;
+    ExactSolution exact;
+    double error_in_double = infinite;
+};
+
+double error_in_double(Scene const& scene, Solution layout, ExactSolution const& exact) {
     try {
-        layout.acceleration = in_double.get();
+        layout.acceleration = oracle_accelerations<double>(scene, {});
     } catch (ComputationError const&) {
         return infinite;
     }
     return largest_difference(scene, layout, exact.acceleration);
+}
+
+KnownCase known_case(StabilityCase const& which, int seed) {
+    KnownCase known{which.scene(static_cast<std::uint64_t>(seed)), {}, {}};
+    known.layout = layout_of(known.scene);
+    known.exact = exact_solution(known.scene, known.layout, largest_quad_here, which.bodies > few_nudges_above ? 1 : 3);
+    known.error_in_double = error_in_double(known.scene, known.layout, known.exact);
+    return known;
+}
+
+/// The oracles have one thread a chain, so seeds go side by side, before anything is timed.
+std::vector<KnownCase> known_cases(StabilityCase const& which, int seeds) {
+    std::vector<std::future<KnownCase>> finding;
+    for (int seed = 1; seed <= seeds; ++seed) finding.push_back(std::async(std::launch::async, known_case, which, seed));
+    std::vector<KnownCase> known;
+    for (std::future<KnownCase>& each : finding) known.push_back(each.get());
+    return known;
 }
 
 }  // namespace
@@ -229,22 +254,19 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
     std::vector<PeerErrors> of_peers;
     std::vector<Variant> variants;
     std::vector<double> condition, growth, in_double;
-    for (int seed = 1; seed <= seeds; ++seed) {
-        Scene scene = which.scene(static_cast<std::uint64_t>(seed));
+    std::vector<KnownCase> known = known_cases(which, seeds);
+    for (KnownCase& each : known) {
+        Scene& scene = each.scene;
+        ExactSolution const& exact = each.exact;
         if (variants.empty()) variants = variants_of(scene.chains.front(), backends, handles);
         if (variants.empty()) return study;
-        Solution const layout = layout_of(scene);
-        // A long chain's solutions are large: there they go one after the other.
-        auto const when = which.bodies > few_nudges_above ? std::launch::deferred : std::launch::async;
-        auto found_in_double = std::async(when, [&] { return oracle_accelerations<double>(scene, {}); });
-        ExactSolution const exact = exact_solution(scene, layout, largest_quad_here, which.bodies > few_nudges_above ? 1 : 3);
         study.reference = exact.by;
         growth.push_back(exact.growth);
         if (which.bodies <= largest_condition) condition.push_back(oracle::condition_estimate(scene.chains.front()));
-        in_double.push_back(error_of(found_in_double, scene, layout, exact));
+        in_double.push_back(each.error_in_double);
         std::vector<PeerAnswer> const answers = peers ? peers(which, scene) : std::vector<PeerAnswer>{};
         of_peers.resize(answers.size());
-        for (std::size_t i = 0; i < answers.size(); ++i) add(of_peers[i], answers[i], scene, layout, exact);
+        for (std::size_t i = 0; i < answers.size(); ++i) add(of_peers[i], answers[i], scene, each.layout, exact);
         for (Variant& variant : variants) add(variant, scene, exact);
     }
     study.growth = median(growth);

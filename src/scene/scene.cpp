@@ -116,8 +116,6 @@ std::string DynamicsSpec::why_host_alone() const {
     return "";
 }
 
-std::string Scene::why_not_on(Backend backend) const { return uses_gpu(backend) ? dynamics.why_host_alone() : ""; }
-
 char const* name_of(Integrator integrator) {
     switch (integrator) {
         case Integrator::rk4:

@@ -247,8 +247,6 @@ struct Scene {
 
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;
-    /// Why the backend cannot compute it; empty where it can.
-    std::string why_not_on(Backend) const;
 };
 
 /// Reads and validates a scene file. `overrides`: "key.path=value" with list indices as in "chains[0].count=10".

@@ -8,6 +8,7 @@
 #include "integrate/share.hpp"
 #include "integrate/stepper.hpp"
 #include "mpi/first_rank.hpp"
+#include "tests/gpu/openmm_scene.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/gpu.hpp"
 
@@ -21,15 +22,6 @@ struct Case {
     double edge = 20;            // nm, the longest
     bool ghosts_change = false;  // there are beads that a rank does not feel
 };
-
-char const* const sequence = "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVV";
-std::string text_of(Case const& c) {
-    std::string chains = c.chains;
-    for (std::size_t at; (at = chains.find("SEQ")) != std::string::npos;) chains.replace(at, 3, sequence);
-    return "chains: [" + chains + "]\n" + c.rest +
-           "\nforces: {gravity: [0, 0, -1], openmm: {builder: calvados2, platform: CUDA}}\n"
-           "dynamics: {integrator: g-baoab, step: 0.01, steps: 10, friction: 0.1, seed: 3}\n";
-}
 
 /// What one way of computing found, and where it stood then.
 struct Found {
@@ -55,7 +47,7 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
     }
     std::string given_way_ = std::getenv("CATENA_GPU_EXCHANGE") ? std::getenv("CATENA_GPU_EXCHANGE") : "";
     static Scene scene_with(std::string const& precision, bool on_device) {
-        Scene scene = parse_scene(text_of(GetParam()), "scene.yaml");
+        Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest), "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->precision = precision;
         scene.forces.openmm->path = on_device ? "device" : "host";

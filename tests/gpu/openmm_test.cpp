@@ -6,6 +6,7 @@
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/stepper.hpp"
+#include "tests/gpu/openmm_scene.hpp"
 #include "tests/support/gpu.hpp"
 
 namespace catena::test {
@@ -16,15 +17,6 @@ struct Case {
     char const* chains;
     char const* rest;
 };
-
-char const* const sequence = "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVV";
-std::string text_of(Case const& c, std::string const& precision) {
-    std::string chains = c.chains;
-    for (std::size_t at; (at = chains.find("SEQ")) != std::string::npos;) chains.replace(at, 3, sequence);
-    return "chains: [" + chains + "]\n" + c.rest +
-           "\nforces: {gravity: [0, 0, -1], openmm: {builder: calvados2, platform: CUDA, precision: " + precision +
-           "}}\ndynamics: {integrator: g-baoab, step: 0.01, steps: 10, friction: 0.1, seed: 3}\n";
-}
 
 /// What one way of computing found, and where it stood then.
 struct Found {
@@ -46,7 +38,7 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
     }
     /// At step `last`, from the scene's start or from where another stood.
     Found found(std::string const& path, std::string const& precision, std::int64_t last, Found const* start = nullptr) {
-        Scene scene = parse_scene(text_of(GetParam(), precision), "scene.yaml");
+        Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: " + precision), "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->path = path;
         ChainSystem system(scene, Axes::world, *communicator_);
@@ -137,7 +129,7 @@ TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
 }
 
 TEST_P(OpenMmOnGpu, ABeadAtNoFinitePlaceEndsTheRun) {
-    Scene scene = parse_scene(text_of(GetParam(), "mixed"), "scene.yaml");
+    Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: mixed"), "scene.yaml");
     scene.solver.backend = Backend::cuda;
     scene.forces.openmm->path = "device";
     ChainSystem system(scene, Axes::world, *communicator_);
