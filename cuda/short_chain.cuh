@@ -3,9 +3,10 @@
 #pragma once
 
 #include <type_traits>
+#include <vector>
 
 #include "cuda/cluster.cuh"
-#include "cuda/run_parts.cuh"
+#include "cuda/stage_kernels.cuh"
 
 namespace catena::cuda::kernels {
 
@@ -15,9 +16,22 @@ constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
 constexpr int most_warps_of_short = 2 * lanes_of_warp;
 static_assert(most_warps_of_short <= most_blocks_of_short * most_threads_of_short / lanes_of_warp);
 
+/// No warps: none, or one that is not short.
 struct ShortChain {
     int bodies = 0, warps = 0;
 };
+/// That of a tree of one whole chain whose tip is free, in runs as long as they get.
+inline ShortChain short_chain_of(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
+                                 std::vector<dca::Root> const& roots) {
+    if (runs.empty() || roots.size() != 1 || roots.front().tip != dca::TipTo::nothing) return {};
+    std::int64_t const bodies = runs.back().body + runs.back().count;
+    std::size_t joined = 1;
+    for (std::vector<dca::Merge> const& level : levels) joined += level.size();
+    bool const whole = runs.front().body == 0 && joined == runs.size();
+    bool const longest = (bodies + dca::longest_run - 1) / dca::longest_run == std::ssize(runs);
+    if (!whole || !longest || bodies > most_warps_of_short * bodies_of_warp) return {};
+    return {static_cast<int>(bodies), static_cast<int>((bodies + bodies_of_warp - 1) / bodies_of_warp)};
+}
 
 /// One meeting of lanes: lane l of those with l & mask == last joins what lane l - distance has to its own; all that lie between them count
 /// to its own.
@@ -90,9 +104,8 @@ class ShortWarp {
         clock(3);
         Ends ends = solve_top(unit, restricted_top, clock);
         clock(5);
-        each_step<levels_of_warp, true>(levels_of_warp, [&](int level) {
-            go_down(ends, dca::parts_of_run << level, own_, warp_ * lanes_of_warp, dca::part_length);
-        });
+        each_step<levels_of_warp, true>(
+            levels_of_warp, [&](int level) { go_down(ends, dca::parts_of_run << level, own_, warp_ * lanes_of_warp, dca::part_length); });
         State begin = ends.first;
         each_step<dca::parts_of_run, true>(dca::parts_of_run, [&](int p) {
             if (p == 0 || p >= parts) return;
@@ -242,6 +255,23 @@ class ShortWarp {
 struct NoClock {
     __device__ void operator()(int) const {}
 };
+/// The sweeps that keep what they find where they find it, and leave nothing for others.
+template <class Sweep>
+constexpr bool takes_short_chains = Sweep::keeps_nodes;
+
+struct ShortGrid {
+    unsigned blocks = 0, threads = 0;
+    std::size_t shared_bytes = 0;
+};
+/// As few warps a block as there may be: each then has more of a multiprocessor.
+template <class Sweep>
+ShortGrid grid_of_short(ShortChain const& chain) {
+    int const most = chain.warps > most_in_cluster * most_threads_of_short / lanes_of_warp ? most_blocks_of_short : most_in_cluster;
+    int const warps = (chain.warps + most - 1) / most, blocks = (chain.warps + warps - 1) / warps, of_block = lanes_of_warp * warps;
+    return {static_cast<unsigned>(blocks), static_cast<unsigned>(of_block),
+            sizeof(double) * ShortWarp<Sweep>::numbers(of_block, chain.warps)};
+}
+/// The next such launch may start before this one has ended; what it reads and writes waits.
 template <class Sweep>
 __global__ void __launch_bounds__(most_threads_of_short) turn_short(ShortChain chain, Sweep sweep) {
     let_next_launch_start();

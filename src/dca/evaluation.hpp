@@ -2,14 +2,16 @@
 // again on the way down, because that is cheaper than to keep what became of them.
 #pragma once
 
+#include <type_traits>
+
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
 
-/// Bodies read one by one with what a leaf takes from the configuration. `ahead`: each while the one before it is joined.
-template <class Leaf, bool ahead = false>
+/// Bodies read one by one with what a leaf takes from the configuration.
+template <class Leaf>
 struct Resting {
-    static constexpr bool reads_ahead = ahead;
+    static constexpr bool one_by_one = true;
     template <class Place>
     struct Body : Leaf::template Body<Place> {
         int restricted;
@@ -38,7 +40,8 @@ struct Resting {
     }
     CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
-        leaf.accelerate(loads, static_cast<typename Leaf::template Body<std::int64_t> const&>(body), inboard, outboard, out);
+        if (out.acceleration.origin)
+            leaf.accelerate(loads, static_cast<typename Leaf::template Body<std::int64_t> const&>(body), inboard, outboard, out);
     }
     /// Of several bodies side by side, whose joints restrict what handles carry.
     template <class Place>
@@ -83,17 +86,19 @@ struct Evaluation {
     CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
     CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const { return this->part(run, p, part, Forgotten{}); }
     /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
+    /// Whoever keeps them has registers to read a body while the one before it is joined.
     template <class Kept>
     CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part, Kept&& kept) const {
+        constexpr bool ahead = Bodies::one_by_one && !std::is_same_v<std::remove_cvref_t<Kept>, Forgotten>;
         Lost found;
         std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
         auto const count = static_cast<int>(end - begin);
         Segment segment{};
         Body next;
-        if constexpr (Bodies::reads_ahead) next = bodies.body(part, 0);
+        if constexpr (ahead) next = bodies.body(part, 0);
         each_body<unrolled<K>>(0, count, [&](int i) {
             Body body;
-            if constexpr (Bodies::reads_ahead) {
+            if constexpr (ahead) {
                 body = next;
                 if (i + 1 < count) next = bodies.body(part, i + 1);
             } else {
@@ -179,7 +184,8 @@ struct Evaluation {
 
     /// The same with what was kept on the way up.
     template <bool unroll, class Kept>
-    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Kept const& kept, Directions const& first, Directions next) const {
+    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Kept const& kept, Directions const& first,
+                                 Directions next) const {
         constexpr bool unrolled_here = unroll || unrolled<K>;
         std::int64_t const k = begin_of(run, p);
         int const count = static_cast<int>(end_of(run, p) - k);
@@ -193,10 +199,10 @@ struct Evaluation {
                 b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
         });
         Body ahead;
-        if constexpr (Bodies::reads_ahead) ahead = bodies.body(part, count - 1);
+        if constexpr (Bodies::one_by_one) ahead = bodies.body(part, count - 1);
         each_body_back<unrolled_here>(0, count, [&](int i) {
             Directions const at_i = i > 0 ? passed[i].gain * next + passed[i].offset : first;
-            if constexpr (Bodies::reads_ahead) {
+            if constexpr (Bodies::one_by_one) {
                 Body const body = ahead;
                 if (i > 0) ahead = bodies.body(part, i - 1);
                 bodies.accelerate(body, at_i, next, out);

@@ -19,7 +19,7 @@ struct BiasedSegment {
 /// As Resting (evaluation.hpp). No jointed tips. K = 1 projected, 3 full.
 template <int K>
 struct MovingBeads {
-    static constexpr bool reads_ahead = false;
+    static constexpr bool one_by_one = false;
     template <class Real>
     struct Link {
         Vector<Real, 3> direction;  // 0 where there is none
