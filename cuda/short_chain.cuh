@@ -1,22 +1,24 @@
 // One chain that fits into one cluster of blocks, up and down its tree in one launch. A lane takes a part of a run, a warp eight runs,
 // which it joins by itself; then every warp is given the segments of all of them and joins those as well, so that nobody waits twice.
+// Bodies that are read one by one have more warps beside: what needs no neighbour is done for all bodies at once.
 #pragma once
 
 #include <type_traits>
 #include <vector>
 
 #include "cuda/cluster.cuh"
+#include "cuda/quick.cuh"
 #include "cuda/stage_kernels.cuh"
 
 namespace catena::cuda::kernels {
 
-constexpr int lanes_of_warp = 32, most_threads_of_short = 128, most_blocks_of_short = 16;
+constexpr int lanes_of_warp = 32, most_joining_warps = 4, most_blocks_of_short = 16;
 constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
 /// Of those at the top every lane takes one or two.
 constexpr int most_warps_of_short = 2 * lanes_of_warp;
-static_assert(most_warps_of_short <= most_blocks_of_short * most_threads_of_short / lanes_of_warp);
+static_assert(most_warps_of_short <= most_blocks_of_short * most_joining_warps);
 
-/// No warps: none, or one that is not short.
+/// `warps`, that join; none: there is none, or one that is not short.
 struct ShortChain {
     int bodies = 0, warps = 0;
 };
@@ -59,19 +61,25 @@ class ShortWarp {
     };
 
   public:
-    /// Numbers of a block of so many threads, and of a launch of so many warps.
-    static constexpr std::size_t numbers(int of_threads, int warps) {
+    static constexpr bool one_by_one = Sweep::one_by_one;
+    /// Warps beside every one that joins, itself included: few enough that all threads have as many registers as they may.
+    static constexpr int warps_beside(int joining) { return !one_by_one ? 1 : joining <= 2 ? 4 : 2; }
+    static constexpr int most_threads = (one_by_one ? 2 : 1) * most_joining_warps * lanes_of_warp;
+    /// Numbers of a block of so many warps that join, and of a launch of so many.
+    static constexpr std::size_t numbers(int joining, int warps) {
         return 2 + static_cast<std::size_t>(numbers_of<Segment>) * static_cast<std::size_t>(warps) +
-               static_cast<std::size_t>(of_threads / lanes_of_warp) * of_warp;
+               static_cast<std::size_t>(joining) * of_warp;
     }
     __device__ ShortWarp(ShortChain const& chain, Sweep const& sweep, double* memory)
         : chain_(chain),
           sweep_(sweep),
           lane_(static_cast<int>(threadIdx.x) % lanes_of_warp),
-          warp_(static_cast<int>(thread()) / lanes_of_warp),
+          joining_(joining_in_block(chain)),
+          beside_(static_cast<int>(threadIdx.x) / lanes_of_warp / joining_),
+          warp_(static_cast<int>(blockIdx.x) * joining_ + static_cast<int>(threadIdx.x) / lanes_of_warp % joining_),
           inbox_(reinterpret_cast<std::uint64_t*>(memory)),
           segments_(memory + 2),
-          own_(segments_ + numbers_of<Segment> * chain.warps + static_cast<int>(threadIdx.x) / lanes_of_warp * of_warp) {}
+          own_(segments_ + numbers_of<Segment> * chain.warps + static_cast<int>(threadIdx.x) / lanes_of_warp % joining_ * of_warp) {}
 
     __device__ void open() const {
         if (threadIdx.x == 0) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
@@ -79,71 +87,157 @@ class ShortWarp {
     }
     template <class Clock>
     __device__ void turn(Clock const& clock) const {
-        dca::Run const run = run_here();
-        int const part = lane_ % dca::parts_of_run, parts = run.count > 0 ? dca::parts_of(run) : 0;
-        bool const mine = part < parts;
-        int const restricted = mine ? sweep_.s.restricted[dca::begin_of(run, part)] : 0;
-        int const unit = (chain_.warps + lanes_of_warp - 1) / lanes_of_warp;  // warps a lane of the top
-        int const restricted_top[2] = {restricted_at(unit * lane_), restricted_at(unit * lane_ + 1)};
-        typename Sweep::Part read;
-        Segment segment{};
         Kept kept{own_ + of_nodes};
-        if (mine) {
-            read = sweep_.read(dca::begin_of(run, part), dca::end_of(run, part));
-            segment = sweep_.part(run, part, read, kept);
+        Place const here = place();
+        if constexpr (one_by_one) {
+            int const beside = static_cast<int>(blockDim.x) / lanes_of_warp / joining_;
+            std::int64_t const begin = (static_cast<std::int64_t>(warp_) * lanes_of_warp + lane_) * dca::part_length;
+            auto const is_here = [&](int i) { return i < dca::part_length && begin + i < chain_.bodies; };
+            CATENA_NO_UNROLL
+            for (int i = beside_; is_here(i); i += beside) kept.put(i, sweep_.bodies.segment(body(begin + i)));
+            __syncthreads();
+            wait_for_cluster();
+            clock(8);
+            if (beside_ == 0) join(here, kept, clock);
+            typename Sweep::Body next;
+            if (is_here(beside_)) next = body(begin + beside_);
+            __syncthreads();
+            clock(9);
+            CATENA_NO_UNROLL
+            for (int i = beside_; is_here(i); i += beside) {
+                typename Sweep::Body const own = next;
+                if (is_here(i + beside)) next = body(begin + i + beside);
+                Ends const ends = kept.template get<Ends>(i);
+                sweep_.accelerate(begin + i, own, ends.first, ends.next);
+            }
+        } else {
+            join(here, kept, clock);
         }
-        clock(1);
-        climb<steps_of_warp>(segment, own_, warp_ * lanes_of_warp, dca::part_length, restricted, steps_of_warp,
-                             [](int step) { return Meeting::of_parts(step); });
-        clock(2);
-        wait_for_cluster();
-        if (warp_ >= chain_.warps) return;
-        give(segment);
-        __syncwarp();
-        inbox_.wait();
-        clock(3);
-        Ends ends = solve_top(unit, restricted_top, clock);
-        clock(5);
-        each_step<levels_of_warp, true>(
-            levels_of_warp, [&](int level) { go_down(ends, dca::parts_of_run << level, own_, warp_ * lanes_of_warp, dca::part_length); });
-        State begin = ends.first;
-        each_step<dca::parts_of_run, true>(dca::parts_of_run, [&](int p) {
-            if (p == 0 || p >= parts) return;
-            State const there = sweep_.force(node(own_, lane_ - part + p), ends.first, ends.next);
-            begin = part == p ? there : begin;
-            ends.next = part < p ? there : ends.next;
-        });
-        clock(6);
-        if (mine) sweep_.template down<false>(run, part, read, kept, begin, ends.next);
         clock(7);
     }
 
   private:
     using Passed = typename Sweep::Passed;
-    /// Of a lane's bodies: in registers where there are few, else in shared memory.
-    struct InRegisters {
+    using Factors = QuickFactors<Sweep::K == 1>;
+    using Passage = dca::Elimination<double, Sweep::K>;
+    /// Of a lane's bodies: in registers where there are few, else in shared memory, in turn in the same place.
+    class InRegisters {
+      public:
         static constexpr int numbers = 0;
-        Passed passed[dca::part_length];
         __device__ explicit InRegisters(double*) {}
-        __device__ void put(int i, Passed const& joint) { passed[i] = joint; }
-        __device__ Passed const& get(int i) const { return passed[i]; }
+        __device__ void put(int i, Passed const& joint) { passed_[i] = joint; }
+        __device__ void put(int i, Passage const& passage) { passages_[i] = passage; }
+        template <class T>
+        __device__ T const& get(int i) const {
+            if constexpr (std::is_same_v<T, Passed>)
+                return passed_[i];
+            else
+                return passages_[i];
+        }
+
+      private:
+        Passed passed_[dca::part_length];
+        Passage passages_[dca::part_length];
     };
-    struct InMemory {
-        static constexpr int numbers = dca::part_length * numbers_of<Passed> * pitch;
-        double* memory;
-        __device__ explicit InMemory(double* of_warp) : memory(of_warp + threadIdx.x % lanes_of_warp) {}
-        __device__ void put(int i, Passed const& joint) { keep(memory + i * numbers_of<Passed> * pitch, 0, joint); }
-        __device__ Passed get(int i) const { return kept<Passed>(memory + i * numbers_of<Passed> * pitch, 0); }
+    class InMemory {
+      public:
+        static constexpr int of_body = numbers_of<Segment> * pitch, numbers = dca::part_length * of_body;
+        static_assert(sizeof(Passed) <= sizeof(Segment) && sizeof(Passage) <= sizeof(Segment));
+        __device__ explicit InMemory(double* of_warp) : memory_(of_warp + threadIdx.x % lanes_of_warp) {}
+        template <class T>
+        __device__ void put(int i, T const& value) {
+            keep(memory_ + i * of_body, 0, value);
+        }
+        template <class T>
+        __device__ T get(int i) const {
+            return kept<T>(memory_ + i * of_body, 0);
+        }
+
+      private:
+        double* memory_;
     };
-    using Kept = std::conditional_t<dca::unrolled<Sweep::K>, InRegisters, InMemory>;
+    using Kept = std::conditional_t<one_by_one, InMemory, InRegisters>;
     static constexpr int of_nodes = 3 * numbers_of<Node> * pitch;  // of the warp's lanes, of those of the top and within these
     static constexpr int of_warp = of_nodes + Kept::numbers;
+    __device__ static int joining_in_block(ShortChain const& chain) {
+        auto const blocks = static_cast<int>(gridDim.x);
+        return (chain.warps + blocks - 1) / blocks;
+    }
+    __device__ typename Sweep::Body body(std::int64_t k) const { return sweep_.bodies.body(sweep_.read(k, k + 1), 0); }
+    /// What a lane joins, and how many directions the joints restrict: read first of all.
+    struct Place {
+        dca::Run run;
+        int part, parts, count, unit;  // `unit`: warps a lane of the top
+        std::int64_t begin;
+        int restricted[dca::part_length], at_top[2];
+    };
+    __device__ Place place() const {
+        Place p;
+        p.run = run_here();
+        p.part = lane_ % dca::parts_of_run;
+        p.parts = p.run.count > 0 ? dca::parts_of(p.run) : 0;
+        p.begin = dca::begin_of(p.run, p.part);
+        p.count = p.part < p.parts ? static_cast<int>(dca::end_of(p.run, p.part) - p.begin) : 0;
+        p.unit = (chain_.warps + lanes_of_warp - 1) / lanes_of_warp;
+        CATENA_UNROLL
+        for (int i = 0; i < (one_by_one ? dca::part_length : 1); ++i)
+            p.restricted[i] = i < p.count && beside_ == 0 ? sweep_.s.restricted[p.begin + i] : 0;
+        CATENA_UNROLL
+        for (int i = 0; i < 2; ++i) {
+            int const warp = p.unit * lane_ + i;
+            p.at_top[i] = warp < chain_.warps && beside_ == 0 ? sweep_.s.restricted[warp * bodies_of_warp] : 0;
+        }
+        return p;
+    }
+    /// What the warps do that join: up and down again.
+    template <class Clock>
+    __device__ void join(Place const& here, Kept& kept, Clock const& clock) const {
+        typename Sweep::Part read;
+        Segment segment{};
+        if constexpr (one_by_one) {
+            static_assert(dca::part_length == 4);
+            auto const restricted = [&](int i) {  // no array with a place that varies
+                return i == 1 ? here.restricted[1] : i == 2 ? here.restricted[2] : here.restricted[3];
+            };
+            if (here.count > 0) segment = sweep_.join_bodies(here.begin, here.count, restricted, kept, Factors{});
+        } else if (here.count > 0) {
+            read = sweep_.read(here.begin, here.begin + here.count, QuickInverseLength{});
+            segment = sweep_.part(here.begin, here.count, read, kept, Factors{});
+        }
+        clock(1);
+        climb<steps_of_warp>(segment, own_, warp_ * lanes_of_warp, dca::part_length, here.restricted[0], steps_of_warp,
+                             [](int step) { return Meeting::of_parts(step); });
+        clock(2);
+        if constexpr (!one_by_one) wait_for_cluster();
+        if (warp_ >= chain_.warps) return;
+        give(segment);
+        __syncwarp();
+        inbox_.wait();
+        clock(3);
+        Ends ends = solve_top(here.unit, here.at_top, clock);
+        clock(5);
+        each_step<levels_of_warp, true>(
+            levels_of_warp, [&](int level) { go_down(ends, dca::parts_of_run << level, own_, warp_ * lanes_of_warp, dca::part_length); });
+        State first = ends.first;
+        each_step<dca::parts_of_run, true>(dca::parts_of_run, [&](int p) {
+            if (p == 0 || p >= here.parts) return;
+            State const there = sweep_.force(node(own_, lane_ - here.part + p), ends.first, ends.next);
+            first = here.part == p ? there : first;
+            ends.next = here.part < p ? there : ends.next;
+        });
+        clock(6);
+        sweep_.forces(here.count, kept, first, ends.next, [&](int i, State const& inboard, State const& outboard) {
+            if constexpr (one_by_one)
+                kept.put(i, Ends{inboard, outboard});
+            else
+                sweep_.accelerate(here.begin + i, sweep_.bodies.body(read, i), inboard, outboard);
+        });
+    }
     __device__ dca::Run run_here() const {
         std::int64_t const body = (warp_ * (lanes_of_warp / dca::parts_of_run) + lane_ / dca::parts_of_run) * dca::longest_run;
         std::int64_t const left = chain_.bodies - body;
         return {body, left < dca::longest_run ? left : dca::longest_run, 0, 0};
     }
-    __device__ int restricted_at(int warp) const { return warp < chain_.warps ? sweep_.s.restricted[warp * bodies_of_warp] : 0; }
     template <class T>
     __device__ static T kept(double const* memory, int i) {
         NumbersOf<T> values;
@@ -181,7 +275,7 @@ class ShortWarp {
             if ((lane_ & m.mask) == m.last) {
                 if (joint < chain_.bodies) {
                     Node found;
-                    segment = sweep_.joined(inboard, segment, {joint, of_joint}, found);
+                    segment = sweep_.joined(inboard, segment, {joint, of_joint}, found, Factors{});
                     keep(nodes, at, found);
                 } else {
                     segment = inboard;
@@ -225,7 +319,7 @@ class ShortWarp {
         bool const two = unit > 1 && unit * lane_ + 1 < chain_.warps;
         if (two) {
             Node found;
-            segment = sweep_.joined(segment, given(unit * lane_ + 1), {(unit * lane_ + 1) * bodies_of_warp, restricted[1]}, found);
+            segment = sweep_.joined(segment, given(unit * lane_ + 1), {(unit * lane_ + 1) * bodies_of_warp, restricted[1]}, found, Factors{});
             keep(within, lane_, found);
         }
         int levels = 0;
@@ -247,7 +341,7 @@ class ShortWarp {
 
     ShortChain const& chain_;
     Sweep const& sweep_;
-    int lane_, warp_;
+    int lane_, joining_, beside_, warp_;
     Inbox inbox_;
     double *segments_, *own_;
 };
@@ -266,14 +360,16 @@ struct ShortGrid {
 /// As few warps a block as there may be: each then has more of a multiprocessor.
 template <class Sweep>
 ShortGrid grid_of_short(ShortChain const& chain) {
-    int const most = chain.warps > most_in_cluster * most_threads_of_short / lanes_of_warp ? most_blocks_of_short : most_in_cluster;
-    int const warps = (chain.warps + most - 1) / most, blocks = (chain.warps + warps - 1) / warps, of_block = lanes_of_warp * warps;
-    return {static_cast<unsigned>(blocks), static_cast<unsigned>(of_block),
-            sizeof(double) * ShortWarp<Sweep>::numbers(of_block, chain.warps)};
+    using Warp = ShortWarp<Sweep>;
+    constexpr int crowded = Warp::one_by_one ? 2 : most_joining_warps;
+    int const most = chain.warps > most_in_cluster * crowded ? most_blocks_of_short : most_in_cluster;
+    int const joining = (chain.warps + most - 1) / most, blocks = (chain.warps + joining - 1) / joining;
+    return {static_cast<unsigned>(blocks), static_cast<unsigned>(lanes_of_warp * joining * Warp::warps_beside(joining)),
+            sizeof(double) * Warp::numbers(joining, chain.warps)};
 }
 /// The next such launch may start before this one has ended; what it reads and writes waits.
 template <class Sweep>
-__global__ void __launch_bounds__(most_threads_of_short) turn_short(ShortChain chain, Sweep sweep) {
+__global__ void __launch_bounds__(ShortWarp<Sweep>::most_threads) turn_short(ShortChain chain, Sweep sweep) {
     let_next_launch_start();
     ShortWarp<Sweep> const warp(chain, sweep, shared_numbers);
     warp.open();

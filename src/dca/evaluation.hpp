@@ -2,8 +2,6 @@
 // again on the way down, because that is cheaper than to keep what became of them.
 #pragma once
 
-#include <type_traits>
-
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -24,7 +22,10 @@ struct Resting {
     struct Part {
         std::int64_t begin;
     };
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/) const { return {begin}; }
+    template <class InverseLength = dca::InverseLength>
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/, InverseLength const& /*inverse_length*/ = {}) const {
+        return {begin};
+    }
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
         return {leaf.body(loads, part.begin + i), restricted[part.begin + i]};
     }
@@ -69,7 +70,7 @@ struct Resting {
 /// On the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
 template <class Leaf, class Bodies>
 struct Evaluation {
-    static constexpr bool descends = true, keeps_nodes = true;
+    static constexpr bool descends = true, keeps_nodes = true, one_by_one = Bodies::one_by_one;
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
@@ -83,38 +84,38 @@ struct Evaluation {
     Bodies bodies;
     AccelerationsView out;
 
-    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const { return this->part(run, p, part, Forgotten{}); }
+    template <class InverseLength = dca::InverseLength>
+    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
+        return bodies.part(begin, end, inverse_length);
+    }
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
+        std::int64_t const begin = begin_of(run, p);
+        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, Factors{});
+    }
     /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
-    /// Whoever keeps them has registers to read a body while the one before it is joined.
-    template <class Kept>
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part, Kept&& kept) const {
-        constexpr bool ahead = Bodies::one_by_one && !std::is_same_v<std::remove_cvref_t<Kept>, Forgotten>;
+    /// `factors`: as factorize(), if not always.
+    template <class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, Part const& part, Kept&& kept, Factors const& factors) const {
         Lost found;
-        std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
-        auto const count = static_cast<int>(end - begin);
         Segment segment{};
-        Body next;
-        if constexpr (ahead) next = bodies.body(part, 0);
         each_body<unrolled<K>>(0, count, [&](int i) {
-            Body body;
-            if constexpr (ahead) {
-                body = next;
-                if (i + 1 < count) next = bodies.body(part, i + 1);
-            } else {
-                body = bodies.body(part, i);
-            }
-            Joint joint;
-            Directions offset;
-            Segment const own = bodies.segment(body);
-            if (i == 0) {
-                segment = own;
-                kept.put(i, Passed{{}, own.matrix.z12, own.bias});
-            } else {
-                append(segment, own, {begin + i, body.restricted}, joint, offset, found);
-                kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
-            }
+            Body const body = bodies.body(part, i);
+            pass_up(segment, i, bodies.segment(body), {begin + i, body.restricted}, kept, found, factors);
         });
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return this->part(begin, count, part, kept, dca::Factors{});
+        s.note(found);
+        return segment;
+    }
+    /// The same of `count` bodies whose segments `kept` has. `restricted(i)`: of their joints.
+    template <class Restricted, class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
+                                           Factors const& factors) const {
+        static_assert(!Factors::may_fail);
+        Lost found;
+        Segment segment{};
+        each_body<unrolled<K>>(
+            0, count, [&](int i) { pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, factors); });
         s.note(found);
         return segment;
     }
@@ -124,10 +125,14 @@ struct Evaluation {
         keep(at.k, node);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node) const {
+    template <class Factors = dca::Factors>
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
+                             Factors const& factors = {}) const {
         Lost found;
         Segment segment = inboard;
-        append(segment, outboard, at, node.joint, node.offset, found);
+        append(segment, outboard, at, node.joint, node.offset, found, factors);
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return joined(inboard, outboard, at, node);
         s.note(found);
         return segment;
     }
@@ -182,45 +187,54 @@ struct Evaluation {
         });
     }
 
-    /// The same with what was kept on the way up.
-    template <bool unroll, class Kept>
-    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Kept const& kept, Directions const& first,
-                                 Directions next) const {
-        constexpr bool unrolled_here = unroll || unrolled<K>;
-        std::int64_t const k = begin_of(run, p);
-        int const count = static_cast<int>(end_of(run, p) - k);
-        Elimination<double, K> passed[part_length] = {};
+    /// The same with what was kept on the way up: action(i, inboard force, outboard force), from the last body to the first.
+    template <class Kept, class Action>
+    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
+        using Passage = Elimination<double, K>;
         Directions b2{};
-        each_body<unrolled_here>(0, count, [&](int i) {
-            Passed const joint = kept.get(i);
+        each_body<unrolled<K>>(0, count, [&](int i) {
+            Passed const joint = kept.template get<Passed>(i);
             if (i > 0)
-                passed[i] = pass(b2, joint);
+                kept.put(i, pass(b2, joint));
             else
                 b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
         });
-        Body ahead;
-        if constexpr (Bodies::one_by_one) ahead = bodies.body(part, count - 1);
-        each_body_back<unrolled_here>(0, count, [&](int i) {
-            Directions const at_i = i > 0 ? passed[i].gain * next + passed[i].offset : first;
-            if constexpr (Bodies::one_by_one) {
-                Body const body = ahead;
-                if (i > 0) ahead = bodies.body(part, i - 1);
-                bodies.accelerate(body, at_i, next, out);
-            } else {
-                bodies.accelerate(part, i, at_i, next, out);
+        each_body_back<unrolled<K>>(0, count, [&](int i) {
+            Directions at_i = first;
+            if (i > 0) {
+                Passage const passed = kept.template get<Passage>(i);
+                at_i = passed.gain * next + passed.offset;
             }
-            store_forces(s.leaf.group(), out, k + i, at_i, next);
+            action(i, at_i, next);
             next = at_i;
         });
+    }
+    /// What the forces at its joints do to body k.
+    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard) const {
+        bodies.accelerate(body, inboard, outboard, out);
+        store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
 
   private:
     struct Forgotten {
         CATENA_HD static void put(int, Passed const&) {}
     };
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset,
-                          Lost& found) const {
-        dca::append(segment.matrix, outboard.matrix, at.restricted, joint);
+    template <class Kept, class Factors>
+    CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at, Kept&& kept, Lost& found,
+                                    Factors const& factors) const {
+        if (i == 0) {
+            segment = own;
+            return kept.put(i, Passed{{}, own.matrix.z12, own.bias});
+        }
+        Joint joint;
+        Directions offset;
+        append(segment, own, at, joint, offset, found, factors);
+        kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
+    }
+    template <class Factors>
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
+                          Factors const& factors) const {
+        dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
         s.watch(at, joint.factor, found);
         dca::append(segment.bias, outboard.bias, joint, offset);
     }

@@ -33,10 +33,17 @@ struct JointMatrix {
     Matrix<Real, K, K> inboard, outboard;
 };
 
+/// 1 / x. Another way to it may answer NaN where it does not know.
+struct Quotient {
+    template <class Real>
+    CATENA_HD Real operator()(Real const& x) const {
+        return Real(1) / x;
+    }
+};
 /// Z = L S L^T on the leading `restricted` rows; the others get S^-1 = 0, so that they take no part in anything.
 /// Precondition: Z is positive definite there.
-template <class Real, int K>
-CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted) {
+template <class Real, int K, class Inverse = Quotient>
+CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted, Inverse const& inverse = {}) {
     Symmetric<Real, K> f;
     Real pivot[K];
     CATENA_UNROLL
@@ -53,10 +60,18 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
         CATENA_UNROLL
         for (int k = 0; k < i; ++k) s = less_product(f(i, k) * pivot[k], f(i, k), s);
         pivot[i] = active ? s : Real(0);
-        f(i, i) = active ? Real(1) / s : Real(0);
+        f(i, i) = active ? inverse(s) : Real(0);
     }
     return f;
 }
+
+struct Factors {
+    static constexpr bool may_fail = false;
+    template <class Real, int K>
+    CATENA_HD Symmetric<Real, K> operator()(Symmetric<Real, K> const& z, int restricted) const {
+        return factorize(z, restricted);
+    }
+};
 
 /// L^-1 b
 template <class Real, int K>
@@ -113,12 +128,13 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
 /// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
 /// W = D (D^T Z D)^-1 D^T). Not `with_first`: z11 stays as it was, for those who ask only for the forces at joints to come.
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
-template <bool with_first = true, class Real, int K>
-CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint) {
+template <bool with_first = true, class Real, int K, class Factors = dca::Factors>
+CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint,
+                      Factors const& factors = {}) {
     Symmetric<Real, K> z;
     CATENA_UNROLL
     for (int i = 0; i < Symmetric<Real, K>::size; ++i) z.data[i] = segment.z22.data[i] + outboard.z11.data[i];
-    joint.factor = factorize(z, restricted);
+    joint.factor = factors(z, restricted);
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     CATENA_UNROLL
