@@ -12,6 +12,7 @@
 #include "cuda/kernel_image.hpp"
 #include "cuda/kernels.cuh"
 #include "cuda/peer_exchange.cuh"
+#include "cuda/short_launch.cuh"
 #include "dca/host_space.hpp"
 #include "dca/stages.hpp"
 
@@ -50,11 +51,12 @@ class DeviceSpace {
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
              std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
             : runs_(runs) {
-            dca::StageSizes const sizes = sizes_here(records);
+            dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
             for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
             together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
+            if (sizes.together > 0) short_ = kernels::short_chain_of(runs, levels, roots);
         }
 
       private:
@@ -92,8 +94,8 @@ class DeviceSpace {
             int threads;
             kernels::DeviceStage view;
         };
-        static dca::StageSizes sizes_here(dca::StageRecords const& records) {
-            int shared_bytes = 0, clusters = 0;
+        static dca::StageSizes sizes_here(dca::StageRecords const& records, int& shared_bytes) {
+            int clusters = 0;
             auto const ask = [](int& answer, cudaDeviceAttr of) {
                 int device = 0;
                 check(cudaGetDevice(&device), "say which it is");
@@ -106,6 +108,8 @@ class DeviceSpace {
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;
         bool runs_apart_ = false, together_ = false;
+        kernels::ShortChain short_;
+        int most_shared_bytes_ = 0;
     };
 
     using Blocks = DeviceBlocks;
@@ -154,6 +158,8 @@ class DeviceSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.stages_.empty()) return;
+        if constexpr (kernels::takes_short_chains<Sweep>)
+            if (launch_short(tree.short_, tree.most_shared_bytes_, sweep, stream())) return;
         std::size_t const apart = tree.stages_.size() - (tree.together_ ? 2 : 1);
         climb_below(tree, apart, sweep);
         launch_turn(tree.stages_[apart], tree.together_ ? &tree.stages_.back() : nullptr, sweep);

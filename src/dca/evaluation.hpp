@@ -9,6 +9,7 @@ namespace catena::dca {
 /// Bodies read one by one with what a leaf takes from the configuration.
 template <class Leaf>
 struct Resting {
+    static constexpr bool one_by_one = true;
     template <class Place>
     struct Body : Leaf::template Body<Place> {
         int restricted;
@@ -21,7 +22,10 @@ struct Resting {
     struct Part {
         std::int64_t begin;
     };
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/) const { return {begin}; }
+    template <class InverseLength = dca::InverseLength>
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/, InverseLength const& /*inverse_length*/ = {}) const {
+        return {begin};
+    }
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
         return {leaf.body(loads, part.begin + i), restricted[part.begin + i]};
     }
@@ -34,6 +38,11 @@ struct Resting {
     CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
         leaf.accelerate(loads, part.begin + i, inboard, outboard, out);
+    }
+    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
+        if (out.acceleration.origin)
+            leaf.accelerate(loads, static_cast<typename Leaf::template Body<std::int64_t> const&>(body), inboard, outboard, out);
     }
     /// Of several bodies side by side, whose joints restrict what handles carry.
     template <class Place>
@@ -61,7 +70,7 @@ struct Resting {
 /// On the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
 template <class Leaf, class Bodies>
 struct Evaluation {
-    static constexpr bool descends = true, keeps_nodes = true;
+    static constexpr bool descends = true, keeps_nodes = true, one_by_one = Bodies::one_by_one;
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
@@ -70,24 +79,43 @@ struct Evaluation {
     using Node = typename Sweeps::Node;
     using Part = typename Bodies::Part;
     using Body = typename Bodies::template Body<std::int64_t>;
+    using Passed = OneSided<double, K>;
     Sweeps s;
     Bodies bodies;
     AccelerationsView out;
 
-    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
+    template <class InverseLength = dca::InverseLength>
+    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
+        return bodies.part(begin, end, inverse_length);
+    }
     CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
+        std::int64_t const begin = begin_of(run, p);
+        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, Factors{});
+    }
+    /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
+    /// `factors`: as factorize(), if not always.
+    template <class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, Part const& part, Kept&& kept, Factors const& factors) const {
         Lost found;
-        std::int64_t const begin = begin_of(run, p), end = end_of(run, p);
         Segment segment{};
-        each_body<unrolled<K>>(0, static_cast<int>(end - begin), [&](int i) {
+        each_body<unrolled<K>>(0, count, [&](int i) {
             Body const body = bodies.body(part, i);
-            Joint joint;
-            Directions offset;
-            if (i == 0)
-                segment = bodies.segment(body);
-            else
-                append(segment, bodies.segment(body), {begin + i, body.restricted}, joint, offset, found);
+            pass_up(segment, i, bodies.segment(body), {begin + i, body.restricted}, kept, found, factors);
         });
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return this->part(begin, count, part, kept, dca::Factors{});
+        s.note(found);
+        return segment;
+    }
+    /// The same of `count` bodies whose segments `kept` has. `restricted(i)`: of their joints.
+    template <class Restricted, class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
+                                           Factors const& factors) const {
+        static_assert(!Factors::may_fail);
+        Lost found;
+        Segment segment{};
+        each_body<unrolled<K>>(
+            0, count, [&](int i) { pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, factors); });
         s.note(found);
         return segment;
     }
@@ -97,10 +125,14 @@ struct Evaluation {
         keep(at.k, node);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node) const {
+    template <class Factors = dca::Factors>
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
+                             Factors const& factors = {}) const {
         Lost found;
         Segment segment = inboard;
-        append(segment, outboard, at, node.joint, node.offset, found);
+        append(segment, outboard, at, node.joint, node.offset, found, factors);
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return joined(inboard, outboard, at, node);
         s.note(found);
         return segment;
     }
@@ -116,6 +148,14 @@ struct Evaluation {
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
+    }
+    /// Of a whole chain whose tip is free, at its first joint: as close().
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating) const {
+        Lost found;
+        auto const factor = factorize(floating.matrix.z11, at.restricted);
+        s.watch(at, factor, found);
+        s.note(found);
+        return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
     }
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
@@ -147,10 +187,54 @@ struct Evaluation {
         });
     }
 
+    /// The same with what was kept on the way up: action(i, inboard force, outboard force), from the last body to the first.
+    template <class Kept, class Action>
+    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
+        using Passage = Elimination<double, K>;
+        Directions b2{};
+        each_body<unrolled<K>>(0, count, [&](int i) {
+            Passed const joint = kept.template get<Passed>(i);
+            if (i > 0)
+                kept.put(i, pass(b2, joint));
+            else
+                b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
+        });
+        each_body_back<unrolled<K>>(0, count, [&](int i) {
+            Directions at_i = first;
+            if (i > 0) {
+                Passage const passed = kept.template get<Passage>(i);
+                at_i = passed.gain * next + passed.offset;
+            }
+            action(i, at_i, next);
+            next = at_i;
+        });
+    }
+    /// What the forces at its joints do to body k.
+    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard) const {
+        bodies.accelerate(body, inboard, outboard, out);
+        store_forces(s.leaf.group(), out, k, inboard, outboard);
+    }
+
   private:
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset,
-                          Lost& found) const {
-        dca::append(segment.matrix, outboard.matrix, at.restricted, joint);
+    struct Forgotten {
+        CATENA_HD static void put(int, Passed const&) {}
+    };
+    template <class Kept, class Factors>
+    CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at, Kept&& kept, Lost& found,
+                                    Factors const& factors) const {
+        if (i == 0) {
+            segment = own;
+            return kept.put(i, Passed{{}, own.matrix.z12, own.bias});
+        }
+        Joint joint;
+        Directions offset;
+        append(segment, own, at, joint, offset, found, factors);
+        kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
+    }
+    template <class Factors>
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
+                          Factors const& factors) const {
+        dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
         s.watch(at, joint.factor, found);
         dca::append(segment.bias, outboard.bias, joint, offset);
     }

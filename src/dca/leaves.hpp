@@ -297,8 +297,13 @@ class BodyLeaf {
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
-        if (!out.acceleration.origin) return;
-        auto const at_k = body(loads, k);
+        if (out.acceleration.origin) accelerate(loads, body(loads, k), inboard_force, outboard_force, out);
+    }
+    /// Of what was read before. Precondition: accelerations are wanted.
+    template <class Place>
+    CATENA_HD void accelerate(LoadsView const& loads, Body<Place> const& at_k, Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
+        Place const k = at_k.k;
         auto const h = frames_.handles(at_k.state, k);
         auto const torque = applied_torque(loads, at_k) + (moment(h.h1, inboard_force) - moment(h.h2, outboard_force));
         auto const force = at_k.force + (push(h.h1, inboard_force) - push(h.h2, outboard_force));

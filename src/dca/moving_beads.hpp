@@ -9,6 +9,15 @@
 
 namespace catena::dca {
 
+/// 1 / |d|. Another way to it may answer NaN where it does not know.
+struct InverseLength {
+    static constexpr bool may_fail = false;
+    template <class Real>
+    CATENA_HD Real operator()(Vector<Real, 3> const& d) const {
+        return Real(1) / norm(d);
+    }
+};
+
 template <class Real, int K>
 struct BiasedSegment {
     SegmentMatrix<Real, K> matrix;
@@ -19,6 +28,7 @@ struct BiasedSegment {
 /// As Resting (evaluation.hpp). No jointed tips. K = 1 projected, 3 full.
 template <int K>
 struct MovingBeads {
+    static constexpr bool one_by_one = false;
     template <class Real>
     struct Link {
         Vector<Real, 3> direction;  // 0 where there is none
@@ -48,7 +58,8 @@ struct MovingBeads {
         std::uint8_t restricted[part_length];
     };
     /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end) const {
+    template <class InverseLength = dca::InverseLength>
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
         Part read;
         read.begin = begin;
         bool const starts = group.is_first[begin] != 0, goes_on = group.is_last[end - 1] == 0;
@@ -63,17 +74,29 @@ struct MovingBeads {
             read.restricted[i - 1] = restricted[k];
             read.force[i - 1] = loads.force.origin ? loads.force.load(k) : Vec3::zero();
         }
-        if (!starts)
+        bool const floats = starts && read.restricted[0] == 0;
+        if constexpr (InverseLength::may_fail) {  // which has no branch that others would wait for
+            if (starts) {
+                if (!floats) position[0] = piece_of(configuration.piece, configuration.pieces, begin).anchor;
+                velocity[0] = Vec3::zero();
+            }
+            read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0], inverse_length);
+            if (floats) read.link[0] = Link<double>::none();
+        } else if (!starts) {
             read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0]);
-        else
-            read.link[0] = read.restricted[0] == 0
-                               ? Link<double>::none()
-                               : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
+        } else {
+            read.link[0] = floats ? Link<double>::none()
+                                  : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
+        }
+        double sum = read.link[0].swing;
         CATENA_UNROLL
         for (int i = 1; i <= part_length; ++i) {
-            read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i]);
+            read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i], inverse_length);
             if (begin + i >= end && !goes_on) read.link[i] = Link<double>::none();
+            sum = sum + read.link[i].swing;
         }
+        if constexpr (InverseLength::may_fail)
+            if (sum != sum) return part(begin, end);
         return read;
     }
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
@@ -127,9 +150,9 @@ struct MovingBeads {
     }
 
   private:
-    template <class Real>
-    CATENA_HD static Link<Real> link(Vector<Real, 3> const& d, Vector<Real, 3> const& v) {
-        Real const per_length = Real(1) / norm(d);
+    template <class Real, class InverseLength = dca::InverseLength>
+    CATENA_HD static Link<Real> link(Vector<Real, 3> const& d, Vector<Real, 3> const& v, InverseLength const& inverse_length = {}) {
+        Real const per_length = inverse_length(d);
         Vector<Real, 3> const u = per_length * d, across = plus_scaled(v, -dot(v, u), u);
         return {u, per_length * dot(across, across)};
     }

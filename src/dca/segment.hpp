@@ -33,10 +33,17 @@ struct JointMatrix {
     Matrix<Real, K, K> inboard, outboard;
 };
 
+/// 1 / x. Another way to it may answer NaN where it does not know.
+struct Quotient {
+    template <class Real>
+    CATENA_HD Real operator()(Real const& x) const {
+        return Real(1) / x;
+    }
+};
 /// Z = L S L^T on the leading `restricted` rows; the others get S^-1 = 0, so that they take no part in anything.
 /// Precondition: Z is positive definite there.
-template <class Real, int K>
-CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted) {
+template <class Real, int K, class Inverse = Quotient>
+CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restricted, Inverse const& inverse = {}) {
     Symmetric<Real, K> f;
     Real pivot[K];
     CATENA_UNROLL
@@ -53,10 +60,18 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
         CATENA_UNROLL
         for (int k = 0; k < i; ++k) s = less_product(f(i, k) * pivot[k], f(i, k), s);
         pivot[i] = active ? s : Real(0);
-        f(i, i) = active ? Real(1) / s : Real(0);
+        f(i, i) = active ? inverse(s) : Real(0);
     }
     return f;
 }
+
+struct Factors {
+    static constexpr bool may_fail = false;
+    template <class Real, int K>
+    CATENA_HD Symmetric<Real, K> operator()(Symmetric<Real, K> const& z, int restricted) const {
+        return factorize(z, restricted);
+    }
+};
 
 /// L^-1 b
 template <class Real, int K>
@@ -113,12 +128,13 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
 /// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
 /// W = D (D^T Z D)^-1 D^T). Not `with_first`: z11 stays as it was, for those who ask only for the forces at joints to come.
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
-template <bool with_first = true, class Real, int K>
-CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint) {
+template <bool with_first = true, class Real, int K, class Factors = dca::Factors>
+CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint,
+                      Factors const& factors = {}) {
     Symmetric<Real, K> z;
     CATENA_UNROLL
     for (int i = 0; i < Symmetric<Real, K>::size; ++i) z.data[i] = segment.z22.data[i] + outboard.z11.data[i];
-    joint.factor = factorize(z, restricted);
+    joint.factor = factors(z, restricted);
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     CATENA_UNROLL
@@ -176,6 +192,30 @@ struct Elimination {
     Vector<Real, K> offset;
 };
 
+/// A joint's matrices as one side of `append` finds them: outboard = L^-1 z12^B, and the outboard segment's biases.
+template <class Real, int K>
+struct OneSided {
+    Symmetric<Real, K> factor;
+    Matrix<Real, K, K> outboard;
+    SegmentBias<Real, K> bias;
+};
+/// The rest of the elimination, once the force on the first body is known: `b2` of the segment so far becomes the joined segment's.
+template <class Real, int K>
+CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const& joint) {
+    Elimination<Real, K> e;
+    e.offset = solve_lower(joint.factor, b2 - joint.bias.b1);
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) {
+        Real b = joint.bias.b2[i];
+        CATENA_UNROLL
+        for (int k = 0; k < K; ++k) b = fused(joint.factor(k, k) * e.offset[k], joint.outboard(k, i), b);
+        b2[i] = b;
+    }
+    e.offset = solve_upper(joint.factor, e.offset);
+    CATENA_UNROLL
+    for (int j = 0; j < K; ++j) e.gain.set_column(j, solve_upper(joint.factor, joint.outboard.column(j)));
+    return e;
+}
 /// One side of `append`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
 /// that force's part in it); they become the joined segment's.
 template <class Real, int K>
@@ -183,28 +223,20 @@ CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K
                                          SegmentBias<Real, K> const& bias, int restricted) {
     CATENA_UNROLL
     for (int i = 0; i < Symmetric<Real, K>::size; ++i) z22.data[i] = z22.data[i] + outboard.z11.data[i];
-    Symmetric<Real, K> const factor = factorize(z22, restricted);
-    Elimination<Real, K> e;
-    e.gain = solve_lower(factor, outboard.z12);
-    e.offset = solve_lower(factor, b2 - bias.b1);
+    OneSided<Real, K> joint;
+    joint.factor = factorize(z22, restricted);
+    joint.outboard = solve_lower(joint.factor, outboard.z12);
+    joint.bias = bias;
     CATENA_UNROLL
-    for (int i = 0; i < K; ++i) {
-        Real b = bias.b2[i];
-        CATENA_UNROLL
-        for (int k = 0; k < K; ++k) b = fused(factor(k, k) * e.offset[k], e.gain(k, i), b);
-        b2[i] = b;
+    for (int i = 0; i < K; ++i)
         CATENA_UNROLL
         for (int j = 0; j <= i; ++j) {
             Real z = outboard.z22(i, j);
             CATENA_UNROLL
-            for (int k = 0; k < K; ++k) z = less_product(e.gain(k, i), factor(k, k) * e.gain(k, j), z);
+            for (int k = 0; k < K; ++k) z = less_product(joint.outboard(k, i), joint.factor(k, k) * joint.outboard(k, j), z);
             z22(i, j) = z;
         }
-    }
-    e.offset = solve_upper(factor, e.offset);
-    CATENA_UNROLL
-    for (int j = 0; j < K; ++j) e.gain.set_column(j, solve_upper(factor, e.gain.column(j)));
-    return e;
+    return pass(b2, joint);
 }
 
 }  // namespace catena::dca

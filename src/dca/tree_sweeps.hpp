@@ -27,6 +27,7 @@ struct Lost {
         auto const bad = static_cast<unsigned long long>(k);
         joint = bad < joint ? bad : joint;
     }
+    CATENA_HD bool none() const { return joint == ~0ULL; }
 };
 
 template <class Leaf_>
@@ -64,7 +65,7 @@ struct TreeSweeps {
     }
     /// Apart from the watching, so that it does not stand between a loop's reads.
     CATENA_HD void note(Lost const& found) const {
-        if (found.joint != Lost{}.joint) lower_to(lost, found.joint);
+        if (!found.none()) lower_to(lost, found.joint);
     }
     /// What the way down needs of a joint.
     struct Node {

@@ -33,19 +33,20 @@ struct NamedGpu {
     StagedGpu gpu;
 };
 char const* const h100 = "an H100";
+StagedGpu of_h100(dca::StageRecords const& records) {
+    StagedGpu gpu{dca::stage_sizes(records, cuda_on_host::most_shared_bytes, cuda::kernels::most_in_cluster)};
+    gpu.short_chains = true;
+    return gpu;
+}
 std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
     auto const with = [](std::int64_t threads, std::int64_t most, std::int64_t together, bool runs_apart) {
         return NamedGpu{"of " + std::to_string(threads) + " threads and " + std::to_string(most) + " items a block, " +
                             std::to_string(together) + " blocks together" + (runs_apart ? ", runs apart" : ""),
                         {{threads, most, together}, runs_apart}};
     };
-    return {with(32, 2, 0, false),
-            with(64, 4, 3, true),
-            with(64, 12, 0, false),
-            with(128, 8, 8, false),
-            with(256, 16, 8, true),
-            {"of too few threads", {{128, 32, 4}, false, 32}},
-            {h100, {dca::stage_sizes(records, cuda_on_host::most_shared_bytes, cuda::kernels::most_in_cluster)}}};
+    return {with(32, 2, 0, false),   with(64, 4, 3, true),   with(64, 12, 0, false),
+            with(128, 8, 8, false),  with(256, 16, 8, true), {"of too few threads", {{128, 32, 4}, false, 32}},
+            {h100, of_h100(records)}};
 }
 
 class StageKernels : public ::testing::Test {
@@ -154,6 +155,22 @@ TEST_F(StageKernels, ClustersOfEverySize) {
     EXPECT_GT(StageSpace::seen.turns_alone, 0);
     EXPECT_GT(StageSpace::seen.runs_apart, 0);
     EXPECT_GT(StageSpace::seen.runs_in_stages, 0);
+}
+
+/// One launch by itself up to eight thousand bodies.
+TEST_F(StageKernels, ShortChains) {
+    if (!alone()) return;
+    h100_alone_ = true;
+    for (std::size_t const bodies : {1, 4, 5, 16, 17, 127, 128, 129, 500, 1024, 2000, 4096, 4097, 8191, 8192, 8193})
+        for (Base const base : {Base::fixed, Base::free}) {
+            if (bodies > 2000 && (bodies % 2 == 0) == (base == Base::free)) continue;
+            SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
+            StageSpace::seen = {};
+            expect_same(scene_of({random_bead_chain(bodies, bodies, base)}));
+            expect_same(scene_of({random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base})}), Axes::world);
+            EXPECT_EQ(StageSpace::seen.blocks_of_short_chains.empty(), bodies > 8192);
+            if (HasFailure()) return;
+        }
 }
 
 /// So many that launches of their own do them.

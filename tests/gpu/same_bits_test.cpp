@@ -73,6 +73,21 @@ TEST_F(Gpu, EveryKindAndSize) {
                 }
 }
 
+/// One chain whose tip is free: up to 8,192 bodies there is a launch of its own for it.
+TEST_F(Gpu, ShortChains) {
+    for (int const bodies :
+         {1, 2, 4, 5, 15, 16, 17, 100, 127, 128, 129, 511, 1000, 1024, 1025, 2047, 2048, 2049, 4095, 4096, 4097, 5000, 8191, 8192, 8193})
+        for (char const* const joint : {"link", "spherical"})
+            for (char const* const base : {"free", "fixed"}) {
+                SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies) + " " + base);
+                expect_same(scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: " + std::to_string(bodies) +
+                                         ", joint: " + joint + ", seed: 2}}}",
+                                     Handles::projected),
+                            joint == std::string("link") ? Axes::joint : Axes::world);
+                if (HasFailure()) return;
+            }
+}
+
 TEST_F(Gpu, AMillionAndOne) {
     for (char const* const joint : {"link", "spherical", "revolute"})
         expect_same(scene_of(std::string("{base: fixed, generator: {random: {bodies: 1000001, joint: ") + joint + ", seed: 1}}}",

@@ -7,6 +7,7 @@
 #include <ucontext.h>
 
 #include <algorithm>
+#include <atomic>
 #include <barrier>
 #include <bit>
 #include <cstddef>
@@ -71,7 +72,7 @@ constexpr std::size_t numbers_to_see_overruns = 64;
 
 }  // namespace catena::cuda_on_host
 
-inline constinit thread_local catena::cuda_on_host::Index threadIdx{}, blockIdx{}, blockDim{};
+inline constinit thread_local catena::cuda_on_host::Index threadIdx{}, blockIdx{}, blockDim{}, gridDim{};
 
 namespace catena::cuda::kernels {
 inline constinit thread_local double
@@ -113,26 +114,40 @@ class Block {
     Block& operator=(Block const&) = delete;
 
     void run() {
-        std::vector<unsigned> order(fibers_.size());
-        std::iota(order.begin(), order.end(), 0U);
+        std::vector<Warp> warps((fibers_.size() + lanes - 1) / lanes);
+        std::vector<std::size_t> order(warps.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
         std::minstd_rand random(blockIdx.x + 1);
-        do {
+        for (bool over = false; !over;) {
             std::shuffle(order.begin(), order.end(), random);
             watch::arrive(&left_);
-            for (unsigned const t : order) resume(t);
+            for (std::size_t const w : order)
+                if (warps[w].waits_for == Whole::warp) resume(w, warps[w], random);
             watch::leave(&arrived_);
-            for (Fiber const& fiber : fibers_)
-                if (fiber.line != fibers_[0].line || fiber.of_cluster != fibers_[0].of_cluster) {
-                    ADD_FAILURE() << "threads of a block wait in lines " << fiber.line << " and " << fibers_[0].line << " (0: nowhere)";
-                    std::abort();  // nothing says how to go on
-                }
-            if (fibers_[0].of_cluster) cluster_->arrive_and_wait();
-        } while (fibers_[0].line != 0);
+            auto const waits = [&](Whole whole) { return [whole](Warp const& warp) { return warp.waits_for == whole; }; };
+            over = std::all_of(warps.begin(), warps.end(), waits(Whole::nobody));
+            if (over || std::any_of(warps.begin(), warps.end(), waits(Whole::warp))) continue;
+            for (Warp const& warp : warps)
+                if (warp.line != warps[0].line || warp.waits_for != warps[0].waits_for) fail(warp.line, warps[0].line);
+            if (warps[0].waits_for == Whole::cluster) cluster_->arrive_and_wait();
+            for (Warp& warp : warps) warp.waits_for = Whole::warp;
+        }
         if (cluster_) cluster_->arrive_and_drop();
     }
+    enum class Whole { nobody, warp, block, cluster };
     /// Where the running fiber waits for the others. Alone, it waits for no cluster: a GPU without clusters knows nothing of them.
-    static void wait(int line, bool of_cluster) {
-        if (!of_cluster || here_->cluster_) here_->leave_fiber(line, of_cluster);
+    static void wait(int line, Whole whole) {
+        if (whole != Whole::cluster || here_->cluster_) here_->leave_fiber(line, whole);
+    }
+    /// What another lane of the warp had when all came here.
+    static double of_lane(double value, int lane, int line) {
+        std::vector<Fiber>& fibers = here_->fibers_;
+        std::size_t const own = threadIdx.x;
+        fibers[own].given = value;
+        wait(line, Whole::warp);
+        double const found = fibers[own / lanes * lanes + static_cast<std::size_t>(lane) % lanes].given;
+        wait(line, Whole::warp);
+        return found;
     }
 
   private:
@@ -140,12 +155,35 @@ class Block {
         ucontext_t context{};
         void* watched = nullptr;
         int line = 0;
-        bool of_cluster = false;
+        Whole waits_for = Whole::nobody;
+        double given = 0;
     };
+    /// What all of its lanes wait for.
+    struct Warp {
+        int line = 0;
+        Whole waits_for = Whole::warp;
+    };
+    static constexpr std::size_t lanes = 32;
+    static void fail(int line, int other) {
+        ADD_FAILURE() << "threads of a block wait in lines " << line << " and " << other << " (0: nowhere)";
+        std::abort();  // nothing says how to go on
+    }
+    /// Up to where its lanes wait.
+    void resume(std::size_t w, Warp& warp, std::minstd_rand& random) {
+        std::size_t const first = w * lanes;
+        std::vector<std::size_t> order(std::min(lanes, fibers_.size() - first));
+        std::iota(order.begin(), order.end(), first);
+        std::shuffle(order.begin(), order.end(), random);
+        for (std::size_t const t : order) resume(static_cast<unsigned>(t));
+        Fiber const& lane = fibers_[first];
+        for (std::size_t const t : order)
+            if (fibers_[t].line != lane.line || fibers_[t].waits_for != lane.waits_for) fail(fibers_[t].line, lane.line);
+        warp = {lane.line, lane.waits_for};
+    }
     static void enter() {
         watch::leave(&here_->left_);
         here_->kernel_();
-        here_->leave_fiber(0, false);
+        here_->leave_fiber(0, Whole::nobody);
     }
     /// No race with the fibers that read it.
     __attribute__((noinline, no_sanitize("thread"))) static void number_thread(unsigned t) { threadIdx.x = t; }
@@ -154,10 +192,10 @@ class Block {
         watch::before_switch(fibers_[t].watched);
         swapcontext(&outside_, &fibers_[t].context);
     }
-    void leave_fiber(int line, bool of_cluster) {
+    void leave_fiber(int line, Whole whole) {
         Fiber& fiber = fibers_[threadIdx.x];
         fiber.line = line;
-        fiber.of_cluster = of_cluster;
+        fiber.waits_for = whole;
         void* const outside = watched_;  // read before the others may go on
         watch::arrive(&arrived_);
         watch::before_switch(outside);
@@ -174,6 +212,17 @@ class Block {
     char arrived_ = 0, left_ = 0;  // what the sanitizer knows them by
 };
 
+/// What the blocks of a launch know of each other.
+struct Letters {
+    struct Inbox {
+        double* memory = nullptr;
+        std::atomic<int> bytes = 0;
+    };
+    std::vector<Inbox> of_block;
+    explicit Letters(unsigned blocks) : of_block(blocks) {}
+};
+inline constinit thread_local Letters* letters = nullptr;
+
 struct Launch {
     unsigned blocks = 0, threads = 0;
     std::size_t numbers = 0;  // of shared memory
@@ -185,7 +234,9 @@ inline void run_block(unsigned b, Launch const& grid, Stacks const& stacks, std:
     constexpr double unset = std::numeric_limits<double>::quiet_NaN();
     std::span const own(cuda::kernels::shared_numbers, grid.numbers + numbers_to_see_overruns);
     std::fill(own.begin(), own.end(), unset);
+    letters->of_block[b].memory = own.data();
     blockIdx.x = b;
+    gridDim.x = grid.blocks;
     blockDim.x = grid.threads;
     Block(grid.threads, stacks, cluster, kernel).run();
     for (double const beyond : own.last(numbers_to_see_overruns))
@@ -199,9 +250,11 @@ void launch(Launch const& grid, void (*kernel)(Parameters...), std::type_identit
     std::function<void()> const of_thread = [&] { kernel(parameters...); };
     unsigned const workers = grid.cluster > 1 ? grid.cluster : std::min(grid.blocks, 2U);
     std::barrier<> cluster(workers);
+    Letters here(grid.blocks);
     std::vector<std::jthread> threads;
     for (unsigned w = 0; w < workers; ++w)
         threads.emplace_back([&, w] {
+            letters = &here;
             Stacks const stacks(grid.threads);
             for (unsigned b = w; b < grid.blocks; b += workers)
                 run_block(b, grid, stacks, grid.cluster > 1 ? &cluster : nullptr, of_thread);
@@ -211,7 +264,46 @@ void launch(Launch const& grid, void (*kernel)(Parameters...), std::type_identit
 }  // namespace catena::cuda_on_host
 
 /// `line`: that of the call.
-inline void __syncthreads(int line = __builtin_LINE()) { catena::cuda_on_host::Block::wait(line, false); }
+inline void __syncthreads(int line = __builtin_LINE()) {
+    catena::cuda_on_host::Block::wait(line, catena::cuda_on_host::Block::Whole::block);
+}
+inline void __syncwarp(int line = __builtin_LINE()) { catena::cuda_on_host::Block::wait(line, catena::cuda_on_host::Block::Whole::warp); }
+template <class T>
+T __shfl_sync(unsigned, T value, int lane, int line = __builtin_LINE()) {
+    return static_cast<T>(catena::cuda_on_host::Block::of_lane(static_cast<double>(value), lane, line));
+}
 namespace catena::cuda {
-inline void sync_cluster(int line = __builtin_LINE()) { cuda_on_host::Block::wait(line, true); }
+inline void sync_cluster(int line = __builtin_LINE()) { cuda_on_host::Block::wait(line, cuda_on_host::Block::Whole::cluster); }
+
+namespace kernels {
+
+class Inbox {
+  public:
+    explicit Inbox(std::uint64_t*) {}
+    static void open(int bytes) { expected_ = bytes; }
+    static void send(int block, double* at, double value) {
+        cuda_on_host::Letters::Inbox& to = cuda_on_host::letters->of_block[static_cast<std::size_t>(block)];
+        to.memory[at - shared_numbers] = value;
+        to.bytes.fetch_add(sizeof(value), std::memory_order_release);
+    }
+    static void wait(int line = __builtin_LINE()) {
+        std::atomic<int> const& bytes = cuda_on_host::letters->of_block[blockIdx.x].bytes;
+        bool all = false;
+        while (!all) {  // lanes see it come one after the other, and go on together
+            all = cuda_on_host::Block::of_lane(bytes.load(std::memory_order_acquire) == expected_ ? 1 : 0, 0, line) > 0;
+        }
+    }
+
+  private:
+    static inline thread_local int expected_ = 0;
+};
+inline void arrive_at_cluster() {}
+inline void wait_for_cluster(int line = __builtin_LINE()) {
+    cuda_on_host::Block::wait(line, cuda_on_host::Block::Whole::block);
+    cuda_on_host::Block::wait(line, cuda_on_host::Block::Whole::cluster);
+}
+inline void let_next_launch_start() {}
+inline void wait_for_launch() {}
+
+}  // namespace kernels
 }  // namespace catena::cuda

@@ -8,6 +8,7 @@
 #include "tests/support/cuda_on_host.hpp"
 
 // After CUDA's words.
+#include "cuda/short_chain.cuh"
 #include "cuda/stage_kernels.cuh"
 
 namespace catena::test {
@@ -16,11 +17,13 @@ struct StagedGpu {
     dca::StageSizes sizes;
     bool runs_apart = false;               // also where they are few
     std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
+    bool short_chains = false;             // by themselves
 };
 /// In launches so far.
 struct StagesSeen {
     std::set<unsigned> blocks_of_clusters;
     std::size_t most_stages = 0;
+    std::set<unsigned> blocks_of_short_chains;
     int turns_alone = 0, runs_apart = 0, runs_in_stages = 0;
 };
 
@@ -44,6 +47,7 @@ class StageSpace : public HostSpace {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
+            if (gpu.short_chains) short_ = cuda::kernels::short_chain_of(runs, levels, roots);
             for (dca::Stage const& stage : plan_.stages) {
                 blocks_.push_back(dca::blocks_of(stage));
                 level_ends_.push_back(dca::level_ends_of(stage));
@@ -56,6 +60,7 @@ class StageSpace : public HostSpace {
         dca::StageSizes sizes_;
         int threads_;
         dca::StagePlan plan_;
+        cuda::kernels::ShortChain short_;
         std::vector<std::vector<dca::StageBlock>> blocks_;  // of every stage
         std::vector<std::vector<std::int32_t>> level_ends_;
     };
@@ -72,6 +77,8 @@ class StageSpace : public HostSpace {
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         auto const& stages = tree.plan_.stages;
         if (stages.empty()) return;
+        if constexpr (cuda::kernels::takes_short_chains<Sweep>)
+            if (tree.short_.warps > 0) return turn_short(tree.short_, sweep);
         bool const together =
             stages.size() > 1 && stages[stages.size() - 2].blocks() <= tree.sizes_.together && stages.back().blocks() == 1;
         std::size_t const apart = stages.size() - (together ? 2 : 1);
@@ -122,6 +129,13 @@ class StageSpace : public HostSpace {
         cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads),
                               numbers<Sweep>(here, threads) + (upper ? numbers<Sweep>(above, threads) : 0), upper ? here.blocks : 1},
                              cuda::kernels::turn<Sweep>, here, above, sweep);
+    }
+    template <class Sweep>
+    static void turn_short(cuda::kernels::ShortChain const& chain, Sweep const& sweep) {
+        cuda::kernels::ShortGrid const grid = cuda::kernels::grid_of_short<Sweep>(chain);
+        seen.blocks_of_short_chains.insert(grid.blocks);
+        cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks}, cuda::kernels::turn_short<Sweep>,
+                             chain, sweep);
     }
     template <class Sweep>
     static void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) {
