@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dca/places.hpp"
+#include "dca/simd/near.hpp"
 
 namespace catena::dca {
 
@@ -13,9 +14,14 @@ struct Abreast {
     friend Abreast operator-(Abreast a, int by) { return {a.first - by}; }
 };
 
+/// Loops go along the bodies in vectors: what lies so far ahead of one is asked for with it.
+inline constexpr int ahead_of_bodies = 64;
+
 template <class T, int D, class Real>
 Real read(FieldView<T, D> const& view, Abreast<Real> const& bodies, int component) {
-    return Real::load_anywhere(view.origin + component * view.pitch + bodies.first);
+    auto const* const place = view.origin + component * view.pitch + bodies.first;
+    ask_for<Real>(place + ahead_of_bodies);
+    return Real::load_anywhere(place);
 }
 template <class T, int D, class Real>
 Vector<Real, D> read(FieldView<T, D> const& view, Abreast<Real> const& bodies) {
@@ -27,7 +33,11 @@ Vector<Real, D> read(FieldView<T, D> const& view, Abreast<Real> const& bodies) {
 template <int D, class Real>
 void write(View<D> const& view, Abreast<Real> const& bodies, Vector<Real, D> const& value) {
     CATENA_UNROLL
-    for (int i = 0; i < D; ++i) value[i].store_anywhere(view.origin + i * view.pitch + bodies.first);
+    for (int i = 0; i < D; ++i) {
+        double* const place = view.origin + i * view.pitch + bodies.first;
+        ask_to_write<Real>(place + ahead_of_bodies);
+        value[i].store_anywhere(place);
+    }
 }
 template <int K, class Real>
 void write_directions(DirectionsView const& view, Abreast<Real> const& bodies, Vector<Real, K> const& value) {

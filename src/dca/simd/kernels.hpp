@@ -97,6 +97,7 @@ class RunsSideBySide {
     using Node = NodeInLanes<Real, K>;
     static_assert(fits_nodes<Real, K>);
     static constexpr std::int64_t bodies_of_item = lanes * longest_run;
+    static constexpr int numbers_of_node = node_numbers<K> * lanes;
 
   public:
     explicit RunsSideBySide(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
@@ -113,8 +114,10 @@ class RunsSideBySide {
             make_part(runs, p, p == 0 ? whole : part);
             if (p == 0) continue;
             Node node;
+            double* const kept = place(item, p);
+            ask_to_write<Real>(kept + numbers_of_node, numbers_of_node);
             append(whole, part, node, runs, p * part_length);
-            store_vectors<Real>(place(item, p), node);
+            store_vectors<Real>(kept, node);
         }
         scatter<Real>(whole.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(whole.bias, work_.sweeps.biases, runs.slot);
@@ -129,7 +132,9 @@ class RunsSideBySide {
             Directions at_begin = first;
             if (p > 0) {
                 Node node;
-                load_vectors<Real>(place(item, p), node);
+                double const* const kept = place(item, p);
+                ask_for<Real>(kept - numbers_of_node, numbers_of_node);
+                load_vectors<Real>(kept, node);
                 at_begin = node.force(first, next);
             }
             down(runs, p, at_begin, next);
@@ -138,7 +143,7 @@ class RunsSideBySide {
     }
 
   private:
-    double* place(std::int64_t item, int p) const { return work_.nodes + (item * (parts_of_run - 1) + p - 1) * node_numbers<K> * lanes; }
+    double* place(std::int64_t item, int p) const { return work_.nodes + (item * (parts_of_run - 1) + p - 1) * numbers_of_node; }
     /// The next item's bodies usually follow, or come before where the way is back.
     void fill(RunsInLanes const& runs, int p, int way) {
         begin_ = {by_runs ? p * part_length : 0};
@@ -149,7 +154,7 @@ class RunsSideBySide {
         if constexpr (constants_of<Leaf> > 0) {
             constexpr int block = constants_of<Leaf> * part_length * lanes;
             double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            for (int n = 0; n < block; n += 8) InTile::ask_for(here + 2 * way * block + n);
+            ask_for<Real>(here + 2 * way * block, block);
             bodies_ = in_tile_.with({here});
         }
     }
@@ -253,11 +258,23 @@ template <class Real, class Leaf>
     for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>
+void ask_for_merge(MergeWork<Leaf> const& work, std::int64_t item) {
+    constexpr int numbers_of_node = node_numbers<Leaf::K> * Real::lanes;
+    auto const ask_for_segments = [&sweeps = work.sweeps](std::int64_t const* slots) {
+        ask_for_records<Real>(sweeps.matrices, slots);
+        ask_for_records<Real>(sweeps.biases, slots);
+    };
+    ask_for_segments(work.merges[item].inboard);
+    ask_for_segments(work.merges[item].outboard);
+    ask_to_write<Real>(work.nodes + item * numbers_of_node, numbers_of_node);
+}
+template <class Real, class Leaf>
 [[gnu::flatten]] void climb_merges(MergeWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
-    constexpr int K = Leaf::K;
+    constexpr int K = Leaf::K, numbers_of_node = node_numbers<K> * Real::lanes;
     auto const& [sweeps, merges, nodes] = work;
     for (std::int64_t item = begin; item < end; ++item) {
         MergesInLanes const& m = merges[item];
+        if (item + 1 < end) ask_for_merge<Real>(work, item + 1);
         BiasedSegment<Real, K> segment, outboard;
         gather<Real>(sweeps.matrices, m.inboard, segment.matrix);
         gather<Real>(sweeps.biases, m.inboard, segment.bias);
@@ -266,7 +283,7 @@ template <class Real, class Leaf>
         NodeInLanes<Real, K> node;
         node.append(segment, outboard);
         watch(sweeps, m.joint, 0, node.joint.factor);
-        store_vectors<Real>(nodes + item * node_numbers<K> * Real::lanes, node);
+        store_vectors<Real>(nodes + item * numbers_of_node, node);
         scatter<Real>(segment.matrix, sweeps.matrices, m.slot);
         scatter<Real>(segment.bias, sweeps.biases, m.slot);
     }

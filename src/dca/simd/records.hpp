@@ -2,6 +2,7 @@
 #pragma once
 
 #include "dca/records.hpp"
+#include "dca/simd/near.hpp"
 
 namespace catena::dca {
 
@@ -50,6 +51,13 @@ void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& r
     else
         for (int n = 0; n < count; ++n) Real::pick(from.origin + n, at).store(values + n * lanes);
     load_vectors<Real>(values, record);
+}
+
+/// Of as many places as a vector has lanes.
+template <class Real, class OfOne, Order order>
+void ask_for_records(RecordsView<OfOne, order> from, std::int64_t const* index) {
+    constexpr int count = RecordsView<OfOne, order>::numbers;
+    for (int j = 0; j < Real::lanes; ++j) ask_for<Real>(from.origin + index[j] * count, count);
 }
 
 }  // namespace catena::dca

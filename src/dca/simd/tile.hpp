@@ -3,6 +3,7 @@
 #pragma once
 
 #include "dca/places.hpp"
+#include "dca/simd/near.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::dca {
@@ -72,8 +73,6 @@ class Tile {
     static constexpr int lanes = Real::lanes, columns = length + 2, most = 64;
 
   public:
-    /// Brings what lies there near, but not into the nearest cache, which a part's own work fills.
-    static void ask_for(double const* place) { __builtin_prefetch(place, 0, 2); }
     /// The same view of the tile; none of none. `neighbours`: columns -1 and `length` too.
     template <int D>
     ConstView<D> in(ConstView<D> view, bool neighbours = false) {
@@ -109,7 +108,7 @@ class Tile {
             double* const to = place(n);
             for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
             for (int i = 0; i < length; i += numbers_of_line)
-                for (int j = 0; j < lanes; ++j) ask_for(from + i + first[j] + ahead);
+                for (int j = 0; j < lanes; ++j) ask_for<Real>(from + i + first[j] + ahead);
             if (!source_[n].neighbours) continue;
             Real::pick(from - 1, first).store(to - lanes);
             Real::pick(from + length, first).store(to + length * lanes);
@@ -120,13 +119,12 @@ class Tile {
         for (int n = 0; n < written_; ++n) {
             for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
             for (int i = 0; i < length; i += numbers_of_line)
-                for (int j = 0; j < lanes; ++j) __builtin_prefetch(target_[n] + i + first[j] + ahead, 1, 2);
+                for (int j = 0; j < lanes; ++j) ask_to_write<Real>(target_[n] + i + first[j] + ahead);
         }
     }
 
   private:
     static constexpr std::int64_t pitch = columns * lanes;
-    static constexpr int numbers_of_line = 8;  // of a cache
     double* place(int n) { return numbers_ + n * pitch + lanes; }
     struct Source {
         double const* origin;
