@@ -10,6 +10,7 @@
 #include <new>
 #include <thread>
 
+#include "clock.hpp"
 #include "command/command_line.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
@@ -78,10 +79,9 @@ Session::Session(Communicator const& communicator, CommonOptions const& options)
 }
 
 Scene Session::load(std::string const& file) const {
-    auto const start = std::chrono::steady_clock::now();
+    double const start = seconds_now();
     Scene scene = load_scene(file, overrides_of(options_));
-    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file,
-                  std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), scene.chains.size(), scene.bodies());
+    spdlog::debug("{} read in {:.3f} s: {} chains, {} bodies", file, seconds_now() - start, scene.chains.size(), scene.bodies());
     return scene;
 }
 

@@ -17,10 +17,9 @@ namespace catena {
 /// a kind come than there are slots, the parameters of others change; a Context is made anew where there are too few in all.
 class HaloForces final : public RankForces, public Halo {
   public:
-    /// Making lists takes one core 0.16 s for half a million beads, and the GPU waits. The fastest of 14,000 beads of a condensate
-    /// (CALVADOS 2, 330 mg/ml, 10 fs) has gone 0.25 nm after 32 steps, 0.5 after 80, 0.75 after 150, 1 nm after 220. With half of the reach
-    /// of 4 nm lists last about as long as OpenMM's order, and a rank with half of a box of 80 nm has 7 % more particles than with an
-    /// eighth.
+    /// While lists are made the GPU waits: 0.15 s for half a million beads on each of two ranks. The fastest of a million beads of a
+    /// condensate (CALVADOS 2, 330 mg/ml, 10 fs) has gone 1 nm after some 130 steps, of 14,000 beads 0.25 nm after 32, 0.5 after 80 and
+    /// 1 nm after 220.
     static double constexpr skin_of_reach_on_device = 0.5;
 
     explicit HaloForces(RankPlan const& plan);

@@ -25,18 +25,21 @@ bool is_zero(Lepton::ParsedExpression const& energy) {
 /// Whether a particle acts at all, by its parameters; one of a kind that is not understood does.
 class Acting {
   public:
-    explicit Acting(OpenMM::CustomNonbondedForce const& force) : understood_(force.getNumFunctions() + force.getNumComputedValues() == 0) {
+    explicit Acting(OpenMM::CustomNonbondedForce const& force)
+        : understood_(force.getNumTabulatedFunctions() == 0 && computed_values_of(force) == 0) {
         if (understood_) energy_ = Lepton::Parser::parse(force.getEnergyFunction());
         for (int i = 0; i < force.getNumPerParticleParameters(); ++i) name_.push_back(force.getPerParticleParameterName(i));
     }
     bool operator()(Parameters const& of_particle) {
-        if (!understood_) return true;
+        if (!understood_ || known_.size() > most_kinds) return true;
         auto const [found, is_new] = known_.try_emplace(of_particle, true);
         if (is_new) found->second = !(is_zero(energy_.optimize(as("1", of_particle))) && is_zero(energy_.optimize(as("2", of_particle))));
         return found->second;
     }
 
   private:
+    static std::size_t constexpr most_kinds = 4096;  // to look at one takes some 10 us
+
     std::map<std::string, double> as(char const* side, Parameters const& of_particle) const {
         std::map<std::string, double> values;
         for (std::size_t i = 0; i < name_.size(); ++i) values[name_[i] + side] = of_particle[i];
@@ -70,6 +73,7 @@ std::vector<char> acts_in(OpenMM::NonbondedForce const& force) {
     return acts;
 }
 
+/// None of a force that is not one between pairs.
 std::vector<char> acts_in(OpenMM::Force const& force) {
     if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return acts_in(*pairs);
     if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force)) return acts_in(*pairs);
@@ -87,6 +91,9 @@ std::vector<PairRange> pair_ranges(OpenMM::System const& system, std::vector<std
     for (int i = 0; i < system.getNumForces(); ++i) {
         std::vector<char> const acts = acts_in(system.getForce(i));
         if (acts.empty()) continue;
+        if (acts.size() != bead_of_particle.size())
+            throw OpenMM::OpenMMException(system.getForce(i).getName() +
+                                          " must have exactly as many particles as the System it belongs to");
         std::vector<char>& here = acts_to.try_emplace(reach_of(system.getForce(i)), acts.size(), char{0}).first->second;
         for (std::size_t p = 0; p < acts.size(); ++p) here[p] = std::max(here[p], acts[p]);
     }

@@ -89,7 +89,6 @@ void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
     }
 }
 
-/// Computed values came with OpenMM 8; a class that lacks them has none to copy.
 template <class Source>
 void copy_computed_values(Source const& from, Source& to) {
     if constexpr (requires { from.getNumComputedValues(); }) {

@@ -9,6 +9,13 @@
 
 namespace catena {
 
+/// Computed values came with OpenMM 8: a class that lacks them has none.
+template <class Source>
+int computed_values_of(Source const& force) {
+    if constexpr (requires { force.getNumComputedValues(); }) return force.getNumComputedValues();
+    return 0;
+}
+
 /// Whether forces on some particles can be had without the others: the cutoff kinds of nonbonded forces, all the common bonded ones.
 bool can_be_split(OpenMM::Force const&);
 

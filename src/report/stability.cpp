@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "clock.hpp"
 #include "error.hpp"
 #include "report/growth.hpp"
 #include "report/solver_errors.hpp"
@@ -252,14 +253,13 @@ StabilityStudy study_stability(StabilityCase const& which, std::vector<Backend> 
                                int seeds, AskPeers const& peers) {
     StabilityStudy study{which.family, which.name, {}, which.bodies, seeds, {}, 1, 0, {}};
     std::vector<PeerErrors> of_peers;
-    std::vector<Variant> variants;
+    std::vector<Variant> variants = variants_of(which.scene(1).chains.front(), backends, handles);
+    if (variants.empty()) return study;
     std::vector<double> condition, growth, in_double;
     std::vector<KnownCase> known = known_cases(which, seeds);
     for (KnownCase& each : known) {
         Scene& scene = each.scene;
         ExactSolution const& exact = each.exact;
-        if (variants.empty()) variants = variants_of(scene.chains.front(), backends, handles);
-        if (variants.empty()) return study;
         study.reference = exact.by;
         growth.push_back(exact.growth);
         if (which.bodies <= largest_condition) condition.push_back(oracle::condition_estimate(scene.chains.front()));

@@ -84,19 +84,23 @@ void add_pairs(System& system, int n, bool periodic) {
     for (int i = 0; i <= 40; ++i) values.push_back(std::exp(-0.1 * i) * std::sin(0.3 * i));
     tabulated->addTabulatedFunction("shape", new Continuous1DFunction(values, 0, 1.25));
     tabulated->setCutoffDistance(1.2);
+    auto* charged = new CustomNonbondedForce("q1*q2*exp(-r)");  // farther than the others, between some
+    charged->addPerParticleParameter("q");
+    charged->setCutoffDistance(1.7);
     auto* grouped = new CustomNonbondedForce("g/r^2");
     grouped->addGlobalParameter("g", 0.25);
     grouped->setCutoffDistance(1.5);
     std::set<int> even, third;
     for (int i = 0; i < n; ++i) {
         tabulated->addParticle({1.0 + 0.2 * (i % 3)});
+        charged->addParticle({i % 3 == 1 ? 0.8 : 0.0});
         grouped->addParticle();
         if (i % 2 == 0) even.insert(i);
         if (i % 3 == 0) third.insert(i);
     }
-    for (int i = 0; i + 2 < n; ++i) tabulated->addExclusion(i, i + 2);
+    for (int i = 0; i + 2 < n; ++i) tabulated->addExclusion(i, i + 2), charged->addExclusion(i, i + 2);
     grouped->addInteractionGroup(even, third);
-    for (auto* pairs : {tabulated, grouped}) {
+    for (auto* pairs : {tabulated, charged, grouped}) {
         pairs->setNonbondedMethod(method);
         system.addForce(pairs);
     }

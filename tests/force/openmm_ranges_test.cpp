@@ -77,6 +77,20 @@ TEST(PairRanges, ChargesAndWellsOfNonbondedForce) {
     EXPECT_EQ(found[0].acts, (std::vector<char>{1, 1, 0}));
 }
 
+TEST(PairRanges, OffsetsMayChargeAnyParticle) {
+    auto force = std::make_unique<OpenMM::NonbondedForce>();
+    force->setNonbondedMethod(OpenMM::NonbondedForce::CutoffNonPeriodic);
+    force->addGlobalParameter("scale", 1);
+    for (int p = 0; p < 3; ++p) force->addParticle(0, 0.3, 0);
+    force->addParticleParameterOffset("scale", 1, 0.5, 0, 0);
+    EXPECT_EQ(ranges(std::move(force)).front().acts, all);
+}
+
+TEST(PairRanges, AForceWithoutAllParticlesIsRefused) {
+    EXPECT_THROW(ranges(custom("q1*q2/r", 2, {1, 1}), custom("q1*q2/r", 2, {1, 1, 1})), OpenMM::OpenMMException);
+    EXPECT_THROW(ranges(custom("q1*q2/r", 2, {1, 1, 1, 1})), OpenMM::OpenMMException);
+}
+
 TEST(PairRanges, WhatALongerRangeHoldsIsLeftOut) {
     EXPECT_EQ(ranges(custom("1/r", 2, {1, 1, 1}), custom("1/r^2", 4, {1, 1, 1})).size(), 1u);
     EXPECT_EQ(ranges(custom("q1*q2/r", 4, {1, 0, 1}), custom("q1*q2/r", 2, {1, 0, 0})).size(), 1u);
