@@ -83,4 +83,11 @@ __device__ inline void wait_for_launch() {
 
 #endif
 
+/// All blocks of a cluster have come here, and see what the others wrote before.
+__device__ inline void meet_cluster() {
+    __syncthreads();
+    arrive_at_cluster();
+    wait_for_cluster();
+}
+
 }  // namespace catena::cuda::kernels

@@ -6,10 +6,10 @@
 #include <memory>
 #include <optional>
 
+#include "cuda/clusters.hpp"
 #include "cuda/device_blocks.cuh"
 #include "cuda/device_lists.cuh"
 #include "cuda/device_model.cuh"
-#include "cuda/kernel_image.hpp"
 #include "cuda/kernels.cuh"
 #include "cuda/peer_exchange.cuh"
 #include "cuda/short_launch.cuh"
@@ -51,12 +51,13 @@ class DeviceSpace {
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
              std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
             : runs_(runs) {
-            dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
+            int most_shared_bytes = 0;
+            dca::StageSizes const sizes = sizes_here(records, most_shared_bytes);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
             for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
             together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
-            if (sizes.together > 0) short_ = kernels::short_chain_of(runs, levels, roots);
+            if (sizes.together > 0) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes);
         }
 
       private:
@@ -95,21 +96,15 @@ class DeviceSpace {
             kernels::DeviceStage view;
         };
         static dca::StageSizes sizes_here(dca::StageRecords const& records, int& shared_bytes) {
-            int clusters = 0;
-            auto const ask = [](int& answer, cudaDeviceAttr of) {
-                int device = 0;
-                check(cudaGetDevice(&device), "say which it is");
-                check(cudaDeviceGetAttribute(&answer, of, device), "say how large it is");
-            };
-            ask(shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin);
-            ask(clusters, cudaDevAttrClusterLaunch);
-            return dca::stage_sizes(records, shared_bytes, clusters && kernels_know_clusters() ? kernels::most_in_cluster : 0);
+            int device = 0;
+            check(cudaGetDevice(&device), "say which it is");
+            check(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "say how large it is");
+            return dca::stage_sizes(records, shared_bytes, knows_clusters() ? kernels::most_in_cluster : 0);
         }
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;
         bool runs_apart_ = false, together_ = false;
-        kernels::ShortChain short_;
-        int most_shared_bytes_ = 0;
+        ShortLaunch short_;
     };
 
     using Blocks = DeviceBlocks;
@@ -158,8 +153,8 @@ class DeviceSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.stages_.empty()) return;
-        if constexpr (kernels::takes_short_chains<Sweep>)
-            if (launch_short(tree.short_, tree.most_shared_bytes_, sweep, stream())) return;
+        if constexpr (Sweep::goes_short)
+            if (tree.short_(sweep, stream())) return;
         std::size_t const apart = tree.stages_.size() - (tree.together_ ? 2 : 1);
         climb_below(tree, apart, sweep);
         launch_turn(tree.stages_[apart], tree.together_ ? &tree.stages_.back() : nullptr, sweep);
@@ -312,14 +307,6 @@ class DeviceSpace {
         kernels::small_levels<<<1, width, 0, stream()>>>(levels.items(), levels.offset(), first, count, step, action);
         started();
         return count;
-    }
-    template <class... Parameters>
-    static void allow_shared(void (*kernel)(Parameters...), std::size_t bytes) {
-        constexpr std::size_t without_asking = 48 << 10;
-        if (bytes > without_asking)
-            check(cudaFuncSetAttribute(reinterpret_cast<void const*>(kernel), cudaFuncAttributeMaxDynamicSharedMemorySize,
-                                       static_cast<int>(bytes)),
-                  "have enough shared memory");
     }
     template <class Sweep>
     static std::size_t shared_bytes(Tree::StageHere const& stage) {

@@ -1,5 +1,8 @@
 #include "cuda/kernel_image.hpp"
 
+#include "cuda/clusters.hpp"
+#include "cuda/owners.hpp"
+
 namespace catena::cuda {
 namespace {
 
@@ -12,9 +15,12 @@ cudaError_t status_of_kernel_image() {
     return cudaFuncGetAttributes(&attributes, nothing);
 }
 
-bool kernels_know_clusters() {
+bool knows_clusters() {
+    int device = 0, clusters = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaDeviceGetAttribute(&clusters, cudaDevAttrClusterLaunch, device), "say whether it has clusters");
     cudaFuncAttributes attributes;
-    return cudaFuncGetAttributes(&attributes, nothing) == cudaSuccess && attributes.ptxVersion >= 90;
+    return clusters != 0 && cudaFuncGetAttributes(&attributes, nothing) == cudaSuccess && attributes.ptxVersion >= 90;
 }
 
 }  // namespace catena::cuda

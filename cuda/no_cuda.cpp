@@ -1,3 +1,4 @@
+#include "cuda/clusters.hpp"
 #include "cuda/dynamics.hpp"
 #include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
@@ -15,6 +16,7 @@ std::string device_name() { throw ComputationError(why_not()); }
 
 std::string choose_device(Communicator const&) { return why_not(); }
 std::int64_t free_memory(Communicator const&) { throw ComputationError(why_not()); }
+bool knows_clusters() { throw ComputationError(why_not()); }
 std::int64_t stacks(std::int64_t) { throw ComputationError(why_not()); }
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }
 

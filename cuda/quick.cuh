@@ -8,19 +8,34 @@
 
 namespace catena::cuda::kernels {
 
+#if defined(__CUDACC__)
+/// A double's upper half: its sign, eleven bits of its exponent, and the leading ones of its mantissa.
+namespace upper {
+constexpr unsigned no_sign = 0x7fffffff, exponent_step = 0x00100000, infinite = 0x7ff00000;
+constexpr int not_a_number = 0x7ff80000;
+__device__ inline unsigned of(double x) { return static_cast<unsigned>(__double2hiint(x)); }
+}  // namespace upper
+__device__ inline double not_known() { return __hiloint2double(upper::not_a_number, 0); }
+/// A first guess has twenty good bits in its upper half; nvcc puts something there for the lower one that tells of the range as well.
+__device__ inline double first_guess(double coarse, unsigned lower) {
+    return __hiloint2double(__double2hiint(coarse), static_cast<int>(lower));
+}
+#endif
+
 struct QuickInverse {
     __device__ double operator()(double x) const {
 #if defined(__CUDACC__)
-        int const high = __double2hiint(x), seed = high + 0x300402;
+        constexpr unsigned shift = 0x00300402;  // the sign's bit and those below it tell where the exponent is too large
+        unsigned const lower = upper::of(x) + shift;
         double y;
         asm("rcp.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
-        y = __hiloint2double(__double2hiint(y), seed);
+        y = first_guess(y, lower);
         double e = __fma_rn(-x, y, 1.0);
         e = __fma_rn(e, e, e);
         y = __fma_rn(y, e, y);
         e = __fma_rn(-x, y, 1.0);
         y = __fma_rn(y, e, y);
-        return (seed & 0x7fffffff) >= 0x400402 ? y : __hiloint2double(0x7ff80000, 0);
+        return (lower & upper::no_sign) >= shift + upper::exponent_step ? y : not_known();
 #else
         double const size = x < 0 ? -x : x;
         return size >= std::numeric_limits<double>::min() && size < 0x1p1022 ? 1 / x : std::numeric_limits<double>::quiet_NaN();
@@ -32,17 +47,19 @@ struct QuickInverseLength {
     static constexpr bool may_fail = true;
     __device__ double operator()(Vec3 const& d) const {
 #if defined(__CUDACC__)
+        constexpr unsigned least = 0x03500000;  // 2^-970
         double const x = dot(d, d);
-        int const seed = __double2hiint(x) - 0x03500000;
+        unsigned const lower = upper::of(x) - least;
         double y;
         asm("rsqrt.approx.ftz.f64 %0, %1;" : "=d"(y) : "d"(x));
-        y = __hiloint2double(__double2hiint(y), seed);
+        y = first_guess(y, lower);
         double const e = __fma_rn(x, -__dmul_rn(y, y), 1.0);
         y = __fma_rn(__fma_rn(e, 0.375, 0.5), __dmul_rn(y, e), y);
-        double const root = __dmul_rn(x, y), half = __hiloint2double(__double2hiint(y) - 0x00100000, __double2loint(y));
+        double const root = __dmul_rn(x, y);
+        double const half = __hiloint2double(static_cast<int>(upper::of(y) - upper::exponent_step), __double2loint(y));  // of y
         double const length = __fma_rn(__fma_rn(root, -root, x), half, root);
         double const found = QuickInverse{}(length);  // in any case: no branch
-        return static_cast<unsigned>(seed) < 0x7ca00000u ? found : __hiloint2double(0x7ff80000, 0);
+        return lower < upper::infinite - least ? found : not_known();
 #else
         double const x = dot(d, d);
         return x >= 0x1p-960 && x < 0x1p1023 ? QuickInverse{}(norm(d)) : std::numeric_limits<double>::quiet_NaN();

@@ -3,6 +3,7 @@
 // Bodies that are read one by one have more warps beside: what needs no neighbour is done for all bodies at once.
 #pragma once
 
+#include <bit>
 #include <type_traits>
 #include <vector>
 
@@ -17,6 +18,9 @@ constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
 /// Of those at the top every lane takes one or two.
 constexpr int most_warps_of_short = 2 * lanes_of_warp;
 static_assert(most_warps_of_short <= most_blocks_of_short * most_joining_warps);
+static_assert(std::has_single_bit(static_cast<unsigned>(lanes_of_warp)));
+/// Of a tree of pairs with so many leaves, a power of two.
+constexpr int levels_above(int leaves) { return std::bit_width(static_cast<unsigned>(leaves)) - 1; }
 
 /// `warps`, that join; none: there is none, or one that is not short.
 struct ShortChain {
@@ -54,7 +58,9 @@ class ShortWarp {
     using Segment = typename Sweep::Segment;
     using Node = typename Sweep::Node;
     using State = typename Sweep::Sweeps::State;
-    static constexpr int levels_of_warp = 3, steps_of_warp = dca::parts_of_run - 1 + levels_of_warp, most_levels_of_top = 5;
+    static constexpr int levels_of_warp = levels_above(lanes_of_warp / dca::parts_of_run), most_levels_of_top = levels_above(lanes_of_warp);
+    static constexpr int steps_of_warp = dca::parts_of_run - 1 + levels_of_warp;
+    static_assert(std::has_single_bit(static_cast<unsigned>(dca::parts_of_run)));
     static constexpr int pitch = lanes_of_warp + 1;
     struct Ends {
         State first, next;
@@ -83,10 +89,10 @@ class ShortWarp {
 
     __device__ void open() const {
         if (threadIdx.x == 0) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        __syncwarp();
         arrive_at_cluster();
     }
-    template <class Clock>
-    __device__ void turn(Clock const& clock) const {
+    __device__ void turn() const {
         Kept kept{own_ + of_nodes};
         Place const here = place();
         if constexpr (one_by_one) {
@@ -97,12 +103,10 @@ class ShortWarp {
             for (int i = beside_; is_here(i); i += beside) kept.put(i, sweep_.bodies.segment(body(begin + i)));
             __syncthreads();
             wait_for_cluster();
-            clock(8);
-            if (beside_ == 0) join(here, kept, clock);
+            if (beside_ == 0) join(here, kept);
             typename Sweep::Body next;
             if (is_here(beside_)) next = body(begin + beside_);
             __syncthreads();
-            clock(9);
             CATENA_NO_UNROLL
             for (int i = beside_; is_here(i); i += beside) {
                 typename Sweep::Body const own = next;
@@ -111,9 +115,8 @@ class ShortWarp {
                 sweep_.accelerate(begin + i, own, ends.first, ends.next);
             }
         } else {
-            join(here, kept, clock);
+            join(here, kept);
         }
-        clock(7);
     }
 
   private:
@@ -190,8 +193,7 @@ class ShortWarp {
         return p;
     }
     /// What the warps do that join: up and down again.
-    template <class Clock>
-    __device__ void join(Place const& here, Kept& kept, Clock const& clock) const {
+    __device__ void join(Place const& here, Kept& kept) const {
         typename Sweep::Part read;
         Segment segment{};
         if constexpr (one_by_one) {
@@ -204,18 +206,14 @@ class ShortWarp {
             read = sweep_.read(here.begin, here.begin + here.count, QuickInverseLength{});
             segment = sweep_.part(here.begin, here.count, read, kept, Factors{});
         }
-        clock(1);
         climb<steps_of_warp>(segment, own_, warp_ * lanes_of_warp, dca::part_length, here.restricted[0], steps_of_warp,
                              [](int step) { return Meeting::of_parts(step); });
-        clock(2);
         if constexpr (!one_by_one) wait_for_cluster();
         if (warp_ >= chain_.warps) return;
         give(segment);
         __syncwarp();
         inbox_.wait();
-        clock(3);
-        Ends ends = solve_top(here.unit, here.at_top, clock);
-        clock(5);
+        Ends ends = solve_top(here.unit, here.at_top);
         each_step<levels_of_warp, true>(
             levels_of_warp, [&](int level) { go_down(ends, dca::parts_of_run << level, own_, warp_ * lanes_of_warp, dca::part_length); });
         State first = ends.first;
@@ -225,7 +223,6 @@ class ShortWarp {
             first = here.part == p ? there : first;
             ends.next = here.part < p ? there : ends.next;
         });
-        clock(6);
         sweep_.forces(here.count, kept, first, ends.next, [&](int i, State const& inboard, State const& outboard) {
             if constexpr (one_by_one)
                 kept.put(i, Ends{inboard, outboard});
@@ -311,8 +308,7 @@ class ShortWarp {
         return __builtin_bit_cast(Segment, values);
     }
     /// The forces at the ends of this warp.
-    template <class Clock>
-    __device__ Ends solve_top(int unit, int const (&restricted)[2], Clock const& clock) const {
+    __device__ Ends solve_top(int unit, int const (&restricted)[2]) const {
         double *const nodes = own_ + numbers_of<Node> * pitch, *const within = nodes + numbers_of<Node> * pitch;
         Segment segment{};
         if (unit * lane_ < chain_.warps) segment = given(unit * lane_);
@@ -326,7 +322,6 @@ class ShortWarp {
         while ((unit << levels) < chain_.warps) ++levels;
         climb<most_levels_of_top>(segment, nodes, 0, unit * bodies_of_warp, restricted[0], levels,
                                   [](int level) { return Meeting::of_pairs(1 << level); });
-        clock(4);
         int const restricted_of_first = __shfl_sync(0xffffffffu, restricted[0], 0);
         Ends ends{State::zero(), State::zero()};
         if (lane_ == (1 << levels) - 1) ends.first = sweep_.first_force({0, restricted_of_first}, segment);
@@ -345,13 +340,6 @@ class ShortWarp {
     Inbox inbox_;
     double *segments_, *own_;
 };
-
-struct NoClock {
-    __device__ void operator()(int) const {}
-};
-/// The sweeps that keep what they find where they find it, and leave nothing for others.
-template <class Sweep>
-constexpr bool takes_short_chains = Sweep::keeps_nodes;
 
 struct ShortGrid {
     unsigned blocks = 0, threads = 0;
@@ -374,7 +362,7 @@ __global__ void __launch_bounds__(ShortWarp<Sweep>::most_threads) turn_short(Sho
     ShortWarp<Sweep> const warp(chain, sweep, shared_numbers);
     warp.open();
     wait_for_launch();
-    warp.turn(NoClock{});
+    warp.turn();
 }
 
 }  // namespace catena::cuda::kernels

@@ -1,6 +1,7 @@
 // A sweep's stages (dca/stages.hpp) on a GPU. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
+#include "cuda/cluster.cuh"
 #include "cuda/run_parts.cuh"
 #include "dca/stages.hpp"
 
@@ -199,15 +200,6 @@ __global__ void __launch_bounds__(threads_of<Sweep>) descend(DeviceStage stage, 
     block.template descend<true>(nullptr);
 }
 constexpr int most_in_cluster = 8;  // any GPU that has clusters takes so many blocks
-/// All blocks of a cluster have come here, and see what the others wrote before.
-__device__ inline void meet_cluster() {
-    __syncthreads();
-#if !defined(__CUDACC__)
-    sync_cluster();
-#elif __CUDA_ARCH__ >= 900  // others are never asked to
-    asm volatile("barrier.cluster.arrive.release.aligned;\n\tbarrier.cluster.wait.acquire.aligned;" ::: "memory");
-#endif
-}
 /// Up and down again: two stages, the upper one of one block, by one cluster of blocks, or the lower one alone. The same instructions do
 /// both.
 template <class Sweep>

@@ -142,7 +142,7 @@ struct ArticulatedSweeps {
 
 template <class Leaf>
 struct ArticulatedMatrixSweep {
-    static constexpr bool descends = false, keeps_nodes = false;
+    static constexpr bool descends = false, keeps_nodes = false, goes_short = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Matrices;
     using Part = NothingRead;
@@ -180,7 +180,7 @@ struct ArticulatedMatrixSweep {
 /// Biases, then the joints' states and accelerations, with the matrices assembled last. Bodies are computed anew rather than kept.
 template <class Leaf>
 struct ArticulatedBiasSweep {
-    static constexpr bool descends = true, keeps_nodes = false;
+    static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Biases;
     using State = typename Sweeps::State;

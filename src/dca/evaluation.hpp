@@ -70,7 +70,7 @@ struct Resting {
 /// On the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
 template <class Leaf, class Bodies>
 struct Evaluation {
-    static constexpr bool descends = true, keeps_nodes = true, one_by_one = Bodies::one_by_one;
+    static constexpr bool descends = true, keeps_nodes = true, goes_short = true, one_by_one = Bodies::one_by_one;
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
@@ -243,7 +243,7 @@ struct Evaluation {
 /// MatrixSweep and BiasSweep at once.
 template <class Leaf>
 struct BothSweeps {
-    static constexpr bool descends = true, keeps_nodes = false;
+    static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;

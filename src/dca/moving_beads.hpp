@@ -88,15 +88,17 @@ struct MovingBeads {
             read.link[0] = floats ? Link<double>::none()
                                   : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
         }
-        double sum = read.link[0].swing;
         CATENA_UNROLL
         for (int i = 1; i <= part_length; ++i) {
             read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i], inverse_length);
             if (begin + i >= end && !goes_on) read.link[i] = Link<double>::none();
-            sum = sum + read.link[i].swing;
         }
-        if constexpr (InverseLength::may_fail)
+        if constexpr (InverseLength::may_fail) {
+            double sum = read.link[0].swing;
+            CATENA_UNROLL
+            for (int i = 1; i <= part_length; ++i) sum = sum + read.link[i].swing;
             if (sum != sum) return part(begin, end);
+        }
         return read;
     }
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {

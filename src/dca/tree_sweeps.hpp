@@ -4,7 +4,9 @@
 // A sweep is an object with its sweeps `s` (TreeSweeps, or another of SweepsOf with all its members), Segment (what travels upwards), Part
 // (what read(begin, end) finds of a part's bodies), part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots,
 // close(Root, segment) and, if it `descends`, node(joint), force(node, first, next) and down<unroll>(Run, p, Part, first, next) from the
-// states at the ends of part p. One that `keeps_nodes` has joined(..., node) and keep(joint, node) as well.
+// states at the ends of part p. One that `keeps_nodes` has joined(..., node) and keep(joint, node) as well. One that `goes_short`
+// (cuda/short_chain.cuh) also has first_force(JointAt, segment), forces() and accelerate(k, ...) from what part(..., kept, factors) or, of
+// bodies read `one_by_one`, join_bodies() kept, and nobody reads its joints, forces or slots afterwards: they are not written then.
 #pragma once
 
 #include "dca/closure.hpp"
@@ -137,7 +139,7 @@ struct NothingRead {};
 /// The matrices of every segment and joint.
 template <class Leaf>
 struct MatrixSweep {
-    static constexpr bool descends = false, keeps_nodes = false;
+    static constexpr bool descends = false, keeps_nodes = false, goes_short = false;
     using Sweeps = TreeSweeps<Leaf>;
     using Joint = typename Sweeps::Joint;
     using Segment = typename Sweeps::Matrices;
@@ -181,7 +183,7 @@ struct MatrixSweep {
 /// The biases, joint forces and accelerations, with the matrices assembled last.
 template <class Leaf>
 struct BiasSweep {
-    static constexpr bool descends = true, keeps_nodes = false;
+    static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = typename Sweeps::Biases;
     using Directions = typename Sweeps::Directions;

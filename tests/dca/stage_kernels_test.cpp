@@ -165,12 +165,38 @@ TEST_F(StageKernels, ShortChains) {
         for (Base const base : {Base::fixed, Base::free}) {
             if (bodies > 2000 && (bodies % 2 == 0) == (base == Base::free)) continue;
             SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
-            StageSpace::seen = {};
-            expect_same(scene_of({random_bead_chain(bodies, bodies, base)}));
-            expect_same(scene_of({random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base})}), Axes::world);
-            EXPECT_EQ(StageSpace::seen.blocks_of_short_chains.empty(), bodies > 8192);
+            auto const expect_short = [&](ChainSpec const& chain, Axes axes) {
+                StageSpace::seen = {};
+                expect_same(scene_of({chain}), axes);
+                EXPECT_EQ(StageSpace::seen.blocks_of_short_chains.empty(), bodies > 8192);
+            };
+            expect_short(random_bead_chain(bodies, bodies, base), Axes::joint);
+            expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}), Axes::world);
             if (HasFailure()) return;
         }
+}
+
+/// What quick quotients and roots leave to others.
+TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
+    if (!alone()) return;
+    h100_alone_ = true;
+    auto const expect_short = [&](ChainSpec const& chain) {
+        StageSpace::seen = {};
+        expect_same(scene_of({chain}));
+        EXPECT_FALSE(StageSpace::seen.blocks_of_short_chains.empty());
+    };
+    ChainSpec light = random_bead_chain(1, 300, Base::fixed);
+    light.beads.mass[100] = -1e-3;  // no positive definite matrices there
+    expect_short(light);
+    ChainSpec tiny = random_bead_chain(2, 300, Base::fixed);
+    BeadArrays& b = tiny.beads;
+    Vec3 const origin = b.position[100];
+    b.anchor = b.anchor - origin;
+    for (Vec3& position : b.position) position = position - origin;
+    b.position[101] = {{1e-160, 0, 0}};  // whose square has a few digits
+    b.length[101] = 1e-160;
+    b.length[102] = norm(b.position[102]);
+    expect_short(tiny);
 }
 
 /// So many that launches of their own do them.

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "cuda/clusters.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
@@ -26,11 +27,14 @@ void expect_same_bits(Accelerations const& a, Accelerations const& b) {
 class Gpu : public ::testing::Test {
   protected:
     void SetUp() override { need_gpu(); }
-    Accelerations solve(Scene scene, Backend backend, Axes axes) const {
+    /// Matrices and biases apart, and then so many times at once; several times without a host between them, too.
+    Accelerations solve(Scene scene, Backend backend, Axes axes, int at_once = 0) const {
         scene.solver.backend = backend;
         ChainSystem system(scene, axes, *communicator_);
         EXPECT_EQ(system.backend(), backend);
         system.evaluate();
+        for (int i = 0; i < at_once; ++i) system.evaluate(false);
+        if (at_once > 1) system.absolute().front()->time_at_once(at_once, 1);
         EXPECT_LE(system.residual(), system.residual_bound());
         return system.accelerations();
     }
@@ -39,6 +43,19 @@ class Gpu : public ::testing::Test {
         expect_same_bits(device, solve(scene, Backend::segments, axes));
         SCOPED_TRACE("a second time");
         expect_same_bits(device, solve(scene, Backend::cuda, axes));
+    }
+    /// One chain whose tip is free: up to 8,192 bodies there is a launch of its own for it.
+    void expect_same_short(char const* joint, int bodies, char const* base, int times) const {
+        SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies) + " " + base);
+        Axes const axes = joint == std::string("link") ? Axes::joint : Axes::world;
+        Scene scene = scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: " + std::to_string(bodies) +
+                                   ", joint: " + joint + ", seed: 2}}}",
+                               Handles::projected);
+        scene.solver.simd = SimdLevel::off;
+        std::int64_t const before = cuda::short_launches;
+        Accelerations const device = solve(scene, Backend::cuda, axes, times);
+        EXPECT_EQ(cuda::short_launches > before, bodies <= 8192 && cuda::knows_clusters());
+        expect_same_bits(device, solve(scene, Backend::segments, axes, times));
     }
     static Scene scene_of(std::string const& generator, Handles handles) {
         Scene scene = parse_scene("chains: [" + generator + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
@@ -73,19 +90,20 @@ TEST_F(Gpu, EveryKindAndSize) {
                 }
 }
 
-/// One chain whose tip is free: up to 8,192 bodies there is a launch of its own for it.
 TEST_F(Gpu, ShortChains) {
     for (int const bodies :
          {1, 2, 4, 5, 15, 16, 17, 100, 127, 128, 129, 511, 1000, 1024, 1025, 2047, 2048, 2049, 4095, 4096, 4097, 5000, 8191, 8192, 8193})
         for (char const* const joint : {"link", "spherical"})
             for (char const* const base : {"free", "fixed"}) {
-                SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies) + " " + base);
-                expect_same(scene_of(std::string("{base: ") + base + ", generator: {random: {bodies: " + std::to_string(bodies) +
-                                         ", joint: " + joint + ", seed: 2}}}",
-                                     Handles::projected),
-                            joint == std::string("link") ? Axes::joint : Axes::world);
+                expect_same_short(joint, bodies, base, 1);
                 if (HasFailure()) return;
             }
+}
+
+/// For the checkers: the next launch starts while the last one may still go on.
+TEST_F(Gpu, ShortChainsInARow) {
+    for (int const bodies : {129, 1025, 8192})
+        for (char const* const joint : {"link", "spherical"}) expect_same_short(joint, bodies, "fixed", 2);
 }
 
 TEST_F(Gpu, AMillionAndOne) {

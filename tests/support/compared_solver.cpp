@@ -110,11 +110,14 @@ void evaluate(ChainGroup const& group, Scene const& scene, Executor const& execu
     auto const dynamics = group.beads ? make_bead_dynamics(group, scene, executor, communicator, std::move(solver))
                                       : make_rigid_dynamics(group, scene, executor, communicator, std::move(solver));
     dynamics->update_configuration();
-    dynamics->assemble_matrices();
+    std::string const refused = words_of([&] { dynamics->assemble_matrices(); });
     dynamics->set_simple_forces();
-    dynamics->observe(0);  // without accelerations
-    dynamics->evaluate();
+    if (refused.empty()) {
+        dynamics->observe(0);  // without accelerations
+        dynamics->evaluate();
+    }
     if (at_once) dynamics->evaluate_at_once();
+    if (!refused.empty()) throw ComputationError(refused);
 }
 
 }  // namespace

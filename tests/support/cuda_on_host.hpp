@@ -272,10 +272,7 @@ template <class T>
 T __shfl_sync(unsigned, T value, int lane, int line = __builtin_LINE()) {
     return static_cast<T>(catena::cuda_on_host::Block::of_lane(static_cast<double>(value), lane, line));
 }
-namespace catena::cuda {
-inline void sync_cluster(int line = __builtin_LINE()) { cuda_on_host::Block::wait(line, cuda_on_host::Block::Whole::cluster); }
-
-namespace kernels {
+namespace catena::cuda::kernels {
 
 class Inbox {
   public:
@@ -305,5 +302,4 @@ inline void wait_for_cluster(int line = __builtin_LINE()) {
 inline void let_next_launch_start() {}
 inline void wait_for_launch() {}
 
-}  // namespace kernels
-}  // namespace catena::cuda
+}  // namespace catena::cuda::kernels

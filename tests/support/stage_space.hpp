@@ -77,8 +77,8 @@ class StageSpace : public HostSpace {
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         auto const& stages = tree.plan_.stages;
         if (stages.empty()) return;
-        if constexpr (cuda::kernels::takes_short_chains<Sweep>)
-            if (tree.short_.warps > 0) return turn_short(tree.short_, sweep);
+        if constexpr (Sweep::goes_short)
+            if (tree.short_.warps > 0 && turn_short(tree.short_, sweep)) return;
         bool const together =
             stages.size() > 1 && stages[stages.size() - 2].blocks() <= tree.sizes_.together && stages.back().blocks() == 1;
         std::size_t const apart = stages.size() - (together ? 2 : 1);
@@ -131,11 +131,13 @@ class StageSpace : public HostSpace {
                              cuda::kernels::turn<Sweep>, here, above, sweep);
     }
     template <class Sweep>
-    static void turn_short(cuda::kernels::ShortChain const& chain, Sweep const& sweep) {
+    static bool turn_short(cuda::kernels::ShortChain const& chain, Sweep const& sweep) {
         cuda::kernels::ShortGrid const grid = cuda::kernels::grid_of_short<Sweep>(chain);
+        if (grid.shared_bytes > cuda_on_host::most_shared_bytes) return false;
         seen.blocks_of_short_chains.insert(grid.blocks);
         cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks}, cuda::kernels::turn_short<Sweep>,
                              chain, sweep);
+        return true;
     }
     template <class Sweep>
     static void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dca/places.hpp"
-#include "dca/simd/near.hpp"
+#include "dca/simd/prefetch.hpp"
 
 namespace catena::dca {
 
@@ -20,7 +20,7 @@ inline constexpr int ahead_of_bodies = 64;
 template <class T, int D, class Real>
 Real read(FieldView<T, D> const& view, Abreast<Real> const& bodies, int component) {
     auto const* const place = view.origin + component * view.pitch + bodies.first;
-    ask_for<Real>(place + ahead_of_bodies);
+    prefetch<Real>(place, ahead_of_bodies);
     return Real::load_anywhere(place);
 }
 template <class T, int D, class Real>
@@ -35,7 +35,7 @@ void write(View<D> const& view, Abreast<Real> const& bodies, Vector<Real, D> con
     CATENA_UNROLL
     for (int i = 0; i < D; ++i) {
         double* const place = view.origin + i * view.pitch + bodies.first;
-        ask_to_write<Real>(place + ahead_of_bodies);
+        prefetch_to_write<Real>(place, ahead_of_bodies);
         value[i].store_anywhere(place);
     }
 }

@@ -115,7 +115,7 @@ class RunsSideBySide {
             if (p == 0) continue;
             Node node;
             double* const kept = place(item, p);
-            ask_to_write<Real>(kept + numbers_of_node, numbers_of_node);
+            prefetch_to_write<Real>(kept, numbers_of_node, numbers_of_node);
             append(whole, part, node, runs, p * part_length);
             store_vectors<Real>(kept, node);
         }
@@ -133,7 +133,7 @@ class RunsSideBySide {
             if (p > 0) {
                 Node node;
                 double const* const kept = place(item, p);
-                ask_for<Real>(kept - numbers_of_node, numbers_of_node);
+                prefetch<Real>(kept, -numbers_of_node, numbers_of_node);
                 load_vectors<Real>(kept, node);
                 at_begin = node.force(first, next);
             }
@@ -154,7 +154,7 @@ class RunsSideBySide {
         if constexpr (constants_of<Leaf> > 0) {
             constexpr int block = constants_of<Leaf> * part_length * lanes;
             double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            ask_for<Real>(here + 2 * way * block, block);
+            prefetch<Real>(here, 2 * way * block, block);
             bodies_ = in_tile_.with({here});
         }
     }
@@ -258,15 +258,15 @@ template <class Real, class Leaf>
     for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>
-void ask_for_merge(MergeWork<Leaf> const& work, std::int64_t item) {
+void prefetch_merge(MergeWork<Leaf> const& work, std::int64_t item) {
     constexpr int numbers_of_node = node_numbers<Leaf::K> * Real::lanes;
-    auto const ask_for_segments = [&sweeps = work.sweeps](std::int64_t const* slots) {
-        ask_for_records<Real>(sweeps.matrices, slots);
-        ask_for_records<Real>(sweeps.biases, slots);
+    auto const prefetch_segments = [&sweeps = work.sweeps](std::int64_t const* slots) {
+        prefetch_records<Real>(sweeps.matrices, slots);
+        prefetch_records<Real>(sweeps.biases, slots);
     };
-    ask_for_segments(work.merges[item].inboard);
-    ask_for_segments(work.merges[item].outboard);
-    ask_to_write<Real>(work.nodes + item * numbers_of_node, numbers_of_node);
+    prefetch_segments(work.merges[item].inboard);
+    prefetch_segments(work.merges[item].outboard);
+    prefetch_to_write<Real>(work.nodes, item * numbers_of_node, numbers_of_node);
 }
 template <class Real, class Leaf>
 [[gnu::flatten]] void climb_merges(MergeWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
@@ -274,7 +274,7 @@ template <class Real, class Leaf>
     auto const& [sweeps, merges, nodes] = work;
     for (std::int64_t item = begin; item < end; ++item) {
         MergesInLanes const& m = merges[item];
-        if (item + 1 < end) ask_for_merge<Real>(work, item + 1);
+        if (item + 1 < end) prefetch_merge<Real>(work, item + 1);
         BiasedSegment<Real, K> segment, outboard;
         gather<Real>(sweeps.matrices, m.inboard, segment.matrix);
         gather<Real>(sweeps.biases, m.inboard, segment.bias);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dca/records.hpp"
-#include "dca/simd/near.hpp"
+#include "dca/simd/prefetch.hpp"
 
 namespace catena::dca {
 
@@ -55,9 +55,9 @@ void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& r
 
 /// Of as many places as a vector has lanes.
 template <class Real, class OfOne, Order order>
-void ask_for_records(RecordsView<OfOne, order> from, std::int64_t const* index) {
+void prefetch_records(RecordsView<OfOne, order> from, std::int64_t const* index) {
     constexpr int count = RecordsView<OfOne, order>::numbers;
-    for (int j = 0; j < Real::lanes; ++j) ask_for<Real>(from.origin + index[j] * count, count);
+    for (int j = 0; j < Real::lanes; ++j) prefetch<Real>(from.origin, index[j] * count, count);
 }
 
 }  // namespace catena::dca

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "dca/places.hpp"
-#include "dca/simd/near.hpp"
+#include "dca/simd/prefetch.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::dca {
@@ -108,7 +108,7 @@ class Tile {
             double* const to = place(n);
             for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
             for (int i = 0; i < length; i += numbers_of_line)
-                for (int j = 0; j < lanes; ++j) ask_for<Real>(from + i + first[j] + ahead);
+                for (int j = 0; j < lanes; ++j) prefetch<Real>(from, i + first[j] + ahead);
             if (!source_[n].neighbours) continue;
             Real::pick(from - 1, first).store(to - lanes);
             Real::pick(from + length, first).store(to + length * lanes);
@@ -119,7 +119,7 @@ class Tile {
         for (int n = 0; n < written_; ++n) {
             for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
             for (int i = 0; i < length; i += numbers_of_line)
-                for (int j = 0; j < lanes; ++j) ask_to_write<Real>(target_[n] + i + first[j] + ahead);
+                for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], i + first[j] + ahead);
         }
     }
 

@@ -1,0 +1,13 @@
+// Quotients and roots without branches (cuda/quick.cuh) of many numbers, on the GPU.
+#pragma once
+
+#include <vector>
+
+namespace catena::test {
+
+/// 1 / x, NaN where that is not known.
+std::vector<double> quick_inverses(std::vector<double> const& x);
+/// 1 / |(x, 0, 0)|
+std::vector<double> quick_inverse_lengths(std::vector<double> const& x);
+
+}  // namespace catena::test
