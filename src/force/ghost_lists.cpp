@@ -284,17 +284,17 @@ void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) 
     for (std::size_t i = 0; i < beads_.size(); ++i)
         if (!std::equal(ghosts[i].data, ghosts[i].data + 3, all[beads_[i]].data)) worst = std::max(worst, static_cast<double>(beads_[i]));
     for (PairRange const& range : plan_.ranges) {
-        std::vector<Vec3> here, there;
-        std::vector<std::int64_t> bead;  // of `there`
-        for (std::int64_t i = 0; i < std::ssize(place_); ++i) {
-            if (!range.is_for(i)) continue;
-            bool const is_own = owner(i) == communicator_.rank();
-            (is_own ? here : there).push_back(all[static_cast<std::size_t>(i)]);
-            if (!is_own) bead.push_back(i);
+        std::vector<std::int64_t> acting, own_ones;  // beads; own ones by their places among these
+        std::vector<Vec3> there;
+        for (std::int64_t bead = 0; bead < std::ssize(all); ++bead) {
+            if (!range.is_for(bead)) continue;
+            if (owner(bead) == communicator_.rank()) own_ones.push_back(std::ssize(acting));
+            acting.push_back(bead);
+            there.push_back(all[static_cast<std::size_t>(bead)]);
         }
-        for (std::int64_t const i : near_any(there, here, range.reach, plan_.box))
-            if (std::int64_t const missed = bead[static_cast<std::size_t>(i)]; !known.contains(missed))
-                worst = std::max(worst, count + static_cast<double>(missed));
+        for (std::int64_t const i : ghosts_of(there, own_ones, range.reach, plan_.box))
+            if (std::int64_t const bead = acting[static_cast<std::size_t>(i)]; !known.contains(bead))
+                worst = std::max(worst, count + static_cast<double>(bead));
     }
     worst = communicator_.max(worst);
     if (worst >= count)

@@ -89,7 +89,6 @@ class GhostLists {
         Vec3 position;
     };
     std::int64_t first() const { return plan_.first_of_rank[communicator_.rank()]; }
-    std::int64_t own_count() const { return plan_.first_of_rank[communicator_.rank() + 1] - first(); }
     int owner(std::int64_t bead) const;
 
     std::vector<Vec3> all_positions(std::span<Vec3 const> own) const;
