@@ -41,7 +41,7 @@ class BeadLeaf {
     static constexpr int K = K_;
     /// Whether matrices and biases in one sweep beat one sweep after the other: with more directions registers run out.
     static constexpr bool at_once = K == 1;
-    static constexpr bool beads = true, projected = K == 1;
+    static constexpr bool beads = true, projected = K == 1, reads_neighbours = true;
     using Moving = MovingBeads<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
@@ -257,6 +257,7 @@ class BodyLeaf {
     using Frames = Frames_;
     static constexpr bool at_once = K <= 3 && Frames::at_once;
     static constexpr bool beads = false, projected = Frames::on_links ? K == 1 : K < 6;
+    static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;  // or whether there are any
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
     CATENA_HD GroupView const& group() const { return group_; }

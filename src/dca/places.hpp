@@ -52,8 +52,7 @@ CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k, Vect
     view.store<K>(k, value);
 }
 
-// Bodies side by side are never at the end of a chain.
-CATENA_HD bool starts_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
+// Bodies side by side whose neighbours are read have both.
 CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
 CATENA_HD bool has_jointed_tip(GroupView const& group, std::int64_t k) { return group.has_jointed_tip(k); }
 CATENA_HD Vec3 outboard_screw(GroupView const& group, std::int64_t k) { return group.outboard_screw(k); }

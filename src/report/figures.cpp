@@ -36,7 +36,7 @@ class Prepared {
         SolverReport const after = system_.solver_reports().front();
         system_.measure(false);
         if (!counts) return;
-        auto const solves = static_cast<double>(after.bias_sweeps - before.bias_sweeps);
+        auto const solves = static_cast<double>(after.bias_sweeps + after.evaluations - before.bias_sweeps - before.evaluations);
         auto const add = [&](std::vector<double>& list, double value) { list.push_back(communicator.max(value)); };
         add(step_, seconds);
         add(solve_, (after.matrix_seconds - before.matrix_seconds + after.bias_seconds - before.bias_seconds) / solves);

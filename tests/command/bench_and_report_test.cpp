@@ -34,7 +34,7 @@ TEST(Bench, PlanComparesPredictionsWithWhatIsMeasured) {
 
 TEST(Bench, FiguresStandBesideTheChapters) {
     TemporaryFolder const folder;
-    Ended const e = catena({"bench", "figures", "--sizes", "2,8,16", "--repeat", "3", "--output", folder / "figures"});
+    Ended const e = catena({"bench", "figures", "--sizes", "2,8,64", "--repeat", "3", "--output", folder / "figures"});
     expect_good(e);
     EXPECT_TRUE(e.out.ends_with("VALID\n")) << e.out;
     Json const json = Json::parse(std::ifstream(folder / "figures/figures.json"));
@@ -50,7 +50,7 @@ TEST(Bench, FiguresStandBesideTheChapters) {
     EXPECT_FALSE(json.at("left_out").empty());
     for (char const* const picture : {"figure-2.3-full.svg", "figure-2.5-full.svg", "figure-2.6-projected.svg"})
         EXPECT_TRUE(std::filesystem::exists(folder / (std::string("figures/") + picture))) << picture;
-    EXPECT_EQ(json.at("figure_2.3").at(0).at("levels").size(), 4U);
+    EXPECT_EQ(json.at("figure_2.3").at(0).at("levels").size(), 6U);
 }
 
 TEST(Bench, TheChaptersTableIsCounted) {

@@ -203,16 +203,33 @@ TEST(SimdLevels, AreNamedAndRefusedWhereTheyCannotRun) {
 }
 
 /// Which runs go side by side depends on the chain alone; lanes that are left over repeat one.
-TEST(SimdLevels, DealOutWholeRunsWithinAChain) {
+TEST(SimdLevels, DealOutWholeRuns) {
     auto const alone = serial_communicator();
     Scene const scene = scene_of(chain("revolute", 16 * 12 + 5));
     auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
-    dca::RunsDealtOut const dealt = dca::deal_out_runs(*groups.front(), 8);
+    dca::RunsDealtOut dealt = dca::deal_out_runs(*groups.front(), 8, false);
     ASSERT_EQ(dealt.items.size(), 2u);
-    EXPECT_EQ(dealt.others.size(), 2u);  // the first and the last
-    EXPECT_EQ(dealt.items[0].body[0], 16);
-    EXPECT_EQ(dealt.items[1].body[2], 16 * 11);
+    EXPECT_EQ(dealt.others.size(), 1u);  // the last, of five bodies
+    EXPECT_EQ(dealt.items[0].body[0], 0);
+    EXPECT_EQ(dealt.items[1].body[3], 16 * 11);
     EXPECT_EQ(dealt.items[1].body[7], 16 * 11);
+    dealt = dca::deal_out_runs(*groups.front(), 8, true);
+    EXPECT_EQ(dealt.others.size(), 2u);  // and the first, which has no neighbour
+    EXPECT_EQ(dealt.items[0].body[0], 16);
+}
+
+/// Nor one whose tip is joined to the ground, nor few.
+TEST(SimdLevels, LeaveJointedTipsAndShortChainsToOthers) {
+    auto const alone = serial_communicator();
+    Scene const few = scene_of(chain("spherical", 32)), enough = scene_of(chain("spherical", 32) + ", " + chain("spherical", 16));
+    EXPECT_TRUE(dca::deal_out_runs(*make_groups(few, Axes::joint, Handles::projected, false, *alone).front(), 8, false).items.empty());
+    EXPECT_EQ(dca::deal_out_runs(*make_groups(enough, Axes::joint, Handles::projected, false, *alone).front(), 8, false).items.size(), 1u);
+    for (bool const jointed : {false, true}) {
+        std::string const tip = jointed ? "tip: {joint: {type: spherical}}, " : "";
+        Scene const scene = scene_of("{base: fixed, " + tip + "generator: {random: {bodies: 48, joint: spherical, seed: 4}}}");
+        auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
+        EXPECT_EQ(dca::deal_out_runs(*groups.front(), 8, false).others.size(), jointed ? 1u : 0u);
+    }
 }
 
 }  // namespace

@@ -10,7 +10,7 @@ namespace catena::dca {
 
 inline constexpr int most_lanes = 8;
 
-/// Runs of `longest_run` bodies within their chains, one a lane; in the lanes that are left over the last one again.
+/// Runs of `longest_run` bodies, one a lane; in the lanes that are left over the last one again.
 struct RunsInLanes {
     std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
 };

@@ -3,23 +3,31 @@
 namespace catena::dca {
 namespace {
 
-bool is_regular(ChainGroup const& group, Run const& run) {
-    if (run.count != longest_run) return false;
-    for (std::int64_t k = run.body; k < run.body + run.count; ++k) {
-        auto const i = static_cast<std::size_t>(k);
-        if (group.is_first[i] || group.is_last[i]) return false;
-        if (k > run.body && group.restricted_of_joint[i] != group.directions) return false;
-    }
+bool is_regular(ChainGroup const& group, Run const& run, bool read_neighbours) {
+    std::int64_t const last = run.body + run.count - 1;
+    if (run.count != longest_run || group.has_jointed_tip(last)) return false;
+    auto const at = [](std::int64_t k) { return static_cast<std::size_t>(k); };
+    if (read_neighbours && (group.is_first[at(run.body)] || group.is_last[at(last)])) return false;
+    for (std::int64_t k = run.body + 1; k <= last; ++k)
+        if (group.restricted_of_joint[at(k)] != group.directions) return false;
     return true;
+}
+
+/// One or two runs take less time one after the other than a vector with most of its lanes idle.
+bool has_enough_runs(ChainGroup const& group) {
+    std::int64_t runs = 0;
+    for (ChainTree const& tree : group.partition.trees) runs += tree.runs;
+    return runs >= 3;
 }
 
 }  // namespace
 
-RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes) {
+RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, bool read_neighbours) {
     RunsDealtOut dealt;
     int lane = lanes;
+    bool const enough = has_enough_runs(group);
     for (Run const& run : group.schedule.runs) {
-        if (!is_regular(group, run)) {
+        if (!enough || !is_regular(group, run, read_neighbours)) {
             dealt.others.push_back(run);
             continue;
         }

@@ -16,9 +16,10 @@ struct RunsDealtOut {
     std::vector<RunsInLanes> items;
     std::vector<Run> others;
 };
-/// A run goes side by side with others if it is as long as runs are, within its chain, and all its own joints carry what handles do: so
-/// this is a property of the tree, not of who holds the run.
-RunsDealtOut deal_out_runs(ChainGroup const&, int lanes);
+/// A run goes side by side with others if it is as long as runs are, all its own joints carry what handles do, its last body is no jointed
+/// tip and, where bodies `read_neighbours`, it lies within its chain; and if the group has three runs on all ranks: so this is a property
+/// of the scene, not of who holds the run.
+RunsDealtOut deal_out_runs(ChainGroup const&, int lanes, bool read_neighbours);
 
 template <class Leaf>
 RunKernels<Leaf> kernels_of(SimdLevel level) {
@@ -74,7 +75,7 @@ class SideBySide {
         if (level == SimdLevel::off) return;
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
-        runs_ = deal_out_runs(group, lanes_);
+        runs_ = deal_out_runs(group, lanes_, Leaf::reads_neighbours);
         nodes_ = AlignedNumbers(items() * (parts_of_run - 1) * node_numbers<Leaf::K> * lanes_);
         constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {
             each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {

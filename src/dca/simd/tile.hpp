@@ -38,10 +38,6 @@ CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& 
     write(View<K>{view.origin, view.pitch, 0}, c, value);
 }
 template <class Real>
-CATENA_HD bool starts_chain(GroupView const&, Column<Real> const&) {
-    return false;
-}
-template <class Real>
 CATENA_HD bool ends_chain(GroupView const&, Column<Real> const&) {
     return false;
 }
