@@ -56,7 +56,7 @@ GhostLists::GhostLists(Communicator const& communicator, Plan plan)
     : communicator_(communicator),
       plan_(std::move(plan)),
       place_(static_cast<std::size_t>(plan_.first_of_rank.back())),
-      executor_(openmp_is_built() ? openmp_executor(cores_of_rank(communicator)) : serial_executor()) {
+      executor_(openmp_is_built() ? openmp_executor(plan_.threads > 0 ? plan_.threads : cores_of_rank(communicator)) : serial_executor()) {
     for (std::int64_t i = 0; i < std::ssize(place_); ++i) place_[plan_.by_rank.empty() ? i : plan_.by_rank[i]] = i;
 }
 

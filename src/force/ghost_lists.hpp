@@ -31,6 +31,7 @@ class GhostLists {
         std::vector<PairRange> ranges;                     // without any: no other ghosts
         double skin = 0;
         std::optional<Vec3> box;
+        int threads = 0;  // that search; 0: the rank's cores
     };
     GhostLists(Communicator const&, Plan);
 

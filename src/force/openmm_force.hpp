@@ -36,6 +36,7 @@ struct BeadSystem {
     std::vector<std::int64_t> by_rank;  // beads in the order in which ranks own them; empty: as they are
     std::optional<Vec3> box;
     std::string scene_file;  // for messages
+    int threads = 0;         // that look for ghosts; 0: the rank's cores
 
     std::int64_t size() const { return static_cast<std::int64_t>(mass.size()); }
     std::vector<std::int64_t> beads_of(int rank) const;

@@ -62,6 +62,7 @@ void ChainSystem::describe_beads() {
     }
     system.box = scene_.box;
     system.scene_file = scene_.file;
+    system.threads = scene_.solver.threads;
 }
 
 /// A rank owns the beads of its bodies, group after group.

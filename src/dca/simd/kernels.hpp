@@ -111,10 +111,10 @@ class RunsSideBySide {
         Segment whole, part;
         CATENA_NO_UNROLL
         for (int p = 0; p < parts_of_run; ++p) {
-            make_part(runs, p, p == 0 ? whole : part);
+            make_part(item, p, p == 0 ? whole : part);
             if (p == 0) continue;
             Node node;
-            double* const kept = place(item, p);
+            double* const kept = place(item, p * part_length);
             prefetch_to_write<Real>(kept, numbers_of_node, numbers_of_node);
             append(whole, part, node, runs, p * part_length);
             store_vectors<Real>(kept, node);
@@ -132,18 +132,21 @@ class RunsSideBySide {
             Directions at_begin = first;
             if (p > 0) {
                 Node node;
-                double const* const kept = place(item, p);
+                double const* const kept = place(item, p * part_length);
                 prefetch<Real>(kept, -numbers_of_node, numbers_of_node);
                 load_vectors<Real>(kept, node);
                 at_begin = node.force(first, next);
             }
-            down(runs, p, at_begin, next);
+            down(item, p, at_begin, next);
             next = at_begin;
         }
     }
 
   private:
-    double* place(std::int64_t item, int p) const { return work_.nodes + (item * (parts_of_run - 1) + p - 1) * numbers_of_node; }
+    /// Of the joint inboard of the run's body `i`.
+    double* place(std::int64_t item, int i) const {
+        return work_.nodes + (item * kept_joints(work_.keeps_all) + (work_.keeps_all ? i : i / part_length) - 1) * numbers_of_node;
+    }
     /// The next item's bodies usually follow, or come before where the way is back.
     void fill(RunsInLanes const& runs, int p, int way) {
         begin_ = {by_runs ? p * part_length : 0};
@@ -162,24 +165,30 @@ class RunsSideBySide {
         for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
         return first_;
     }
-    void make_part(RunsInLanes const& runs, int p, Segment& segment) {
+    void make_part(std::int64_t item, int p, Segment& segment) {
+        RunsInLanes const& runs = work_.runs[item];
         fill(runs, p, 1);
         auto bodies = bodies_.walk(begin_);
         Segment body;
         Node node;
         each_body<unrolled<K>>(0, part_length, [&](int i) {
             ::new (i == 0 ? &segment : &body) Segment(bodies_.segment(bodies.body(i)));
-            if (i > 0) append(segment, body, node, runs, p * part_length + i);
+            if (i == 0) return;
+            append(segment, body, node, runs, p * part_length + i);
+            if (work_.keeps_all) store_vectors<Real>(place(item, p * part_length + i), node);
         });
     }
     void append(Segment& segment, Segment const& outboard, Node& node, RunsInLanes const& runs, int body) const {
         node.append(segment, outboard);
         watch(work_.sweeps, runs.body, body, node.joint.factor);
     }
-    void down(RunsInLanes const& runs, int p, Directions const& first, Directions next) {
+    void down(std::int64_t item, int p, Directions const& first, Directions next) {
+        RunsInLanes const& runs = work_.runs[item];
         fill(runs, p, -1);
         if constexpr (Leaf::at_once)
             eliminate_again(first, next);
+        else if (work_.keeps_all)
+            use_kept(item, p, first, next);
         else
             assemble_again(first, next);
         if (!by_runs)
@@ -217,6 +226,17 @@ class RunsSideBySide {
             node[i].template append<false>(segment, outboard);
         });
         back(kept, first, next, [&](int i) { return node[i].force(first, next); });
+    }
+    /// As BiasSweep::down.
+    void use_kept(std::int64_t item, int p, Directions const& first, Directions next) {
+        Kept kept[part_length];
+        auto bodies = bodies_.walk(begin_);
+        each_body<unrolled<K>>(0, part_length, [&](int i) { kept[i] = bodies_.keep(bodies.body(i)); });
+        back(kept, first, next, [&](int i) {
+            Node node;
+            load_vectors<Real>(place(item, p * part_length + i), node);
+            return node.force(first, next);
+        });
     }
     template <class Bodies>
     Segment take(Bodies& bodies, int i, Kept* kept) const {

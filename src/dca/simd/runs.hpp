@@ -49,10 +49,12 @@ struct RunWork {
     AccelerationsView out;
     RunsInLanes const* runs = nullptr;
     double const* constants = nullptr;  // [part of an item of `runs`][number][body][lane]
-    double* nodes = nullptr;            // node_numbers<K> vectors for every joint between parts, from climb to descend
+    double* nodes = nullptr;            // node_numbers<K> vectors for every joint that is kept, from climb to descend
+    bool keeps_all = false;             // joints within runs, or those between parts alone, the others being computed again
 };
 template <int K>
 inline constexpr int node_numbers = static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
+constexpr int kept_joints(bool all) { return (all ? static_cast<int>(longest_run) : parts_of_run) - 1; }
 
 /// Merges of one level of the tree.
 struct MergesInLanes {

@@ -76,7 +76,9 @@ class SideBySide {
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
         runs_ = deal_out_runs(group, lanes_, Leaf::reads_neighbours);
-        nodes_ = AlignedNumbers(items() * (parts_of_run - 1) * node_numbers<Leaf::K> * lanes_);
+        std::int64_t const node = items() * node_numbers<Leaf::K> * lanes_;
+        keeps_all_ = !Leaf::at_once && node * kept_joints(true) <= most_kept;
+        nodes_ = AlignedNumbers(node * kept_joints(keeps_all_));
         constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {
             each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
                 auto const numbers = field.load(k);
@@ -102,6 +104,7 @@ class SideBySide {
         work.runs = runs_.items.data();
         work.constants = constants_.data();
         work.nodes = nodes_.data();
+        work.keeps_all = keeps_all_;
         space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) { kernels_.climb(work, begin, end); });
     }
     template <class Space>
@@ -123,8 +126,11 @@ class SideBySide {
         MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data()};
         space.over_ranges(std::ssize(levels_[l].items), 2, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
     }
+    /// Numbers that a core's second cache holds, and more.
+    static constexpr std::int64_t most_kept = 1 << 17;
     RunKernels<Leaf> kernels_{};
     int lanes_ = 1;
+    bool keeps_all_ = false;
     RunsDealtOut runs_;
     std::vector<LevelDealtOut> levels_;
     AlignedNumbers nodes_, constants_;
