@@ -60,7 +60,7 @@ void add_common(CLI::App& command, Words& words) {
         .add_option(
             "--gpu-levels", c.gpu_levels,
             "of cuda-levels: how many of the tree's lowest levels the GPU assembles and disassembles, 0 to all: K, or UP,DOWN; from 1 "
-            "on bodies too (auto: all)")
+            "on bodies too (auto: as predicted)")
         ->type_name("UP[,DOWN]");
     command.add_option("--json", c.json, "also write what is printed as JSON; - writes it to standard output in the place of the text")
         ->type_name("FILE");
@@ -247,6 +247,7 @@ R scene_request(Words const& words, std::string const& command) {
     R request;
     static_cast<CommonOptions&>(request) = checked(words.common);
     request.scene = words.scene;
+    require_files_apart(words.scene, words.common.json, words.accelerations);
     return request;
 }
 

@@ -18,9 +18,9 @@ SolverSizes sizes() {
             static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)),
             static_cast<double>(sizeof(dca::JointMatrix<double, K>) + sizeof(Vector<double, K>))};
 }
-/// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, the joints between its parts and of
+/// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, the joints that are kept and that of
 /// the merge, its bodies' constants. 0 where none do.
-double side_by_side(Scene const& scene, ChainSpec const& chain, double node) {
+double side_by_side(Scene const& scene, ChainSpec const& chain, double node, int ranks) {
     SimdLevel const level = scene.solver.simd.value_or(best_simd_level());
     if (level == SimdLevel::off || scene.solver.handles != Handles::projected || scene.solver.pairwise()) return 0;
     double const places = static_cast<double>(sizeof(dca::RunsInLanes) + sizeof(dca::MergesInLanes)) / lanes_of(level);
@@ -28,7 +28,10 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, double node) {
     using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
     bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
     int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
-    return places + dca::parts_of_run * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
+    double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
+    bool const all =
+        joints && !chain.is_beads() && runs * dca::kept_joints(true) * node <= static_cast<double>(dca::most_kept * sizeof(double));
+    return places + (dca::kept_joints(all) + 1) * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
 SolverSizes sizes_for(int directions, Handles handles) {
     if (handles == Handles::articulated)
@@ -103,7 +106,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
-        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size.node) / ranks;
+        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size.node, ranks) / ranks;
     }
     return m;
 }

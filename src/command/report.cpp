@@ -33,6 +33,9 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
         std::filesystem::create_directories(folder, error);
         if (error || !std::filesystem::is_directory(folder))
             throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
+        for (char const* const file : {"observables.csv", "trajectory.h5md", "checkpoint.h5"})
+            if (std::filesystem::exists(std::filesystem::path(folder) / file, error))
+                throw InputError("the folder holds a run, whose report.html would be replaced", "--output " + folder, "name another");
     });
 }
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <utility>
 
 #include "error.hpp"
 #include "scene/fields.hpp"
@@ -15,16 +17,30 @@ std::string remedy_for(std::string_view text, std::span<std::string_view const> 
     return near ? "did you mean `" + *near + "`?" : "use one of " + scene::joined(known);
 }
 
+void require_files_apart(std::string const& scene, std::string const& json, std::string const& accelerations) {
+    auto const is_same = [](std::string const& a, std::string const& b) {
+        std::error_code ignored;
+        auto const place = [&](std::string const& file) { return std::filesystem::weakly_canonical(file, ignored); };
+        return !a.empty() && a != "-" && !b.empty() && place(a) == place(b);
+    };
+    for (auto const& [option, file] : {std::pair{"--json", json}, {"--accelerations", accelerations}})
+        if (is_same(file, scene))
+            throw InputError("the scene would be written over", std::string(option) + " " + file, "name another file");
+    if (is_same(json, accelerations)) throw InputError("--json and --accelerations name one file", "command line", "name two");
+}
+
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least, std::int64_t most) {
     double value = 0;
     scene::NumberFault const fault = scene::parse_number(text, value);
-    bool const whole = fault == scene::NumberFault::none && std::floor(value) == value && std::abs(value) < 9.0e15;
-    if (!whole) throw InputError(fmt::format("`{}` is not a whole number", text), option, fmt::format("give one from {} on", least));
+    bool const whole = fault == scene::NumberFault::none && std::floor(value) == value;
+    std::int64_t const largest = std::min(most, std::int64_t{9'000'000'000'000'000});
+    if (whole && value > static_cast<double>(largest))
+        throw InputError(fmt::format("{} is above {}", text, largest), option, fmt::format("give a whole number up to {}", largest));
+    if (!whole || value < -9.0e15)
+        throw InputError(fmt::format("`{}` is not a whole number", text), option, fmt::format("give one from {} on", least));
     auto const number = static_cast<std::int64_t>(value);
     if (number < least)
         throw InputError(fmt::format("{} is below {}", number, least), option, fmt::format("give a whole number from {} on", least));
-    if (number > most)
-        throw InputError(fmt::format("{} is above {}", number, most), option, fmt::format("give a whole number up to {}", most));
     return number;
 }
 

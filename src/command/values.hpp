@@ -12,6 +12,9 @@
 namespace catena::command {
 
 /// Digits, or a number without a fraction such as 1e6, in [least, most].
+/// That neither the scene nor one of them is written over; empty: not given, "-": standard output.
+void require_files_apart(std::string const& scene, std::string const& json, std::string const& accelerations);
+
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least, std::int64_t most = INT64_MAX);
 /// The value itself when it is among `known`; InputError with the nearest known one otherwise.
 std::string const& known_value(std::string const& option, std::string const& text, std::span<std::string_view const> known);

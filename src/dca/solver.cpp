@@ -44,8 +44,8 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     std::string const what = group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";
     throw ComputationError(what + " is not positive definite (chain " + group.name[chain] +
                            (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
-                           "): masses, inertias or positions there are extreme or not finite" +
-                           (may ? "; `handles: articulated` keep more digits" : ""));
+                           "): masses, inertias or positions there are extreme or, after too long a dynamics.step, not finite" +
+                           (may ? "; `handles: articulated` keeps more digits" : ""));
 }
 
 }  // namespace catena

@@ -54,7 +54,9 @@ struct Yukawa {
     double prefactor;       // kJ nm/mol
     double kappa;           // 1/nm, inverse Debye length
 };
-/// Temperature in K, ionic strength in mol/l. Permittivity of water: Akerlof & Oshry, J. Am. Chem. Soc. 72:2844 (1950).
+/// K, of the measurements behind the permittivity of water (Akerlof & Oshry, J. Am. Chem. Soc. 72:2844, 1950): up to 370 C.
+constexpr double warmest_water = 643;
+/// Temperature in K, ionic strength in mol/l. Precondition: 0 < temperature <= warmest_water.
 Yukawa yukawa(double temperature, double ionic_strength);
 
 }  // namespace calvados2

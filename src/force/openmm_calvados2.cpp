@@ -39,6 +39,11 @@ void check(OpenMmSpec const& spec, BeadSystem const& beads) {
     if (!(spec.temperature > 0))
         throw InputError(fmt::format("temperature {} K is not positive", spec.temperature), openmm_key(beads.scene_file, "temperature"),
                          "give it in kelvin");
+    if (spec.temperature > calvados2::warmest_water)
+        throw InputError(
+            fmt::format("at {} K the permittivity of water, which charges feel, is not known", spec.temperature),
+            openmm_key(beads.scene_file, "temperature"),
+            fmt::format("give at most {} K there (it is dynamics.temperature where it is left out)", calvados2::warmest_water));
     if (!(spec.ionic_strength >= 0))
         throw InputError(fmt::format("ionic strength {} mol/l is negative", spec.ionic_strength),
                          openmm_key(beads.scene_file, "ionic_strength"), "give it in mol/l");

@@ -6,6 +6,7 @@
 #include <lepton/Parser.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <string>
@@ -31,7 +32,9 @@ class Acting {
         for (int i = 0; i < force.getNumPerParticleParameters(); ++i) name_.push_back(force.getPerParticleParameterName(i));
     }
     bool operator()(Parameters const& of_particle) {
-        if (!understood_ || known_.size() > most_kinds) return true;
+        // Lepton never ends with what is not a number.
+        bool const finite = std::all_of(of_particle.begin(), of_particle.end(), [](double v) { return std::isfinite(v); });
+        if (!understood_ || !finite || known_.size() > most_kinds) return true;
         auto const [found, is_new] = known_.try_emplace(of_particle, true);
         if (is_new) found->second = !(is_zero(energy_.optimize(as("1", of_particle))) && is_zero(energy_.optimize(as("2", of_particle))));
         return found->second;

@@ -53,8 +53,9 @@ std::string RunFolder::newest_checkpoint() const {
 }
 
 void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns) {
-    // The frame of the checkpoint's step is written anew: it may have been no frame of the run before.
-    std::optional<std::int64_t> const after = appends_ ? std::optional(first_step_ - 1) : std::nullopt;
+    // The frame of the checkpoint's step is written anew, if it is one of this run's: it may have been none of the run's before.
+    bool const anew = first_step_ % scene_.output.every == 0;
+    std::optional<std::int64_t> const after = appends_ ? std::optional(anew ? first_step_ - 1 : first_step_) : std::nullopt;
     on_first_rank(communicator_, [&] {
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
     });

@@ -215,7 +215,7 @@ class Run {
             c = read_checkpoint(options_.restart);
             if (c.scene_hash != scene_.hash)
                 throw InputError("the checkpoint belongs to another scene", options_.restart,
-                                 "restart with the scene that made it (solver, output and steps may differ)");
+                                 "restart with the scene that made it (solver, steps and how often it writes may differ)");
             if (c.notes["tree_table"] != std::to_string(dca::tree_table_version))
                 throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " +
                                      std::to_string(dca::tree_table_version),

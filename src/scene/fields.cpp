@@ -119,8 +119,10 @@ std::int64_t whole(Node const& node, std::int64_t least, std::int64_t most) {
     auto const result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) {
         double real = 0;
-        bool const exact = parse_number(digits, real) == NumberFault::none && real == std::floor(real) && std::abs(real) <= 0x1p53;
-        if (!exact) fail(node, describe(node) + " is not a whole number", remedy);
+        bool const is_whole = parse_number(digits, real) == NumberFault::none && real == std::floor(real);
+        if (is_whole && real > 0x1p53)
+            fail(node, fmt::format("{} {} is above {}", name_of(node), digits, most), fmt::format("give {} or less", most));
+        if (!is_whole || real < -0x1p53) fail(node, describe(node) + " is not a whole number", remedy);
         value = static_cast<std::int64_t>(real);
     }
     if (value < least) fail(node, fmt::format("{} {} is below {}", name_of(node), value, least), fmt::format("give {} or more", least));

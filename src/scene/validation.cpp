@@ -132,7 +132,9 @@ void check_thermal(Node const& root, DynamicsSpec const& dynamics, Draft const& 
                                               : "write `velocities: zero`, or give each joint its `qd`");
     bool const named = section && (section->find("temperature") || is_langevin(dynamics.integrator));
     if (!named || !(dynamics.temperature > 0))
-        fail(at, "thermal velocities without a temperature above 0", "add `dynamics: {temperature: 300}`, or write `velocities: zero`");
+        fail(at, "thermal velocities without a temperature above 0",
+             std::string(section ? "give `temperature: 300` in `dynamics`" : "add `dynamics: {temperature: 300}`") +
+                 ", or write `velocities: zero`");
     if (auto const odd = joint_without_absolute_coordinates(draft.chain))
         fail(at, fmt::format("thermal velocities for {} joints", name_of(odd->second)),
              "write `velocities: zero`, or give each joint its `qd`");

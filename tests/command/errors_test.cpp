@@ -1,4 +1,5 @@
 // One line on standard error and the right status for each class of mistake.
+#include <filesystem>
 #include <fstream>
 
 #include "cuda/solver.hpp"
@@ -42,6 +43,21 @@ TEST(Errors, FilesThatCannotBe) {
     expect_refused(catena({"check", input("arm.yaml"), "--json", "/no/such/folder/x.json"}), 2, "no such folder: /no/such/folder (--json");
     expect_refused(catena({"check", input("arm.yaml"), "--json", "/"}), 2, "--json /");
     expect_refused(catena({"report", input("arm.yaml"), "--output", "/dev/null/x"}), 2, "--output /dev/null/x");
+}
+
+/// What was there stays: the scene, another output, a run's page.
+TEST(Errors, NothingIsWrittenOverBesides) {
+    TemporaryFolder const folder;
+    std::string const scene = folder / "arm.yaml";
+    std::filesystem::copy_file(input("arm.yaml"), scene);
+    auto const size = std::filesystem::file_size(scene);
+    expect_refused(catena({"check", scene, "--json", folder / "./arm.yaml"}), 2, "the scene would be written over");
+    expect_refused(catena({"solve", scene, "--accelerations", scene}), 2, "the scene would be written over");
+    expect_refused(catena({"solve", scene, "--json", folder / "a", "--accelerations", folder / "a"}), 2, "name one file");
+    std::ofstream(folder / "observables.csv") << "step\n";
+    expect_refused(catena({"report", scene, "--quick", "--output", folder.path()}), 2, "the folder holds a run");
+    EXPECT_EQ(std::filesystem::file_size(scene), size);
+    EXPECT_FALSE(std::filesystem::exists(folder / "report.html"));
 }
 
 TEST(Errors, AFullDiskIsAFailedComputation) {

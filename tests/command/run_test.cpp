@@ -40,6 +40,8 @@ TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
     expect_refused(with({"--restart", "missing.h5"}), 2, "missing.h5");
     expect_good(with({"--steps", "40", "--restart", made + "checkpoint.h5"}));
     EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 5);  // steps 0, 10, .. 40
+    expect_good(with({"--steps", "60", "--set", "output.every=30", "--restart", made + "checkpoint.h5"}));
+    EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 6);  // what was recorded stays: 0, 10, .. 40; 60
     expect_good(with({"--steps", "10", "--overwrite"}));
     EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 2);
 }

@@ -66,6 +66,11 @@ TEST_F(Messages, Calvados2) {
     OpenMmSpec spec = on_reference();
     spec.temperature = 0;
     EXPECT_EQ(of(spec), "temperature 0 K is not positive (scene.yaml: forces.openmm.temperature): give it in kelvin");
+    spec.temperature = 643.5;
+    EXPECT_EQ(
+        of(spec),
+        "at 643.5 K the permittivity of water, which charges feel, is not known (scene.yaml: forces.openmm.temperature): give at most "
+        "643 K there (it is dynamics.temperature where it is left out)");
     spec = on_reference();
     spec.ionic_strength = -0.1;
     EXPECT_EQ(of(spec), "ionic strength -0.1 mol/l is negative (scene.yaml: forces.openmm.ionic_strength): give it in mol/l");

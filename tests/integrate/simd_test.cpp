@@ -34,7 +34,8 @@ Accelerations found(Scene scene, Axes axes, SimdLevel level, int threads, Commun
 }
 
 bool same(Accelerations const& a, Accelerations const& b) {
-    return same_bits(a.acceleration, b.acceleration) && same_bits(a.alpha, b.alpha) && same_bits(a.joint_force, b.joint_force);
+    return same_bits(a.acceleration, b.acceleration) && same_bits(a.alpha, b.alpha) && same_bits(a.joint_force, b.joint_force) &&
+           same_bits(a.tip_force, b.tip_force);
 }
 
 /// Largest difference over the largest value.
@@ -93,9 +94,18 @@ INSTANTIATE_TEST_SUITE_P(Joints, Simd,
 
 TEST(SimdInAbsoluteCoordinates, FindsTheSame) {
     for (char const* const joint : {"link", "spherical"})
-        for (int const bodies : {1, 31, 257, 2049})
+        for (int const bodies : {1, 31, 48, 256, 257, 2049})
             expect_found(scene_of(chain(joint, bodies)), Axes::world, std::string(joint) + " " + std::to_string(bodies));
     expect_found(scene_of("{generator: {random: {bodies: 300, joint: link, rigid: 0.5, seed: 8}}}"), Axes::world, "bodies on links");
+}
+
+/// Whole runs up to where they are closed.
+TEST(SimdOfClosedChains, FindsTheSame) {
+    expect_found(scene_of("{base: fixed, tip: {joint: {type: spherical}}, generator: {random: {bodies: 64, joint: spherical, seed: 4}}}"),
+                 Axes::joint, "jointed tip");
+    expect_found(scene_of("{base: free, tip: {ring: {type: spherical, translation: [1, 0, 0]}}, generator: {polygon: {bodies: 64, joint: "
+                          "spherical, spin: [1, 2, 3]}}}"),
+                 Axes::joint, "ring");
 }
 
 /// Some joints restrict less than handles carry: their runs and merges go one by one among the others.
@@ -202,7 +212,7 @@ TEST(SimdLevels, AreNamedAndRefusedWhereTheyCannotRun) {
         EXPECT_THROW(choose_simd_level(scene, testing::world()), InputError);
 }
 
-/// Which runs go side by side depends on the chain alone; lanes that are left over repeat one.
+/// Which runs go side by side depends on the scene alone; lanes that are left over repeat one.
 TEST(SimdLevels, DealOutWholeRuns) {
     auto const alone = serial_communicator();
     Scene const scene = scene_of(chain("revolute", 16 * 12 + 5));

@@ -317,12 +317,12 @@ output: {observables: [temperature]})y",
      "write `velocities: zero`"},
     {"thermal_without_temperature", R"y(chains: [{sequence: GGG, model: calvados2, velocities: thermal}]
 dynamics: {integrator: rattle, step: 1})y",
-     "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): add `dynamics: {temperature: 300}`, or "
-     "write `velocities: zero`"},
+     "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): give `temperature: 300` in `dynamics`, "
+     "or write `velocities: zero`"},
     {"thermal_at_zero", R"y(chains: [{sequence: GGG, model: calvados2, velocities: thermal}]
 dynamics: {integrator: g-baoab, step: 1, temperature: 0})y",
-     "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): add `dynamics: {temperature: 300}`, or "
-     "write `velocities: zero`"},
+     "thermal velocities without a temperature above 0 (s.yaml: chains[0].velocities, line 1): give `temperature: 300` in `dynamics`, "
+     "or write `velocities: zero`"},
     {"thermal_revolute", R"y(chains: [{generator: {pendulum: {links: 3}}, velocities: thermal}]
 dynamics: {integrator: rk4, step: 1, temperature: 300})y",
      "thermal velocities for revolute joints (s.yaml: chains[0].velocities, line 1): write `velocities: zero`, or give each joint its "

@@ -13,7 +13,8 @@ bool is_regular(ChainGroup const& group, Run const& run, bool read_neighbours) {
     return true;
 }
 
-/// One or two runs take less time one after the other than a vector with most of its lanes idle.
+/// One or two take less time one after the other than a vector with most of its lanes idle. All runs count: ranks know how long others'
+/// chains are, not their joints.
 bool has_enough_runs(ChainGroup const& group) {
     std::int64_t runs = 0;
     for (ChainTree const& tree : group.partition.trees) runs += tree.runs;

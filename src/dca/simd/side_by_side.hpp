@@ -126,8 +126,6 @@ class SideBySide {
         MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data()};
         space.over_ranges(std::ssize(levels_[l].items), 2, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
     }
-    /// Numbers that a core's second cache holds, and more.
-    static constexpr std::int64_t most_kept = 1 << 17;
     RunKernels<Leaf> kernels_{};
     int lanes_ = 1;
     bool keeps_all_ = false;
