@@ -19,7 +19,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   --long   also the long tests (statistics, drift; an hour or so), and most of those that sanitizers make slow
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
            job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
-On two cores a first run takes an hour, half of it compilers; with their work in ccache 20 minutes.
+On two cores a first run takes an hour, half of it compilers, whose work ccache keeps.
 Logs: build/logs/. Exit status 0 if everything passed, 1 if not; the last line counts tests and checks.
 TEXT
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <initializer_list>
+#include <limits>
 #include <memory>
 #include <string>
 #include <utility>
@@ -59,6 +60,12 @@ TEST(PairRanges, AParticleActsUnlessItsEnergyIsZeroWithEveryOther) {
     EXPECT_EQ(ranges(custom("(q1+q2)/r", 3, {0, 1, 1})).front().acts, all);
     EXPECT_EQ(ranges(custom("q1/r", 3, {0, 1, 1})).front().acts, all);  // as the second of a pair
     EXPECT_EQ(ranges(custom("select(step(r-1), q1*q2/r, 0)", 3, {0, 1, 1})).front().acts.size(), 3u);
+}
+
+/// Lepton does not come to an end with such a number.
+TEST(PairRanges, AParameterThatIsNoNumberActs) {
+    double const none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(ranges(custom("q1*q2/r", 3, {0, none, 1})).front().acts, (std::vector<char>{0, 1, 1}));
 }
 
 TEST(PairRanges, OfAForceThatIsNotUnderstoodAllAct) {
