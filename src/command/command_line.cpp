@@ -1,8 +1,9 @@
 #include "command/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 
 #include "command/figures.hpp"
 #include "command/values.hpp"
@@ -19,16 +20,8 @@ constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical",
 constexpr std::string_view suite_names[] = {"stability"};
 constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "peers", "openmm", "overlap", "figures", "network", "plan"};
 
-/// What the contract promises for later versions, by command.
-std::map<std::string, std::vector<std::string>> const later_options{
-    {"check", {}},
-    {"plan", {}},
-    {"solve", {"--precision"}},
-    {"run", {"--precision"}},
-    {"report", {"--precision"}},
-    {"bench", {"--precision"}},
-};
-std::vector<std::string> const later_benches{"sweeps"};
+/// For later versions.
+constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 
 /// Everything as it stands on the command line.
 struct Words {
@@ -199,14 +192,10 @@ std::vector<std::string_view> views(std::vector<std::string> const& texts) { ret
 
 [[noreturn]] void refuse_option(CLI::App const& command, std::string const& word) {
     std::string const option = word.substr(0, word.find('='));
-    auto const later = later_options.find(command.get_name());
     std::vector<std::string> known;
     for (CLI::Option const* each : command.get_options())
         for (std::string const& name : each->get_lnames()) known.push_back("--" + name);
-    if (later != later_options.end()) {
-        if (std::find(later->second.begin(), later->second.end(), option) != later->second.end())
-            throw not_in_this_version(option + " of catena " + command.get_name());
-    }
+    if (option == later_option) throw not_in_this_version(option + " of catena " + command.get_name());
     std::string const see = "catena " + (command.get_parent() ? command.get_name() + " " : "") + "--help lists the options";
     std::string const remedy = remedy_for(option, views(known));
     throw InputError("`" + option + "` is not an option", "command line", remedy.starts_with("did") ? remedy : see);
@@ -220,6 +209,12 @@ void refuse_extras(CLI::App const& app, CLI::App const* command) {
     if (option != left.end()) refuse_option(command ? *command : app, *option);
     if (!command) refuse_command(app, left.front());
     throw InputError("`" + left.front() + "` is one argument too many", "command line", "see catena " + command->get_name() + " --help");
+}
+
+void refuse_empty(CLI::App const& command) {
+    for (CLI::Option const* option : command.get_options())
+        for (std::string const& value : option->results())
+            if (value.empty()) throw InputError(option->get_name() + " is empty", "command line", "give a value, or leave it out");
 }
 
 std::string one_line(std::string text) {
@@ -325,16 +320,14 @@ BenchRequest bench_request(Words const& words) {
     BenchRequest request;
     static_cast<CommonOptions&>(request) = checked(words.common);
     if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list");
-    if (std::find(later_benches.begin(), later_benches.end(), words.name) != later_benches.end())
-        throw not_in_this_version("catena bench " + words.name);
+    if (words.name == later_bench) throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
-    if (request.name == "solve" || request.name == "evaluation") request.sizes = {1000, 10000, 100000};
-    if (request.name == "peers") request.sizes = {100, 200, 500, 1000, 10000, 100000};
+    for (auto const& [option, given] : {std::pair{"--figure", words.figures}, {"--output", words.output}, {"--joints", words.joints}})
+        if (!given.empty() && !bench_takes(request.name, option))
+            throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name), "command line", "leave it out");
+    request.sizes = bench_sizes(request.name);
     if (request.name == "evaluation") request.joints = {"link", "spherical"};
     if (request.name == "plan") request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
-    if (request.name == "plan")
-        for (std::int64_t bodies = 16; bodies <= 1 << 20; bodies *= 2) request.sizes.push_back(bodies);
-    if (request.name == "figures") request.sizes = {2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048};
     if (!words.sizes.empty()) request.sizes = sizes_of(words);
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
     for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
@@ -391,6 +384,7 @@ Request parse_command_line(int argc, char const* const* argv) {
     }
     auto const chosen = app.get_subcommands();
     refuse_extras(app, chosen.empty() ? nullptr : chosen.front());
+    if (!chosen.empty()) refuse_empty(*chosen.front());
     if (version_asked) return answer(version_text());
     if (chosen.empty()) throw InputError("no command is named", "command line", "see catena --help");
     return request_of(chosen.front()->get_name(), words);

@@ -16,4 +16,20 @@ std::vector<std::string> overrides_of(CommonOptions const& options) {
     return all;
 }
 
+std::vector<std::int64_t> bench_sizes(std::string const& name) {
+    if (name == "solve" || name == "evaluation") return {1000, 10000, 100000};
+    if (name == "peers") return {100, 200, 500, 1000, 10000, 100000};
+    std::vector<std::int64_t> sizes;
+    if (name == "plan")
+        for (std::int64_t bodies = 16; bodies <= 1 << 20; bodies *= 2) sizes.push_back(bodies);
+    if (name == "figures")
+        for (std::int64_t bodies = 2; bodies <= 2048; bodies *= 2) sizes.push_back(bodies);
+    return sizes;
+}
+
+bool bench_takes(std::string const& name, std::string const& option) {
+    if (option == "--joints") return name == "solve" || name == "evaluation" || name == "peers" || name == "plan";
+    return name == "figures";
+}
+
 }  // namespace catena::command

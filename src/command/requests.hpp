@@ -59,6 +59,10 @@ struct BenchRequest : CommonOptions {
     std::string output;  // folder, of figures
     int repeat = 21;
 };
+/// Bodies that a benchmark takes unless told otherwise; none: its own choice.
+std::vector<std::int64_t> bench_sizes(std::string const& name);
+/// Whether --figure, --output or --joints is anything to it.
+bool bench_takes(std::string const& name, std::string const& option);
 /// --help and --version.
 struct Answer : CommonOptions {
     std::string text;
