@@ -2,7 +2,7 @@
 
 #include "command/describe.hpp"
 #include "dca/articulated.hpp"
-#include "dca/simd/runs.hpp"
+#include "dca/simd/side_by_side.hpp"
 #include "dca/tree.hpp"
 #include "scene/freedom.hpp"
 
@@ -28,10 +28,10 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, double node, int
     using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
     bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
     int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
-    double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
-    bool const all =
-        joints && !chain.is_beads() && runs * dca::kept_joints(true) * node <= static_cast<double>(dca::most_kept * sizeof(double));
-    return places + (dca::kept_joints(all) + 1) * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
+    double const numbers = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks) * node / sizeof(double);
+    bool const all = joints && !chain.is_beads() && dca::keeps_all_joints(static_cast<std::int64_t>(numbers));
+    int const kept = all ? dca::joints_of_run : dca::joints_between_parts;
+    return places + (kept + 1) * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
 SolverSizes sizes_for(int directions, Handles handles) {
     if (handles == Handles::articulated)

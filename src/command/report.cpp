@@ -16,6 +16,7 @@
 #include "cuda/solver.hpp"
 #include "error.hpp"
 #include "force/openmm_force.hpp"
+#include "integrate/run_folder.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
 #include "report/hardware.hpp"
@@ -33,9 +34,8 @@ void make_folder(Communicator const& communicator, std::string const& folder) {
         std::filesystem::create_directories(folder, error);
         if (error || !std::filesystem::is_directory(folder))
             throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
-        for (char const* const file : {"observables.csv", "trajectory.h5md", "checkpoint.h5"})
-            if (std::filesystem::exists(std::filesystem::path(folder) / file, error))
-                throw InputError("the folder holds a run, whose report.html would be replaced", "--output " + folder, "name another");
+        if (holds_run(folder))
+            throw InputError("the folder holds a run, whose report.html would be replaced", "--output " + folder, "name another");
     });
 }
 

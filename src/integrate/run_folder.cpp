@@ -21,6 +21,12 @@ char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", 
 
 }  // namespace
 
+bool holds_run(std::string const& folder) {
+    std::error_code ignored;
+    auto const has = [&](char const* file) { return fs::exists(fs::path(folder) / file, ignored); };
+    return has("trajectory.h5md") || has("observables.csv") || has("checkpoint.h5");
+}
+
 RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
     : scene_(scene), communicator_(communicator), first_step_(first_step), folder_(options.output) {
     file_wish_of_run(communicator);  // a wrong one is refused before anything is replaced

@@ -14,6 +14,9 @@
 
 namespace catena {
 
+/// Whether a run has written there.
+bool holds_run(std::string const& folder);
+
 class RunFolder {
   public:
     /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Throws InputError on every rank.

@@ -145,7 +145,8 @@ class RunsSideBySide {
   private:
     /// Of the joint inboard of the run's body `i`.
     double* place(std::int64_t item, int i) const {
-        return work_.nodes + (item * kept_joints(work_.keeps_all) + (work_.keeps_all ? i : i / part_length) - 1) * numbers_of_node;
+        bool const all = work_.keeps_all;
+        return work_.nodes + (item * (all ? joints_of_run : joints_between_parts) + (all ? i : i / part_length) - 1) * numbers_of_node;
     }
     /// The next item's bodies usually follow, or come before where the way is back.
     void fill(RunsInLanes const& runs, int p, int way) {

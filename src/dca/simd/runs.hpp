@@ -54,9 +54,7 @@ struct RunWork {
 };
 template <int K>
 inline constexpr int node_numbers = static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
-/// Numbers of joints that a core's second cache holds, and more: all are kept where these are enough.
-inline constexpr std::int64_t most_kept = 1 << 17;
-constexpr int kept_joints(bool all) { return (all ? static_cast<int>(longest_run) : parts_of_run) - 1; }
+constexpr int joints_of_run = static_cast<int>(longest_run) - 1, joints_between_parts = parts_of_run - 1;
 
 /// Merges of one level of the tree.
 struct MergesInLanes {

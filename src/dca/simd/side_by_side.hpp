@@ -42,6 +42,9 @@ class AlignedNumbers {
     LongArray<double> storage_;
 };
 
+/// Whether RunWork keeps all: as many numbers as a core's second cache holds, and more. `of_one`: for one joint of every run.
+constexpr bool keeps_all_joints(std::int64_t of_one) { return of_one * joints_of_run <= 1 << 17; }
+
 /// As RunWork has it, of every body's `numbers` by body(k, place).
 template <class Body>
 AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lanes, int numbers, Body const& body) {
@@ -77,8 +80,8 @@ class SideBySide {
         kernels_ = kernels_of<Leaf>(level);
         runs_ = deal_out_runs(group, lanes_, Leaf::reads_neighbours);
         std::int64_t const node = items() * node_numbers<Leaf::K> * lanes_;
-        keeps_all_ = !Leaf::at_once && node * kept_joints(true) <= most_kept;
-        nodes_ = AlignedNumbers(node * kept_joints(keeps_all_));
+        keeps_all_ = !Leaf::at_once && keeps_all_joints(node);
+        nodes_ = AlignedNumbers(node * (keeps_all_ ? joints_of_run : joints_between_parts));
         constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {
             each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
                 auto const numbers = field.load(k);
