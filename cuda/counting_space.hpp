@@ -44,7 +44,7 @@ inline std::int64_t bytes_of_columns(std::int64_t end, int columns) {
 
 class CountingSpace : public HostAccess {
   public:
-    static constexpr bool answers_at_once = false;
+    static constexpr bool answers_at_once = false, by_launches = true;
 
     template <class T>
     class Array {
@@ -201,6 +201,8 @@ class CountingSpace : public HostAccess {
     void climb(Levels<T> const&, Action const&) const {}
     template <class T, class Action>
     void descend(Levels<T> const&, Action const&) const {}
+    template <class Item, class T, class First, class Up, class Down>
+    void up_and_down(List<Item> const&, Levels<T> const&, First const&, Up const&, Down const&) const {}
     template <class Sweep>
     void climb(Tree const&, Sweep const&) const {}
     template <class Sweep>

@@ -20,7 +20,7 @@ namespace catena::cuda {
 
 class DeviceSpace {
   public:
-    static constexpr bool answers_at_once = false;
+    static constexpr bool answers_at_once = false, by_launches = true;
     /// Copies share the stream and the places for answers: one thread at a time asks largest() or get().
     DeviceSpace()
         : stream_(std::make_shared<Stream>()),
@@ -141,6 +141,23 @@ class DeviceSpace {
     template <class T, class Action>
     void descend(Levels<T> const& levels, Action const& action) const {
         for (int l = levels.count() - 1; l >= 0;) l -= some_levels(levels, l, -1, action);
+    }
+    /// In one launch, where no list is longer than a block.
+    template <class Item, class T, class First, class Up, class Down>
+    void up_and_down(Buffer<Item> const& items, Levels<T> const& levels, First const& first, Up const& up, Down const& down) const {
+        auto widest = static_cast<std::int64_t>(items.size());
+        for (int l = 0; l < levels.count(); ++l) widest = std::max(widest, levels.size(l));
+        if (widest == 0) return;
+        if (widest > kernels::most_in_one_block) {
+            over(items, first);
+            climb(levels, up);
+            descend(levels, down);
+            return;
+        }
+        auto const width = static_cast<unsigned>((widest + 31) / 32 * 32);
+        kernels::up_and_down<<<1, width, 0, stream()>>>(items.data(), static_cast<int>(items.size()), levels.items(), levels.offset(),
+                                                        levels.count(), first, up, down);
+        started();
     }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {

@@ -122,7 +122,7 @@ class ShortWarp {
   private:
     using Passed = typename Sweep::Passed;
     using Factors = QuickFactors<Sweep::K == 1>;
-    using Passage = dca::Elimination<double, Sweep::K>;
+    using Passage = typename Sweep::Passage;
     /// Of a lane's bodies: in registers where there are few, else in shared memory, in turn in the same place.
     class InRegisters {
       public:

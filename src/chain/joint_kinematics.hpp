@@ -125,10 +125,17 @@ class JointKinematics {
     /// Up and down the tree, between set_relative() and set_motion() of every body. Collective where a chain is shared by ranks.
     template <bool positions>
     void sweep(JointScan const& s) {
-        space_.over(runs_, [s] CATENA_LAMBDA(dca::Run const& run) { s.template follow<positions>(run); });
-        space_.climb(levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); });
-        if (!group_.schedule.shared.empty()) sweep_shared<positions>(s);
-        space_.descend(levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); });
+        auto const follow = [s] CATENA_LAMBDA(dca::Run const& run) { s.template follow<positions>(run); };
+        auto const join = [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); };
+        auto const part = [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); };
+        if (group_.schedule.shared.empty()) {
+            space_.up_and_down(runs_, levels_, follow, join, part);
+        } else {
+            space_.over(runs_, follow);
+            space_.climb(levels_, join);
+            sweep_shared<positions>(s);
+            space_.descend(levels_, part);
+        }
         if (group_.moving_meeting()) exchange_meeting(s);
     }
 

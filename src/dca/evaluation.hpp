@@ -1,5 +1,5 @@
 // Matrices, biases, forces and accelerations in one sweep, for where nothing is to be hidden and nothing repeated: leaves are computed
-// again on the way down, because that is cheaper than to keep what became of them.
+// again on the way down, but for what takes longer than to keep it.
 #pragma once
 
 #include "dca/tree_sweeps.hpp"
@@ -29,10 +29,14 @@ struct Resting {
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
         return {leaf.body(loads, part.begin + i), restricted[part.begin + i]};
     }
-    /// What is needed to accelerate it.
+    /// What its accelerations need of what its segment needed.
     template <class Place>
-    CATENA_HD static Place keep(Body<Place> const& body) {
-        return body.k;
+    struct Kept : Leaf::template Turned<Place> {
+        Place k;
+    };
+    template <class Place>
+    CATENA_HD Kept<Place> keep(Body<Place> const& body) const {
+        return {leaf.turned(loads, body), body.k};
     }
 
     CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
@@ -41,8 +45,7 @@ struct Resting {
     }
     CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
-        if (out.acceleration.origin)
-            leaf.accelerate(loads, static_cast<typename Leaf::template Body<std::int64_t> const&>(body), inboard, outboard, out);
+        if (out.acceleration.origin) leaf.accelerate(body, leaf.turned(loads, body), inboard, outboard, out);
     }
     /// Of several bodies side by side, whose joints restrict what handles carry.
     template <class Place>
@@ -58,29 +61,93 @@ struct Resting {
 
     template <class Place>
     CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body) const {
-        return leaf.segment(loads, body);
+        return leaf.segment(loads, body, leaf.turned(loads, body));
     }
     template <class Place>
-    CATENA_HD void accelerate(Place kept, Vector<RealAt<Place>, Leaf::K> const& inboard, Vector<RealAt<Place>, Leaf::K> const& outboard,
-                              AccelerationsView const& out) const {
-        leaf.accelerate(loads, kept, inboard, outboard, out);
+    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body, Kept<Place> const& kept) const {
+        return leaf.segment(loads, body, kept);
+    }
+    template <class Place>
+    CATENA_HD void accelerate(Kept<Place> const& kept, Vector<RealAt<Place>, Leaf::K> const& inboard,
+                              Vector<RealAt<Place>, Leaf::K> const& outboard, AccelerationsView const& out) const {
+        if (out.acceleration.origin) leaf.accelerate(leaf.body(loads, kept.k), kept, inboard, outboard, out);
     }
 };
 
-/// On the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
-template <class Leaf, class Bodies>
-struct Evaluation {
-    static constexpr bool descends = true, keeps_nodes = true, goes_short = true, one_by_one = Bodies::one_by_one;
+/// What joins segments with their biases, whatever they are made of.
+template <class Leaf>
+struct JoinsBoth {
+    static constexpr bool descends = true, keeps_nodes = true;
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
     using Joint = typename Sweeps::Joint;
     using Directions = typename Sweeps::Directions;
     using Node = typename Sweeps::Node;
+    Sweeps s;
+
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
+        Node node;
+        Segment const segment = joined(inboard, outboard, at, node);
+        keep(at.k, node);
+        return segment;
+    }
+    template <class Factors = dca::Factors>
+    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
+                             Factors const& factors = {}) const {
+        Lost found;
+        Segment segment = inboard;
+        append(segment, outboard, at, node.joint, node.offset, found, factors);
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return joined(inboard, outboard, at, node);
+        s.note(found);
+        return segment;
+    }
+    template <class Factors>
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
+                          Factors const& factors) const {
+        dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
+        s.watch(at, joint.factor, found);
+        dca::append(segment.bias, outboard.bias, joint, offset);
+    }
+    CATENA_HD void keep(std::int64_t k, Node const& node) const {
+        s.joints.store(k, node.joint);
+        s.offsets.store(k, node.offset);
+    }
+    CATENA_HD Segment load(std::int64_t slot) const { return {s.matrices.load(slot), s.biases.load(slot)}; }
+    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
+        s.matrices.store(slot, segment.matrix);
+        s.biases.store(slot, segment.bias);
+    }
+    CATENA_HD void close(Root const& root, Segment const& floating) const {
+        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
+        s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
+    }
+    /// Of a whole chain whose tip is free, at its first joint: as close().
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating) const {
+        Lost found;
+        auto const factor = factorize(floating.matrix.z11, at.restricted);
+        s.watch(at, factor, found);
+        s.note(found);
+        return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
+    }
+    CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
+    CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
+        return disassemble(node.joint, node.offset, first, next);
+    }
+};
+
+/// On the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
+template <class Leaf, class Bodies>
+struct Evaluation : JoinsBoth<Leaf> {
+    static constexpr bool goes_short = true, one_by_one = Bodies::one_by_one;
+    using Base = JoinsBoth<Leaf>;
+    using Base::K, Base::s;
+    using typename Base::Directions, typename Base::Joint, typename Base::Segment;
     using Part = typename Bodies::Part;
     using Body = typename Bodies::template Body<std::int64_t>;
     using Passed = OneSided<double, K>;
-    Sweeps s;
+    using Passage = Elimination<double, K>;
     Bodies bodies;
     AccelerationsView out;
 
@@ -119,48 +186,6 @@ struct Evaluation {
         s.note(found);
         return segment;
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
-        Node node;
-        Segment const segment = joined(inboard, outboard, at, node);
-        keep(at.k, node);
-        return segment;
-    }
-    template <class Factors = dca::Factors>
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at, Node& node,
-                             Factors const& factors = {}) const {
-        Lost found;
-        Segment segment = inboard;
-        append(segment, outboard, at, node.joint, node.offset, found, factors);
-        if constexpr (Factors::may_fail)
-            if (!found.none()) return joined(inboard, outboard, at, node);
-        s.note(found);
-        return segment;
-    }
-    CATENA_HD void keep(std::int64_t k, Node const& node) const {
-        s.joints.store(k, node.joint);
-        s.offsets.store(k, node.offset);
-    }
-    CATENA_HD Segment load(std::int64_t slot) const { return {s.matrices.load(slot), s.biases.load(slot)}; }
-    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
-        s.matrices.store(slot, segment.matrix);
-        s.biases.store(slot, segment.bias);
-    }
-    CATENA_HD void close(Root const& root, Segment const& floating) const {
-        Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
-        s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
-    }
-    /// Of a whole chain whose tip is free, at its first joint: as close().
-    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating) const {
-        Lost found;
-        auto const factor = factorize(floating.matrix.z11, at.restricted);
-        s.watch(at, factor, found);
-        s.note(found);
-        return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
-    }
-    CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
-    CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
-        return disassemble(node.joint, node.offset, first, next);
-    }
     template <bool unroll>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
         constexpr bool unrolled_here = unroll || unrolled<K>;
@@ -190,7 +215,6 @@ struct Evaluation {
     /// The same with what was kept on the way up: action(i, inboard force, outboard force), from the last body to the first.
     template <class Kept, class Action>
     CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
-        using Passage = Elimination<double, K>;
         Directions b2{};
         each_body<unrolled<K>>(0, count, [&](int i) {
             Passed const joint = kept.template get<Passed>(i);
@@ -228,57 +252,81 @@ struct Evaluation {
         }
         Joint joint;
         Directions offset;
-        append(segment, own, at, joint, offset, found, factors);
+        this->append(segment, own, at, joint, offset, found, factors);
         kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
-    }
-    template <class Factors>
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
-                          Factors const& factors) const {
-        dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
-        s.watch(at, joint.factor, found);
-        dca::append(segment.bias, outboard.bias, joint, offset);
     }
 };
 
 /// MatrixSweep and BiasSweep at once.
 template <class Leaf>
-struct BothSweeps {
-    static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
-    static constexpr int K = Leaf::K;
-    using Sweeps = TreeSweeps<Leaf>;
-    using Segment = BiasedSegment<double, K>;
-    using Directions = Vector<double, K>;
-    using Node = typename TreeSweeps<Leaf>::Node;
-    TreeSweeps<Leaf> s;
+struct BothSweeps : JoinsBoth<Leaf> {
+    static constexpr bool goes_short = false;
+    using Base = JoinsBoth<Leaf>;
+    using Base::K, Base::s;
+    using typename Base::Directions, typename Base::Node, typename Base::Segment;
+    using Part = NothingRead;
     MatrixSweep<Leaf> matrices;
     BiasSweep<Leaf> biases;
 
-    using Part = NothingRead;
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
     CATENA_HD Segment part(Run const& run, int p, Part read) const {
         auto const matrix = matrices.part(run, p, read);  // whose joints the biases need
         return {matrix, biases.part(run, p, read)};
     }
-    CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
-        auto const matrix = matrices.joined(inboard.matrix, outboard.matrix, at);
-        return {matrix, biases.joined(inboard.bias, outboard.bias, at)};
-    }
-    CATENA_HD Segment load(std::int64_t slot) const { return {matrices.load(slot), biases.load(slot)}; }
-    CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
-        matrices.store(slot, segment.matrix);
-        biases.store(slot, segment.bias);
-    }
-    CATENA_HD void close(Root const& root, Segment const& floating) const {
-        matrices.close(root, floating.matrix);
-        biases.close(root, floating.bias);
-    }
-    CATENA_HD Node node(std::int64_t joint) const { return biases.node(joint); }
-    CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
-        return biases.force(node, first, next);
-    }
     template <bool unroll>
     CATENA_HD void down(Run const& run, int p, Part read, Directions const& first, Directions const& next) const {
         biases.template down<unroll>(run, p, read, first, next);
+    }
+};
+
+/// With the same bits for chains that one launch takes: joints within parts are kept as well, and bodies read one by one.
+template <class Leaf>
+struct ShortSweeps : BothSweeps<Leaf> {
+    static constexpr bool goes_short = true, one_by_one = true;
+    using Base = BothSweeps<Leaf>;
+    using Base::s, Base::K;
+    using typename Base::Directions, typename Base::Segment, typename Base::Node;
+    using Bodies = Resting<Leaf>;
+    using Part = typename Bodies::Part;
+    using Body = typename Bodies::template Body<std::int64_t>;
+    using Passed = Node;
+    using Passage = Node;
+    Bodies bodies;
+
+    CATENA_HD Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
+    CATENA_HD Segment part(Run const& run, int p, Part const&) const { return Base::part(run, p, {}); }
+    template <bool unroll>
+    CATENA_HD void down(Run const& run, int p, Part const&, Directions const& first, Directions const& next) const {
+        Base::template down<unroll>(run, p, {}, first, next);
+    }
+    /// As Evaluation's, but that `kept` gets nodes: of all joints but the first body's.
+    template <class Restricted, class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
+                                           Factors const& factors) const {
+        Segment segment{};
+        each_body<unrolled<K>>(0, count, [&](int i) {
+            Segment const own = kept.template get<Segment>(i);
+            if (i == 0) {
+                segment = own;
+                return;
+            }
+            Node node;
+            segment = this->joined(segment, own, {begin + i, restricted(i)}, node, factors);
+            kept.put(i, node);
+        });
+        return segment;
+    }
+    template <class Kept, class Action>
+    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
+        each_body_back<unrolled<K>>(0, count, [&](int i) {
+            Directions const at_i = i > 0 ? this->force(kept.template get<Node>(i), first, next) : first;
+            action(i, at_i, next);
+            next = at_i;
+        });
+    }
+    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard) const {
+        bodies.accelerate(body, inboard, outboard, this->biases.out);
+        store_forces(s.leaf.group(), this->biases.out, k, inboard, outboard);
     }
 };
 

@@ -24,6 +24,8 @@ class HostSpace : public HostAccess {
   public:
     /// Whether what is asked for is done when the call returns.
     static constexpr bool answers_at_once = true;
+    /// Whether every loop and sweep costs a launch.
+    static constexpr bool by_launches = false;
     /// The executor must outlive the space.
     explicit HostSpace(Executor const& executor) : executor_(&executor) {}
 
@@ -127,6 +129,13 @@ class HostSpace : public HostAccess {
     template <class T, class Action>
     void descend(Levels<T> const& levels, Action const& action) const {
         for (std::size_t l = levels.size(); l-- > 0;) over(List<T>(levels[l]), action);
+    }
+    /// One after the other: over(items, first), climb(levels, up), descend(levels, down).
+    template <class Item, class T, class First, class Up, class Down>
+    void up_and_down(List<Item> const& items, Levels<T> const& levels, First const& first, Up const& up, Down const& down) const {
+        over(items, first);
+        climb(levels, up);
+        descend(levels, down);
     }
     /// A sweep (tree_sweeps.hpp) from the leaves to the roots, and from the roots to the leaves.
     template <class Sweep>

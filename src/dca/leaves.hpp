@@ -41,7 +41,7 @@ class BeadLeaf {
     static constexpr int K = K_;
     /// Whether matrices and biases in one sweep beat one sweep after the other: with more directions registers run out.
     static constexpr bool at_once = K == 1;
-    static constexpr bool beads = true, projected = K == 1, reads_neighbours = true;
+    static constexpr bool beads = true, in_joints = false, projected = K == 1, reads_neighbours = true;
     using Moving = MovingBeads<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
@@ -139,10 +139,10 @@ class MeetingFrames {
         return {read(group_.r1, k), read(r2_, k), read(rotation_, k), read(group_.axes1, k), read(axes2_, k)};
     }
     template <class Place>
-    CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(State<RealAt<Place>> const& state, Place k) const {
+    CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(State<RealAt<Place>> const& state, Place k,
+                                                                    Mat3At<Place> const& turn) const {
         using Real = RealAt<Place>;
         using Axes = Matrix<Real, 3, 3>;
-        Axes const turn = to_matrix(as_quaternion(state.rotation));
         Axes const e1 = transposed_times(turn, as_matrix(state.axes1)), e2 = as_matrix(state.axes2);
         HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1), make_handle<K, sliding>(state.r2, e2, e2)};
         if constexpr (sliding) {
@@ -192,10 +192,9 @@ class GroundFrames {
         return {read(r1_, k), read(r2_, k), read(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD TurnedHandlePair<GroundHandle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
-        using Axes = Matrix<RealAt<Place>, 3, 3>;
-        Axes const turn = to_matrix(as_quaternion(state.rotation));
-        Axes const to_body = transpose(turn);
+    CATENA_HD TurnedHandlePair<GroundHandle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/,
+                                                                                      Mat3At<Place> const& turn) const {
+        Mat3At<Place> const to_body = transpose(turn);
         return {make_ground_handle<K>(state.r1, to_body), make_ground_handle<K>(state.r2, to_body), turn};
     }
 
@@ -227,9 +226,9 @@ class LinkFrames {
                 read(rotation_, k)};
     }
     template <class Place>
-    CATENA_HD TurnedHandlePair<Handle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/) const {
-        using Axes = Matrix<RealAt<Place>, 3, 3>;
-        Axes const turn = to_matrix(as_quaternion(state.rotation)), e1 = axes(state.inboard), e2 = axes(state.outboard);
+    CATENA_HD TurnedHandlePair<Handle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/,
+                                                                                Mat3At<Place> const& turn) const {
+        Mat3At<Place> const e1 = axes(state.inboard), e2 = axes(state.outboard);
         return {make_handle<K>(state.r1, transposed_times(turn, e1), e1), make_handle<K>(state.r2, transposed_times(turn, e2), e2), turn};
     }
 
@@ -256,7 +255,7 @@ class BodyLeaf {
     static constexpr int K = K_;
     using Frames = Frames_;
     static constexpr bool at_once = K <= 3 && Frames::at_once;
-    static constexpr bool beads = false, projected = Frames::on_links ? K == 1 : K < 6;
+    static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
     static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;  // or whether there are any
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
@@ -282,31 +281,44 @@ class BodyLeaf {
                 read_or_zero(loads.torque, k),
                 read_or_zero(loads.omega, k)};
     }
+    /// What both a body's segment and its accelerations need, and takes longer to compute than to keep.
     template <class Place>
-    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads, Body<Place> const& body) const {
-        auto const h = frames_.handles(body.state, body.k);
-        return {matrix(body, h), bias(loads, body, h)};
+    struct Turned {
+        Mat3At<Place> turn;    // to_matrix() of its rotation
+        Vec3At<Place> torque;  // the gyroscopic one included
+    };
+    template <class Place>
+    CATENA_HD static Turned<Place> turned(LoadsView const& loads, Body<Place> const& body) {
+        return {to_matrix(as_quaternion(body.state.rotation)), applied_torque(loads, body)};
+    }
+    template <class Place>
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads, Body<Place> const& body, Turned<Place> const& t) const {
+        auto const h = frames_.handles(body.state, body.k, t.turn);
+        return {matrix(body, h), bias(loads, body, t, h)};
     }
     CATENA_HD SegmentMatrix<double, K> matrix(std::int64_t k) const {
         auto const at_k = body(LoadsView{}, k);
-        return matrix(at_k, frames_.handles(at_k.state, k));
+        return matrix(at_k, frames_.handles(at_k.state, k, to_matrix(as_quaternion(at_k.state.rotation))));
     }
     CATENA_HD SegmentBias<double, K> bias(LoadsView const& loads, std::int64_t k) const {
         auto const at_k = body(loads, k);
-        return bias(loads, at_k, frames_.handles(at_k.state, k));
+        auto const t = turned(loads, at_k);
+        return bias(loads, at_k, t, frames_.handles(at_k.state, k, t.turn));
     }
     template <class Place>
     CATENA_HD void accelerate(LoadsView const& loads, Place k, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
-        if (out.acceleration.origin) accelerate(loads, body(loads, k), inboard_force, outboard_force, out);
+        if (!out.acceleration.origin) return;
+        auto const at_k = body(loads, k);
+        accelerate(at_k, turned(loads, at_k), inboard_force, outboard_force, out);
     }
     /// Of what was read before. Precondition: accelerations are wanted.
     template <class Place>
-    CATENA_HD void accelerate(LoadsView const& loads, Body<Place> const& at_k, Vector<RealAt<Place>, K> const& inboard_force,
+    CATENA_HD void accelerate(Body<Place> const& at_k, Turned<Place> const& t, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
         Place const k = at_k.k;
-        auto const h = frames_.handles(at_k.state, k);
-        auto const torque = applied_torque(loads, at_k) + (moment(h.h1, inboard_force) - moment(h.h2, outboard_force));
+        auto const h = frames_.handles(at_k.state, k, t.turn);
+        auto const torque = t.torque + (moment(h.h1, inboard_force) - moment(h.h2, outboard_force));
         auto const force = at_k.force + (push(h.h1, inboard_force) - push(h.h2, outboard_force));
         write(out.alpha, k, at_k.inverse_inertia * torque);
         write(out.acceleration, k, at_k.inverse_mass * force);
@@ -320,10 +332,11 @@ class BodyLeaf {
         return s;
     }
     template <class Place, class Handles>
-    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body, Handles const& h) const {
+    CATENA_HD SegmentBias<RealAt<Place>, K> bias(LoadsView const& loads, Body<Place> const& body, Turned<Place> const& t,
+                                                 Handles const& h) const {
         using Real = RealAt<Place>;
         Vector<Real, 3> a1 = body.inverse_mass * body.force, a2 = a1;
-        Vector<Real, 3> const alpha = loads.torque.origin ? body.inverse_inertia * applied_torque(loads, body) : Vector<Real, 3>::zero();
+        Vector<Real, 3> const alpha = loads.torque.origin ? body.inverse_inertia * t.torque : Vector<Real, 3>::zero();
         if (loads.omega.origin) {
             Vector<Real, 3> const& w = body.omega;
             a1 = a1 + h.in_force_axes(cross(w, cross(w, body.state.r1)));

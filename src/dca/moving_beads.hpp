@@ -144,6 +144,10 @@ struct MovingBeads {
         return s;
     }
     template <class Place>
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Body<Place> const& /*kept*/) const {
+        return segment(body);
+    }
+    template <class Place>
     CATENA_HD void accelerate(Body<Place> const& body, Vector<RealAt<Place>, K> const& inboard_force,
                               Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
         write(out.acceleration, body.k,

@@ -159,7 +159,7 @@ class ChainSolver {
     virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         solve_once(configuration, loads, out);
     }
-    /// The same with the bits of assemble_matrices() and solve() one after the other. Collective.
+    /// The same with the bits of assemble_matrices() and solve() one after the other. The matrices are not kept either. Collective.
     virtual void solve_once(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         assemble_matrices(configuration);
         solve(loads, out);

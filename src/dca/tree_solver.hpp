@@ -25,6 +25,8 @@ class TreeSolver final : public ChainSolver {
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
     static constexpr bool has_lanes = goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
+    /// Whether both sweeps may be one launch with the bits of two.
+    static constexpr bool goes_short = Leaf::in_joints && K <= 3;
 
   public:
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
@@ -82,10 +84,9 @@ class TreeSolver final : public ChainSolver {
             if (at_once()) return evaluate(configuration, loads, out);
         solve_once(configuration, loads, out);
     }
-    /// What several runs side by side compute again is kept otherwise, and then memory sets the pace.
     void solve_once(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
-        if constexpr (!Leaf::at_once && has_lanes)
-            if (aside_) return evaluate(configuration, loads, out);
+        if constexpr (may_pay_at_once)
+            if (pays_at_once()) return evaluate(configuration, loads, out);
         ChainSolver::solve_once(configuration, loads, out);
     }
     /// The chapter's tree of pairs stays plain.
@@ -160,6 +161,13 @@ class TreeSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
 
+    /// Whether both sweeps in one, with the bits of one after the other, save what is kept between them: what several runs side by side
+    /// compute again, and launches.
+    static constexpr bool may_pay_at_once = !Leaf::at_once && (has_lanes || (goes_short && Space::by_launches));
+    bool pays_at_once() const {
+        if constexpr (has_lanes) return aside_.has_value();
+        return goes_short && group_.partition.trees.front().run_length > 1;
+    }
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
@@ -186,13 +194,17 @@ class TreeSolver final : public ChainSolver {
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
-        if constexpr (!Leaf::at_once)
-            sweep_at_once(BothSweeps<Leaf>{sweeps_, {sweeps_}, {sweeps_, loads, out}}, configuration, loads, out);
-        else if constexpr (Leaf::beads)
-            sweep_at_once(Evaluation<Leaf, typename Leaf::Moving>{sweeps_, {model_.view(), model_.restricted(), configuration, loads}, out},
+        if constexpr (goes_short)
+            sweep_at_once(ShortSweeps<Leaf>{{{sweeps_}, {sweeps_}, {sweeps_, loads, out}}, {sweeps_.leaf, model_.restricted(), loads}},
                           configuration, loads, out);
+        else if constexpr (!Leaf::at_once)
+            sweep_at_once(BothSweeps<Leaf>{{sweeps_}, {sweeps_}, {sweeps_, loads, out}}, configuration, loads, out);
+        else if constexpr (Leaf::beads)
+            sweep_at_once(
+                Evaluation<Leaf, typename Leaf::Moving>{{sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
+                configuration, loads, out);
         else
-            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{sweeps_, {sweeps_.leaf, model_.restricted(), loads}, out}, configuration, loads,
+            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{{sweeps_}, {sweeps_.leaf, model_.restricted(), loads}, out}, configuration, loads,
                           out);
         ++report_.evaluations;
         if (Space::answers_at_once) check();

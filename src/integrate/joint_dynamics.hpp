@@ -45,7 +45,7 @@ class JointDynamics : public BeadHost {
     virtual void assemble_matrices() = 0;
     /// Accelerations of bodies with the forces of now, at the configuration updated last. Collective.
     virtual void solve() = 0;
-    /// assemble_matrices() and solve() together, where nothing is to be hidden between them. Collective.
+    /// assemble_matrices() and solve() together, where nothing is to be hidden between them: the matrices are not kept. Collective.
     virtual void solve_once() = 0;
     /// solve() at the same coordinates with the velocities of now; matrices and forces on carried beads are those of before. Collective.
     virtual void solve_again() = 0;
@@ -91,7 +91,7 @@ class JointDynamics : public BeadHost {
 
     /// Motion at the present state, positions included, on the host. Collective.
     virtual BodyMotion motion() = 0;
-    /// Of the solution evaluated last. Collective.
+    /// Of the solution evaluated last; nothing may have changed since, here and in residual() and refine(). Collective.
     virtual BodyResults results() = 0;
     /// Largest local backward residual of the solution evaluated last (JointSolution). Over all ranks; collective.
     virtual double residual(Executor const&) = 0;

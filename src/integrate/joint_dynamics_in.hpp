@@ -297,7 +297,13 @@ class JointDynamicsIn final : public JointDynamics {
     LoadsView loads() {
         return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
     }
-    AccelerationsView found() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
+    AccelerationsView with_forces() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
+    /// Of the next solution: the joints' forces, which no step needs, where it is to be refined.
+    AccelerationsView found() {
+        has_forces_found_ = refinement_.has_value();
+        return has_forces_found_ ? with_forces() : AccelerationsView{alpha_.view(), acceleration_.view(), {}, {}};
+    }
+    void find_forces();
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
     JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }
@@ -337,20 +343,7 @@ class JointDynamicsIn final : public JointDynamics {
     EmbeddedSteps embedded() { return {steps(), pair_->kept.view(), pair_->kept_base.view()}; }
     JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
     template <class Use>
-    auto with_solution(Use const& use) const {
-        auto const &joint_turn = space_.read(motion_.joint_turn), &orientation = space_.read(motion_.orientation);
-        auto const &omega = space_.read(motion_.omega), &velocity = space_.read(motion_.velocity), &r2 = space_.read(motion_.r2);
-        auto const& axes2 = space_.read(motion_.axes2);
-        auto const &torque = space_.read(torque_), &force = space_.read(force_), &alpha = space_.read(alpha_),
-                   &acceleration = space_.read(acceleration_), &bead_force = space_.read(beads_.force());
-        auto const& compliance = space_.read(compliance_);
-        auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
-                   &tip_force = space_.read(tip_force_);
-        return use(JointSolution{group_, given_, joint_turn.view(), orientation.view(), omega.view(), velocity.view(), r2.view(),
-                                 axes2.view(), torque.view(), has_forces_ ? force.view() : ConstView<3>{}, alpha.view(),
-                                 acceleration.view(), beads_.any() ? bead_force.view() : ConstView<3>{}, bias.view(), joint_force.view(),
-                                 tip_bias.view(), tip_force.view(), compliance.view()});
-    }
+    auto with_solution(Use const& use);
 
     ChainGroup const& group_;
     Space space_;
@@ -364,7 +357,8 @@ class JointDynamicsIn final : public JointDynamics {
     std::vector<JointedTip> tip_;
     double reach_;
     bool has_wrenches_, has_forces_, needs_positions_;
-    bool has_matrices_ = false;  // of the configuration updated last
+    bool has_matrices_ = false;     // of the configuration updated last
+    bool has_forces_found_ = true;  // the joints', with the accelerations found last
     bool has_noise_ = false;
     bool relative_ = false;  // the state's motions joint by joint are known
     double start_time_ = 0;

@@ -103,8 +103,35 @@ void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found
     });
 }
 
+/// Where no step has asked for them: what was solved for last once more. Precondition: nothing has changed since.
+template <class Space>
+void JointDynamicsIn<Space>::find_forces() {
+    if (has_forces_found_) return;
+    has_matrices_ ? solver_->solve(loads(), with_forces()) : solver_->solve_once(configuration(), loads(), with_forces());
+    has_forces_found_ = true;
+}
+
+template <class Space>
+template <class Use>
+auto JointDynamicsIn<Space>::with_solution(Use const& use) {
+    find_forces();
+    auto const &joint_turn = space_.read(motion_.joint_turn), &orientation = space_.read(motion_.orientation);
+    auto const &omega = space_.read(motion_.omega), &velocity = space_.read(motion_.velocity), &r2 = space_.read(motion_.r2);
+    auto const& axes2 = space_.read(motion_.axes2);
+    auto const &torque = space_.read(torque_), &force = space_.read(force_), &alpha = space_.read(alpha_),
+               &acceleration = space_.read(acceleration_), &bead_force = space_.read(beads_.force());
+    auto const& compliance = space_.read(compliance_);
+    auto const &bias = space_.read(bias_), &joint_force = space_.read(joint_force_), &tip_bias = space_.read(tip_bias_),
+               &tip_force = space_.read(tip_force_);
+    return use(JointSolution{group_, given_, joint_turn.view(), orientation.view(), omega.view(), velocity.view(), r2.view(), axes2.view(),
+                             torque.view(), has_forces_ ? force.view() : ConstView<3>{}, alpha.view(), acceleration.view(),
+                             beads_.any() ? bead_force.view() : ConstView<3>{}, bias.view(), joint_force.view(), tip_bias.view(),
+                             tip_force.view(), compliance.view()});
+}
+
 template <class Space>
 void JointDynamicsIn<Space>::refine(Executor const& executor) {
+    find_forces();  // by what the accelerations were found by
     if (!has_matrices_) assemble_matrices();
     auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_, executor); });
     std::int64_t const size = group_.size, of_tip = group_.has_tips() ? size : 0;

@@ -172,6 +172,9 @@ TEST_F(StageKernels, ShortChains) {
             };
             expect_short(random_bead_chain(bodies, bodies, base), Axes::joint);
             expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}), Axes::world);
+            expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::spherical, .base = base}), Axes::joint);
+            if (base == Base::fixed)  // else the first body leaves the plane
+                expect_short(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::planar, .base = base}), Axes::joint);
             if (HasFailure()) return;
         }
 }

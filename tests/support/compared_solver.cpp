@@ -60,6 +60,9 @@ class ComparedSolver final : public ChainSolver {
     void assemble_and_solve(ConfigurationView const& c, LoadsView const& loads, AccelerationsView const& out) override {
         each_as_reference(out, [&](ChainSolver& solver, AccelerationsView const& own) { solver.assemble_and_solve(c, loads, own); });
     }
+    void solve_once(ConfigurationView const& c, LoadsView const& loads, AccelerationsView const& out) override {
+        each_as_reference(out, [&](ChainSolver& solver, AccelerationsView const& own) { solver.solve_once(c, loads, own); });
+    }
     bool at_once() const override { return reference_->at_once(); }
     SolverReport report() const override { return reference_->report(); }
 
@@ -105,6 +108,9 @@ void evaluate(ChainGroup const& group, Scene const& scene, Executor const& execu
         dynamics->update_configuration();
         dynamics->assemble_matrices();
         dynamics->solve();
+        dynamics->residual(executor);  // which asks for the joints' forces
+        dynamics->solve_once();
+        dynamics->residual(executor);
         return;
     }
     auto const dynamics = group.beads ? make_bead_dynamics(group, scene, executor, communicator, std::move(solver))

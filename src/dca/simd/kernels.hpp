@@ -91,7 +91,7 @@ class RunsSideBySide {
     static_assert(!by_runs || constants_of<Leaf> == 0);
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
     using Body = typename Bodies::template Body<Column<Real>>;
-    using Kept = decltype(Bodies::keep(std::declval<Body const&>()));
+    using Kept = decltype(std::declval<Bodies const&>().keep(std::declval<Body const&>()));
     using Segment = BiasedSegment<Real, K>;
     using Directions = Vector<Real, K>;
     using Node = NodeInLanes<Real, K>;
@@ -243,7 +243,7 @@ class RunsSideBySide {
     Segment take(Bodies& bodies, int i, Kept* kept) const {
         Body const body = bodies.body(i);
         kept[i] = bodies_.keep(body);
-        return bodies_.segment(body);
+        return bodies_.segment(body, kept[i]);
     }
     /// From the last body, whose outboard joint's force is `next`; force(i) is that at body i's inboard joint.
     template <class Force>
