@@ -262,8 +262,7 @@ template <class Leaf>
 struct BothSweeps : JoinsBoth<Leaf> {
     static constexpr bool goes_short = false;
     using Base = JoinsBoth<Leaf>;
-    using Base::K, Base::s;
-    using typename Base::Directions, typename Base::Node, typename Base::Segment;
+    using typename Base::Directions, typename Base::Segment;
     using Part = NothingRead;
     MatrixSweep<Leaf> matrices;
     BiasSweep<Leaf> biases;

@@ -166,7 +166,7 @@ class TreeSolver final : public ChainSolver {
     static constexpr bool may_pay_at_once = !Leaf::at_once && (has_lanes || (goes_short && Space::by_launches));
     bool pays_at_once() const {
         if constexpr (has_lanes) return aside_.has_value();
-        return goes_short && group_.partition.trees.front().run_length > 1;
+        return group_.partition.trees.front().run_length > 1;
     }
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
