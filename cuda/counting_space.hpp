@@ -133,16 +133,6 @@ class CountingSpace : public HostAccess {
         Fixed<1> mass_;
         Fixed<6> inertia_;
     };
-    template <class T>
-    class Levels {
-      public:
-        explicit Levels(std::vector<std::vector<T>> const& levels) {
-            std::size_t items = 0;
-            for (std::vector<T> const& level : levels) items += level.size();
-            Count::add(static_cast<std::int64_t>(items * sizeof(T)));
-            Count::add(static_cast<std::int64_t>((levels.size() + 1) * sizeof(std::int64_t)));
-        }
-    };
     template <class T, dca::Order order>
     class Records {
       public:
@@ -169,11 +159,20 @@ class CountingSpace : public HostAccess {
                 count(dca::level_ends_of(stage));
             }
         }
-
-      private:
-        template <class T>
-        static void count(std::vector<T> const& items) {
-            Count::add(static_cast<std::int64_t>(items.size() * sizeof(T)));
+    };
+    class ScanTree {
+      public:
+        ScanTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
+                 std::int64_t slots) {
+            constexpr std::int64_t most = 256;  // kernels::most_of_scan
+            count(runs);
+            for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, most)) {
+                count(stage.slot);
+                count(stage.merges);
+                count(stage.tops);
+                count(stage.blocks);
+                count(stage.level_end);
+            }
         }
     };
 
@@ -197,18 +196,12 @@ class CountingSpace : public HostAccess {
     void for_each(std::int64_t, Action const&) const {}
     template <class T, class Action>
     void over(List<T> const&, Action const&) const {}
-    template <class T, class Action>
-    void climb(Levels<T> const&, Action const&) const {}
-    template <class T, class Action>
-    void descend(Levels<T> const&, Action const&) const {}
-    template <class Item, class T, class First, class Up, class Down>
-    void up_and_down(List<Item> const&, Levels<T> const&, First const&, Up const&, Down const&) const {}
-    template <class Sweep>
-    void climb(Tree const&, Sweep const&) const {}
-    template <class Sweep>
-    void descend(Tree const&, Sweep const&) const {}
-    template <class Sweep>
-    void climb_and_descend(Tree const&, Sweep const&) const {}
+    template <class AnyTree, class Sweep>
+    void climb(AnyTree const&, Sweep const&) const {}
+    template <class AnyTree, class Sweep>
+    void descend(AnyTree const&, Sweep const&) const {}
+    template <class AnyTree, class Sweep>
+    void climb_and_descend(AnyTree const&, Sweep const&) const {}
     template <class Value>
     double largest(std::int64_t, Value const&) const {
         return 0;
@@ -247,6 +240,12 @@ class CountingSpace : public HostAccess {
     }
     void wait() const {}
     int threads() const { return 1; }
+
+  private:
+    template <class T>
+    static void count(std::vector<T> const& items) {
+        Count::add(static_cast<std::int64_t>(items.size() * sizeof(T)));
+    }
 };
 
 /// As DeviceCrossing.

@@ -8,11 +8,13 @@
 
 #include "cuda/clusters.hpp"
 #include "cuda/device_blocks.cuh"
-#include "cuda/device_lists.cuh"
 #include "cuda/device_model.cuh"
+#include "cuda/device_records.cuh"
+#include "cuda/device_scan.cuh"
 #include "cuda/kernels.cuh"
 #include "cuda/peer_exchange.cuh"
 #include "cuda/short_launch.cuh"
+#include "cuda/stage_walk.cuh"
 #include "dca/host_space.hpp"
 #include "dca/stages.hpp"
 
@@ -42,10 +44,9 @@ class DeviceSpace {
     template <int D>
     using Fixed = FixedField<D>;
     using Model = DeviceModel;
-    template <class T>
-    using Levels = DeviceLevels<T>;
     template <class T, dca::Order order>
     using Records = DeviceRecords<T, order>;
+    using ScanTree = DeviceScan;
     class Tree {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
@@ -132,50 +133,37 @@ class DeviceSpace {
     }
     template <class T, class Action>
     void over(Buffer<T> const& items, Action const& action) const {
-        over(items.data(), static_cast<std::int64_t>(items.size()), action);
-    }
-    template <class T, class Action>
-    void climb(Levels<T> const& levels, Action const& action) const {
-        for (int l = 0; l < levels.count();) l += some_levels(levels, l, 1, action);
-    }
-    template <class T, class Action>
-    void descend(Levels<T> const& levels, Action const& action) const {
-        for (int l = levels.count() - 1; l >= 0;) l -= some_levels(levels, l, -1, action);
-    }
-    /// In one launch, where no list is longer than a block.
-    template <class Item, class T, class First, class Up, class Down>
-    void up_and_down(Buffer<Item> const& items, Levels<T> const& levels, First const& first, Up const& up, Down const& down) const {
-        auto widest = static_cast<std::int64_t>(items.size());
-        for (int l = 0; l < levels.count(); ++l) widest = std::max(widest, levels.size(l));
-        if (widest == 0) return;
-        if (widest > kernels::most_in_one_block) {
-            over(items, first);
-            climb(levels, up);
-            descend(levels, down);
-            return;
-        }
-        auto const width = static_cast<unsigned>((widest + 31) / 32 * 32);
-        kernels::up_and_down<<<1, width, 0, stream()>>>(items.data(), static_cast<int>(items.size()), levels.items(), levels.offset(),
-                                                        levels.count(), first, up, down);
+        if (items.size() == 0) return;
+        auto const count = static_cast<std::int64_t>(items.size());
+        kernels::over<<<blocks(count), kernels::threads, 0, stream()>>>(items.data(), count, action);
         started();
+    }
+    template <class Scan>
+    void climb(ScanTree const& tree, Scan const& scan) const {
+        tree.climb(scan, stream());
+    }
+    template <class Scan>
+    void descend(ScanTree const& tree, Scan const& scan) const {
+        tree.descend(scan, stream());
+    }
+    template <class Scan>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan) const {
+        tree.climb_and_descend(scan, stream());
     }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
-        climb_below(tree, tree.stages_.size(), sweep);
+        walk(tree).climb(sweep);
     }
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
-        descend_below(tree, tree.stages_.size(), sweep);
+        walk(tree).descend(sweep);
     }
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.stages_.empty()) return;
         if constexpr (Sweep::goes_short)
             if (tree.short_(sweep, stream())) return;
-        std::size_t const apart = tree.stages_.size() - (tree.together_ ? 2 : 1);
-        climb_below(tree, apart, sweep);
-        launch_turn(tree.stages_[apart], tree.together_ ? &tree.stages_.back() : nullptr, sweep);
-        descend_below(tree, apart, sweep);
+        walk(tree).climb_and_descend(sweep);
     }
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {
@@ -302,86 +290,72 @@ class DeviceSpace {
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
     static void started() { check(cudaGetLastError(), "start a kernel"); }
-    template <class T, class Action>
-    void over(T const* items, std::int64_t count, Action const& action) const {
-        if (count == 0) return;
-        kernels::over<<<blocks(count), kernels::threads, 0, stream()>>>(items, count, action);
-        started();
-    }
-    /// Level `first`, or as many from there on (in steps of `step`) as fit into one block each. Returns how many.
-    template <class T, class Action>
-    int some_levels(Levels<T> const& levels, int first, int step, Action const& action) const {
-        int count = 0;
-        std::int64_t widest = 0;
-        for (int l = first; l >= 0 && l < levels.count() && levels.size(l) <= kernels::most_in_one_block; l += step, ++count)
-            widest = std::max(widest, levels.size(l));
-        if (count > 0 && widest == 0) return count;  // a rank may have none of a level's items
-        if (count < 2) {
-            over(levels.begin(first), levels.size(first), action);
-            return 1;
+    /// Of StageWalk.
+    struct Launches {
+        DeviceSpace const& space;
+        Tree const& tree;
+
+        std::size_t stages() const { return tree.stages_.size(); }
+        bool runs_apart() const { return tree.runs_apart_; }
+        bool together() const { return tree.together_; }
+        template <class Sweep>
+        void climb(std::size_t i, Sweep const& sweep) const {
+            launch(kernels::climb<Sweep>, tree.stages_[i], sweep);
         }
-        auto const width = static_cast<unsigned>((widest + 31) / 32 * 32);
-        kernels::small_levels<<<1, width, 0, stream()>>>(levels.items(), levels.offset(), first, count, step, action);
-        started();
-        return count;
-    }
-    template <class Sweep>
-    static std::size_t shared_bytes(Tree::StageHere const& stage) {
-        return sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, stage.threads));
-    }
-    template <class Sweep>
-    void launch(void (*kernel)(kernels::DeviceStage, Sweep), Tree::StageHere const& stage, Sweep const& sweep) const {
-        std::size_t const bytes = shared_bytes<Sweep>(stage);
-        allow_shared(kernel, bytes);
-        kernel<<<stage.blocks, static_cast<unsigned>(stage.threads), bytes, stream()>>>(stage.view, sweep);
-        started();
-    }
-    /// `upper`: null where there is none, and then blocks know nothing of each other.
-    template <class Sweep>
-    void launch_turn(Tree::StageHere const& lower, Tree::StageHere const* upper, Sweep const& sweep) const {
-        int const of_block = std::max(lower.threads, upper ? upper->threads : 0);
-        auto const numbers = [&](Tree::StageHere const& stage) {
-            return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
-        };
-        std::size_t const bytes = sizeof(double) * (numbers(lower) + (upper ? numbers(*upper) : 0));
-        allow_shared(kernels::turn<Sweep>, bytes);
-        cudaLaunchAttribute cluster{};
-        cluster.id = cudaLaunchAttributeClusterDimension;
-        cluster.val.clusterDim = {lower.blocks, 1, 1};
-        cudaLaunchConfig_t config{};
-        config.gridDim = {lower.blocks};
-        config.blockDim = {static_cast<unsigned>(of_block)};
-        config.dynamicSmemBytes = bytes;
-        config.stream = stream();
-        config.attrs = &cluster;
-        config.numAttrs = upper ? 1 : 0;
-        check(cudaLaunchKernelEx(&config, kernels::turn<Sweep>, lower.view, upper ? upper->view : kernels::DeviceStage{}, sweep),
-              "start a kernel");
-    }
-    /// Of the first `stages` stages.
-    template <class Sweep>
-    void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) const {
-        if (tree.runs_apart_) climb_runs(tree, sweep);
-        for (std::size_t i = 0; i < stages; ++i) launch(kernels::climb<Sweep>, tree.stages_[i], sweep);
-    }
-    template <class Sweep>
-    void descend_below(Tree const& tree, std::size_t stages, Sweep const& sweep) const {
-        for (std::size_t i = stages; i-- > 0;) launch(kernels::descend<Sweep>, tree.stages_[i], sweep);
-        if (tree.runs_apart_) descend_runs(tree, sweep);
-    }
-    template <class Sweep>
-    void climb_runs(Tree const& tree, Sweep const& sweep) const {
-        kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(static_cast<std::int64_t>(tree.runs_.size()));
-        allow_shared(kernels::climb_runs<Sweep>, grid.shared_bytes);
-        kernels::climb_runs<<<grid.blocks, grid.threads, grid.shared_bytes, stream()>>>(tree.runs_.data(), grid.runs, sweep);
-        started();
-    }
-    template <class Sweep>
-    void descend_runs(Tree const& tree, Sweep const& sweep) const {
-        kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(static_cast<std::int64_t>(tree.runs_.size()));
-        kernels::descend_runs<<<grid.blocks, grid.threads, grid.shared_bytes, stream()>>>(tree.runs_.data(), grid.runs, sweep);
-        started();
-    }
+        template <class Sweep>
+        void descend(std::size_t i, Sweep const& sweep) const {
+            launch(kernels::descend<Sweep>, tree.stages_[i], sweep);
+        }
+        /// Where two stages are not together blocks know nothing of each other.
+        template <class Sweep>
+        void turn(std::size_t i, Sweep const& sweep) const {
+            Tree::StageHere const &lower = tree.stages_[i], *const upper = together() ? &tree.stages_[i + 1] : nullptr;
+            int const of_block = std::max(lower.threads, upper ? upper->threads : 0);
+            auto const numbers = [&](Tree::StageHere const& stage) {
+                return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
+            };
+            std::size_t const bytes = sizeof(double) * (numbers(lower) + (upper ? numbers(*upper) : 0));
+            allow_shared(kernels::turn<Sweep>, bytes);
+            cudaLaunchAttribute cluster{};
+            cluster.id = cudaLaunchAttributeClusterDimension;
+            cluster.val.clusterDim = {lower.blocks, 1, 1};
+            cudaLaunchConfig_t config{};
+            config.gridDim = {lower.blocks};
+            config.blockDim = {static_cast<unsigned>(of_block)};
+            config.dynamicSmemBytes = bytes;
+            config.stream = space.stream();
+            config.attrs = &cluster;
+            config.numAttrs = upper ? 1 : 0;
+            check(cudaLaunchKernelEx(&config, kernels::turn<Sweep>, lower.view, upper ? upper->view : kernels::DeviceStage{}, sweep),
+                  "start a kernel");
+        }
+        template <class Sweep>
+        void climb_runs(Sweep const& sweep) const {
+            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(static_cast<std::int64_t>(tree.runs_.size())), sweep);
+        }
+        template <class Sweep>
+        void descend_runs(Sweep const& sweep) const {
+            launch(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(static_cast<std::int64_t>(tree.runs_.size())), sweep);
+        }
+
+      private:
+        template <class Sweep>
+        void launch(void (*kernel)(kernels::DeviceStage, Sweep), Tree::StageHere const& stage, Sweep const& sweep) const {
+            std::size_t const bytes =
+                sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, stage.threads));
+            allow_shared(kernel, bytes);
+            kernel<<<stage.blocks, static_cast<unsigned>(stage.threads), bytes, space.stream()>>>(stage.view, sweep);
+            started();
+        }
+        template <class Sweep>
+        void launch(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
+            allow_shared(kernel, grid.shared_bytes);
+            kernel<<<grid.blocks, grid.threads, grid.shared_bytes, space.stream()>>>(tree.runs_.data(), grid.runs, sweep);
+            started();
+        }
+    };
+    StageWalk<Launches> walk(Tree const& tree) const { return StageWalk<Launches>({*this, tree}); }
+
     std::shared_ptr<Stream> stream_;
     std::shared_ptr<Buffer<unsigned long long>> answer_;  // of largest()
     std::shared_ptr<PinnedBuffer<double>> letter_;        // of get()

@@ -34,34 +34,6 @@ struct PutBody {
     __device__ void operator()(std::int64_t i) const { to[i * pitch] = value[static_cast<int>(i)]; }
 };
 
-constexpr int most_in_one_block = 256;
-/// Levels that fit into one block each, one after the other: offset[l] to offset[l + 1], from level `first` on in steps of `step`.
-template <class Item, class Action>
-__global__ void small_levels(Item const* items, std::int64_t const* offset, int first, int count, int step, Action action) {
-    for (int l = 0; l < count; ++l) {
-        std::int64_t const begin = offset[first + l * step], end = offset[first + l * step + 1];
-        if (begin + threadIdx.x < end) action(items[begin + threadIdx.x]);
-        __syncthreads();
-    }
-}
-
-/// By one block: of every item, of every level upwards and of every level downwards.
-template <class Item, class Node, class First, class Up, class Down>
-__global__ void up_and_down(Item const* items, int count, Node const* nodes, std::int64_t const* offset, int levels, First first, Up up,
-                            Down down) {
-    if (threadIdx.x < static_cast<unsigned>(count)) first(items[threadIdx.x]);
-    for (int turn = 0; turn < 2 * levels; ++turn) {
-        int const l = turn < levels ? turn : 2 * levels - 1 - turn;
-        std::int64_t const i = offset[l] + threadIdx.x;
-        __syncthreads();
-        if (i >= offset[l + 1]) continue;
-        if (turn < levels)
-            up(nodes[i]);
-        else
-            down(nodes[i]);
-    }
-}
-
 /// Doubles from 0 on have the order of their bits, and a NaN is above them all.
 template <class Value>
 __global__ void largest(std::int64_t count, unsigned long long* found, Value value) {

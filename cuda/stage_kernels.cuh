@@ -225,6 +225,12 @@ __global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage lower, Dev
         if (up == 1) meet_cluster();
     }
 }
+/// Of matrices and biases at once: runs that are apart from the stages above them are for another sweep.
+template <class Sweep>
+concept has_apart = requires(Sweep const& sweep) { sweep.apart(); };
+/// Whether stages are for its two sweeps one after the other: larger segments and biases at once find no registers.
+template <class Sweep>
+concept goes_twice = has_apart<Sweep> && !Sweep::keeps_nodes;
 /// Blocks of `threads` that share a multiprocessor: links want few registers, and many to hide that memory is far.
 template <class Sweep>
 constexpr int blocks_at_once = Sweep::Sweeps::K == 1 ? 4 : 1;

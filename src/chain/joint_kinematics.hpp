@@ -77,9 +77,8 @@ class JointKinematics {
           joint_translation_(group.joint_translation),
           first_axis_(group.first_axis),
           screw_(group.screw),
-          runs_(group.schedule.runs),
-          levels_(group.schedule.levels),
-          top_levels_(group.schedule.top_levels),
+          tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots, group.schedule.slots),
+          top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
           roots_(group.schedule.roots),
           top_roots_(group.schedule.top_roots),
           from_top_(own_shared_),
@@ -89,9 +88,9 @@ class JointKinematics {
           translation_(group.size),
           velocity_(group.size),
           next_meeting_(group.moving_meeting() ? 1 : 0),
-          shared_(group.schedule, MotionNumbers::width, space, communicator),
-          whole_(static_cast<std::size_t>(group.schedule.slots)),
-          before_(static_cast<std::size_t>(group.schedule.slots)) {
+          shared_(group.schedule, dca::RecordNumbers<Motion>::width, space, communicator),
+          whole_(group.schedule.slots),
+          before_(group.schedule.slots) {
         begin_at_ground();
     }
 
@@ -115,7 +114,7 @@ class JointKinematics {
     }
     JointScan scan(StateView const& state, MotionView const& motion) {
         return {joints(),         state,        motion,        rotation_.view(), omega_.view(),       translation_.view(),
-                velocity_.view(), slot_.data(), whole_.data(), before_.data(),   next_meeting_.view()};
+                velocity_.view(), slot_.data(), whole_.view(), before_.view(),   next_meeting_.view()};
     }
 
     /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and velocity as well.
@@ -125,16 +124,13 @@ class JointKinematics {
     /// Up and down the tree, between set_relative() and set_motion() of every body. Collective where a chain is shared by ranks.
     template <bool positions>
     void sweep(JointScan const& s) {
-        auto const follow = [s] CATENA_LAMBDA(dca::Run const& run) { s.template follow<positions>(run); };
-        auto const join = [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); };
-        auto const part = [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); };
+        MotionScan<positions> const scan{s};
         if (group_.schedule.shared.empty()) {
-            space_.up_and_down(runs_, levels_, follow, join, part);
+            space_.climb_and_descend(tree_, scan);
         } else {
-            space_.over(runs_, follow);
-            space_.climb(levels_, join);
-            sweep_shared<positions>(s);
-            space_.descend(levels_, part);
+            space_.climb(tree_, scan);
+            sweep_shared(scan);
+            space_.descend(tree_, scan);
         }
         if (group_.moving_meeting()) exchange_meeting(s);
     }
@@ -146,14 +142,14 @@ class JointKinematics {
         sweep<positions>(s);
         space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
     }
-    template <bool positions>
-    void sweep_shared(JointScan const& s) {
-        MotionNumbers const numbers{s.whole, shared_.own_units(), shared_.units()};
+    template <class Scan>
+    void sweep_shared(Scan const& scan) {
+        MotionRecords const before = scan.s.before;
+        dca::RecordNumbers<Motion> const numbers{scan.s.whole, shared_.own_units(), shared_.units()};
         shared_.show(space_, numbers);
         shared_.bring(space_, communicator_, numbers);
-        space_.climb(top_levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template join<positions>(m); });
-        space_.descend(top_levels_, [s] CATENA_LAMBDA(dca::Merge const& m) { s.template part<positions>(m); });
-        space_.over(from_top_, [s] CATENA_LAMBDA(dca::TopCopy const& copy) { s.before[copy.to] = s.before[copy.from]; });
+        space_.climb_and_descend(top_, scan);
+        space_.over(from_top_, [before] CATENA_LAMBDA(dca::TopCopy const& copy) { before.store(copy.to, before.load(copy.from)); });
     }
     /// Joint k's from body k - 1, across the ranks.
     void exchange_meeting(JointScan const& s) {
@@ -163,9 +159,9 @@ class JointKinematics {
         space_.exchange(communicator_, BodyExchange<12>{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard});
     }
     void begin_at_ground() {
-        Motion* const before = before_.data();
-        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before[root.slot] = Motion::none(); });
-        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before[root.slot] = Motion::none(); });
+        MotionRecords const before = before_.view();
+        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
+        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
     }
 
   private:
@@ -183,8 +179,8 @@ class JointKinematics {
     typename Space::template Fixed<9> axes1_;
     typename Space::template Fixed<4> joint_rotation_;
     typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
-    typename Space::template List<dca::Run> runs_;
-    typename Space::template Levels<dca::Merge> levels_, top_levels_;
+    std::vector<dca::Run> no_runs_;
+    typename Space::ScanTree tree_, top_;
     typename Space::template List<dca::Root> roots_, top_roots_;
     typename Space::template List<dca::TopCopy> from_top_;
     typename Space::template List<std::int32_t> slot_;
@@ -192,7 +188,7 @@ class JointKinematics {
     FieldOf<3> omega_, translation_, velocity_;
     FieldOf<12> next_meeting_;
     dca::SharedUnits<Space> shared_;
-    typename Space::template Array<Motion> whole_, before_;
+    typename Space::template Records<Motion, dca::Order::plain> whole_, before_;
 };
 
 }  // namespace catena

@@ -5,19 +5,44 @@
 #pragma once
 
 #include "chain/joint_motion.hpp"
+#include "dca/records.hpp"
 #include "dca/tree.hpp"
 
 namespace catena {
 
-/// Wholes of units that several ranks share, on their way between ranks (dca::SharedUnits).
-struct MotionNumbers {
-    static constexpr int width = sizeof(Motion) / sizeof(double);
-    Motion* whole;  // by slot
-    dca::SharedUnit const *own, *all;
-    CATENA_HD double show(std::int64_t i) const { return number(own[i / width].source, i % width); }
-    CATENA_HD void take(std::int64_t i, double value) const { number(all[i / width].slot, i % width) = value; }
-    CATENA_HD double& number(std::int64_t slot, std::int64_t n) const { return reinterpret_cast<double*>(whole + slot)[n]; }
-};
+using MotionRecords = dca::RecordsView<Motion, dca::Order::plain>;
+/// Of a motion what is not zero.
+template <bool positions>
+constexpr int numbers_of_motion = positions ? 13 : 7;
+template <bool positions>
+using MotionNumbers = Vector<double, numbers_of_motion<positions>>;
+template <bool positions>
+CATENA_HD MotionNumbers<positions> packed(Motion const& m) {
+    auto const all = as_numbers(m);
+    MotionNumbers<positions> numbers;
+    CATENA_UNROLL
+    for (int i = 0; i < numbers_of_motion<positions>; ++i) numbers[i] = all[i];
+    return numbers;
+}
+template <bool positions>
+CATENA_HD Motion unpacked(MotionNumbers<positions> const& numbers) {
+    auto all = Vector<double, 13>::zero();
+    CATENA_UNROLL
+    for (int i = 0; i < numbers_of_motion<positions>; ++i) all[i] = numbers[i];
+    return as_motion(all);
+}
+template <bool positions>
+CATENA_HD MotionNumbers<positions> numbers_at(MotionRecords const& records, std::int64_t slot) {
+    MotionNumbers<positions> numbers;
+    CATENA_UNROLL
+    for (int i = 0; i < numbers_of_motion<positions>; ++i) numbers[i] = records.number(slot, i);
+    return numbers;
+}
+template <bool positions>
+CATENA_HD void put_numbers(MotionRecords const& records, std::int64_t slot, MotionNumbers<positions> const& numbers) {
+    CATENA_UNROLL
+    for (int i = 0; i < numbers_of_motion<positions>; ++i) records.number(slot, i) = numbers[i];
+}
 
 struct JointScan {
     JointsView joints;
@@ -26,8 +51,8 @@ struct JointScan {
     View<4> rotation;  // of body k against its inboard body, then against the body before its run
     View<3> omega, translation, velocity;
     std::int32_t const* slot = nullptr;  // of the run of body k
-    Motion* whole = nullptr;             // by slot: against the body before the segment
-    Motion* before = nullptr;            // by slot: of the body before the segment, against the ground
+    MotionRecords whole;                  // by slot: against the body before the segment
+    MotionRecords before;                 // by slot: of the body before the segment, against the ground
     View<12> next_meeting;               // {point, axes}: entry 1 of the joint after this rank's last body
 
     template <bool positions, class Place>
@@ -57,7 +82,7 @@ struct JointScan {
     }
     /// A few bodies at a time, so that their loads are under way together.
     template <bool positions>
-    CATENA_HD void follow(dca::Run const& run) const {
+    CATENA_HD Motion follow(dca::Run const& run) const {
         constexpr int few = 4;
         std::int64_t const end = run.body + run.count;
         std::int64_t k = run.body + 1;
@@ -75,7 +100,7 @@ struct JointScan {
         }
         for (; k < end; ++k) m = go_on<positions>(m, load<positions>(k), joints.normal(k), k);
         m.rotation = normalized(m.rotation);
-        whole[run.slot] = m;
+        return m;
     }
     template <bool positions>
     CATENA_HD Motion go_on(Motion const& before_it, Motion const& next, Vec3 const& normal, std::int64_t k) const {
@@ -84,25 +109,18 @@ struct JointScan {
         store<positions>(k, m);
         return m;
     }
-    template <bool positions>
-    CATENA_HD void join(dca::Merge const& m) const {
-        whole[m.slot] = compose<positions>(whole[m.inboard], whole[m.outboard]);
-    }
-    template <bool positions>
-    CATENA_HD void part(dca::Merge const& m) const {
-        Motion const start = before[m.slot];
-        before[m.inboard] = start;
-        before[m.outboard] = compose<positions>(start, whole[m.inboard]);
-    }
     /// Of the body before the run of body k, against the ground.
-    CATENA_HD Motion before_run(std::int64_t k) const { return before[slot[k]]; }
-    template <class Place>
+    template <bool positions>
+    CATENA_HD Motion before_run(std::int64_t k) const {
+        return unpacked<positions>(numbers_at<positions>(before, slot[k]));
+    }
+    template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> before_run(Place const& several) const {
-        return as_motion(pick(reinterpret_cast<double const*>(before), slot, several, Vector<RealAt<Place>, 13>{}));
+        return as_motion(pick(before.origin, slot, several, Vector<RealAt<Place>, 13>{}));
     }
     template <bool positions, class Place>
     CATENA_HD void set_motion(Place k) const {
-        auto const m = compose<positions>(before_run(k), load<positions>(k));
+        auto const m = compose<positions>(before_run<positions>(k), load<positions>(k));
         write(motion.orientation, k, as_vector(normalized(m.rotation)));
         write(motion.omega, k, joints.kept_in_plane(joints.normal(k), m.omega));
         if constexpr (positions) {
@@ -136,6 +154,22 @@ struct JointScan {
         for (int i = 0; i < 9; ++i) axes[i] = m.axes.data[i];
         write(motion.axes2, inboard_body, axes);
     }
+};
+
+/// As a space's scans want it (HostSpace::ScanTree).
+template <bool positions>
+struct MotionScan {
+    using Value = MotionNumbers<positions>;
+    JointScan s;
+
+    CATENA_HD Value of_run(dca::Run const& run) const { return packed<positions>(s.follow<positions>(run)); }
+    CATENA_HD Value joined(Value const& inboard, Value const& outboard) const {
+        return packed<positions>(compose<positions>(unpacked<positions>(inboard), unpacked<positions>(outboard)));
+    }
+    CATENA_HD Value whole(std::int64_t slot) const { return numbers_at<positions>(s.whole, slot); }
+    CATENA_HD void set_whole(std::int64_t slot, Value const& value) const { put_numbers<positions>(s.whole, slot, value); }
+    CATENA_HD Value before(std::int64_t slot) const { return numbers_at<positions>(s.before, slot); }
+    CATENA_HD void set_before(std::int64_t slot, Value const& value) const { put_numbers<positions>(s.before, slot, value); }
 };
 
 }  // namespace catena

@@ -77,13 +77,13 @@ struct Resting {
 /// What joins segments with their biases, whatever they are made of.
 template <class Leaf>
 struct JoinsBoth {
-    static constexpr bool descends = true, keeps_nodes = true;
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
     using Joint = typename Sweeps::Joint;
     using Directions = typename Sweeps::Directions;
     using Node = typename Sweeps::Node;
+    static constexpr bool descends = true, keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
     Sweeps s;
 
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
@@ -257,6 +257,60 @@ struct Evaluation : JoinsBoth<Leaf> {
     }
 };
 
+/// MatrixSweep and BiasSweep at once, with the same bits. What joins a part's bodies is found again on the way down, not kept: where bodies
+/// are many, memory takes longer than that.
+template <class Leaf>
+struct ForgetfulSweeps : JoinsBoth<Leaf> {
+    static constexpr bool goes_short = false;
+    using Base = JoinsBoth<Leaf>;
+    using Base::K, Base::s;
+    using typename Base::Directions, typename Base::Segment, typename Base::Node;
+    using Bodies = Resting<Leaf>;
+    using Part = typename Bodies::Part;
+    Bodies bodies;
+    AccelerationsView out;
+
+    CATENA_HD Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
+    CATENA_HD Segment part(Run const& run, int p, Part const& part) const {
+        return join_bodies(run, p, part, [](int, Node const&) {});
+    }
+    template <bool /*unroll*/>
+    CATENA_HD void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
+        std::int64_t const begin = begin_of(run, p);
+        int const last = static_cast<int>(end_of(run, p) - begin) - 1;
+        HalfDisassembled<double, K> at[part_length - 2];  // of the joints between the first body's and the last one's
+        Directions at_last = first;
+        join_bodies(run, p, part, [&](int i, Node const& node) {
+            auto const half = half_disassemble(node.joint, node.offset, first);
+            if (i == last)
+                at_last = disassemble(half, next);
+            else
+                at[i - 1] = half;
+        });
+        each_body_back<unrolled<K>>(0, last + 1, [&](int i) {
+            Directions const at_i = i == last ? at_last : i == 0 ? first : disassemble(at[i - 1], next);
+            bodies.accelerate(part, i, at_i, next, out);
+            store_forces(s.leaf.group(), out, begin + i, at_i, next);
+            next = at_i;
+        });
+    }
+
+  private:
+    /// see(i, node) of all joints but the first body's.
+    template <class See>
+    CATENA_HD Segment join_bodies(Run const& run, int p, Part const& part, See const& see) const {
+        std::int64_t const begin = begin_of(run, p);
+        Segment segment = bodies.segment(bodies.body(part, 0));
+        each_body<unrolled<K>>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
+            auto const body = bodies.body(part, i);
+            Node node;
+            segment = this->joined(segment, bodies.segment(body), {begin + i, body.restricted}, node);
+            see(i, node);
+        });
+        return segment;
+    }
+};
+
 /// MatrixSweep and BiasSweep at once.
 template <class Leaf>
 struct BothSweeps : JoinsBoth<Leaf> {
@@ -267,6 +321,8 @@ struct BothSweeps : JoinsBoth<Leaf> {
     MatrixSweep<Leaf> matrices;
     BiasSweep<Leaf> biases;
 
+    /// For runs that are apart from the stages above them (StagePlan).
+    ForgetfulSweeps<Leaf> apart() const { return {{this->s}, {this->s.leaf, this->s.restricted, biases.loads}, biases.out}; }
     CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
     CATENA_HD Segment part(Run const& run, int p, Part read) const {
         auto const matrix = matrices.part(run, p, read);  // whose joints the biases need

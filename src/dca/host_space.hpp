@@ -70,9 +70,6 @@ class HostSpace : public HostAccess {
       private:
         ChainGroup const& group_;
     };
-    /// Lists of items level by level: those of a level are independent, the next level's need them.
-    template <class T>
-    using Levels = std::span<std::vector<T> const>;
     /// `count` records, zero at first.
     template <class T, dca::Order order>
     class Records {
@@ -95,6 +92,21 @@ class HostSpace : public HostAccess {
         std::span<dca::Run const> runs_;
         std::span<std::vector<dca::Merge> const> levels_;
         std::span<dca::Root const> roots_;
+    };
+
+    /// Of scans along the chains: of_run(run) is a run's value, joined(inboard, outboard) what two neighbours make, and what lies before a
+    /// root is in before(its slot). whole(), set_whole(), before(), set_before() are by slot; after the way up whole() of a segment is what
+    /// the way down needs, but for what other ranks see, after it before() of every run is known.
+    class ScanTree {
+      public:
+        ScanTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
+                 std::vector<dca::Root> const& /*roots*/, std::int64_t /*slots*/)
+            : runs_(runs), levels_(levels) {}
+
+      private:
+        friend class HostSpace;
+        std::span<dca::Run const> runs_;
+        std::span<std::vector<dca::Merge> const> levels_;
     };
 
     /// Blocks of whole chains that the group has on this rank. A block has loops over its own bodies and tips, and sweeps over its own
@@ -122,20 +134,22 @@ class HostSpace : public HostAccess {
     void over(List<T> const& items, Action const& action) const {
         executor_->for_each(std::ssize(items), [&](std::int64_t i) { action(items[static_cast<std::size_t>(i)]); });
     }
-    template <class T, class Action>
-    void climb(Levels<T> const& levels, Action const& action) const {
-        for (std::vector<T> const& level : levels) over(List<T>(level), action);
+    /// A scan from the runs to the roots, and from the roots to the runs.
+    template <class Scan>
+    void climb(ScanTree const& tree, Scan const& scan) const {
+        over(tree.runs_, [&](dca::Run const& run) { scan.set_whole(run.slot, scan.of_run(run)); });
+        for (std::vector<dca::Merge> const& level : tree.levels_)
+            over(std::span(level),
+                 [&](dca::Merge const& m) { scan.set_whole(m.slot, scan.joined(scan.whole(m.inboard), scan.whole(m.outboard))); });
     }
-    template <class T, class Action>
-    void descend(Levels<T> const& levels, Action const& action) const {
-        for (std::size_t l = levels.size(); l-- > 0;) over(List<T>(levels[l]), action);
-    }
-    /// One after the other: over(items, first), climb(levels, up), descend(levels, down).
-    template <class Item, class T, class First, class Up, class Down>
-    void up_and_down(List<Item> const& items, Levels<T> const& levels, First const& first, Up const& up, Down const& down) const {
-        over(items, first);
-        climb(levels, up);
-        descend(levels, down);
+    template <class Scan>
+    void descend(ScanTree const& tree, Scan const& scan) const {
+        for (std::size_t l = tree.levels_.size(); l-- > 0;)
+            over(std::span(tree.levels_[l]), [&](dca::Merge const& m) {
+                auto const before = scan.before(m.slot);
+                scan.set_before(m.inboard, before);
+                scan.set_before(m.outboard, scan.joined(before, scan.whole(m.inboard)));
+            });
     }
     /// A sweep (tree_sweeps.hpp) from the leaves to the roots, and from the roots to the leaves.
     template <class Sweep>
@@ -152,8 +166,8 @@ class HostSpace : public HostAccess {
         over(tree.runs_, [&](dca::Run const& run) CATENA_WHOLE { descend_run(sweep, run); });
     }
     /// Both.
-    template <class Sweep>
-    void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
+    template <class AnyTree, class Sweep>
+    void climb_and_descend(AnyTree const& tree, Sweep const& sweep) const {
         climb(tree, sweep);
         descend(tree, sweep);
     }

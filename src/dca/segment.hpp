@@ -185,6 +185,23 @@ CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint, Vector<
     return solve_upper(joint.factor, joint.inboard * first + (joint.outboard * next + offset));
 }
 
+/// The same where the first force is known before the next one: what it needs of the joint's matrices then.
+template <class Real, int K>
+struct HalfDisassembled {
+    Symmetric<Real, K> factor;
+    Matrix<Real, K, K> outboard;
+    Vector<Real, K> offset, of_first;
+};
+template <class Real, int K>
+CATENA_HD HalfDisassembled<Real, K> half_disassemble(JointMatrix<Real, K> const& joint, Vector<Real, K> const& offset,
+                                                     Vector<Real, K> const& first) {
+    return {joint.factor, joint.outboard, offset, joint.inboard * first};
+}
+template <class Real, int K>
+CATENA_HD Vector<Real, K> disassemble(HalfDisassembled<Real, K> const& half, Vector<Real, K> const& next) {
+    return solve_upper(half.factor, half.of_first + (half.outboard * next + half.offset));
+}
+
 /// A joint passed on the way outwards from a known force: its own follows from the next one's, phi = gain phi_next + offset.
 template <class Real, int K>
 struct Elimination {

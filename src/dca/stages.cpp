@@ -53,6 +53,14 @@ class Planner {
         return slots;
     }
 
+    /// All levels from `level` on, up to `most` items to a block.
+    void add_upper(int level, std::int64_t most, std::vector<Stage>& stages) {
+        for (std::vector<std::int64_t> left = needed(level, end()); !left.empty(); left = needed(level, end())) {
+            int const end_level = std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(most));
+            stages.push_back(stage(needed(level, end_level), most, level, end_level));
+            level = end_level;
+        }
+    }
     /// Levels `first` to `end_level` - 1 above these items, up to `width` of them to a block.
     Stage stage(std::vector<std::int64_t> const& items, std::int64_t width, int first, int end_level) {
         Stage s;
@@ -131,8 +139,8 @@ class Planner {
             Range& range = s.merge[static_cast<std::size_t>(joined.block * s.levels + l)];
             if (range.begin == range.end) range.begin = range.end = std::ssize(s.merges);
             ++range.end;
-            s.merges.push_back(
-                {inboard.place, outboard.place, outboard.next_place, restricted_[static_cast<std::size_t>(m.joint)], m.joint});
+            std::int32_t const restricted = restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(m.joint)];
+            s.merges.push_back({inboard.place, outboard.place, outboard.next_place, restricted, m.joint});
         }
     }
     static void sort_by_block(Stage& s) {
@@ -203,6 +211,28 @@ std::int64_t width_of_runs(std::int64_t runs, bool apart, StageSizes const& size
     return std::min(sizes.most, small ? std::max(fewest_of_block, bit_ceil((runs - 1) / sizes.together + 1)) : at_once);
 }
 
+ScanStage scan_stage_of(Stage const& stage) {
+    ScanStage s;
+    s.levels = stage.levels, s.of_runs = stage.of_runs, s.width = stage.width;
+    for (StageItem const& item : stage.items) s.slot.push_back(static_cast<std::int32_t>(item.slot));
+    for (StageMerge const& m : stage.merges) s.merges.push_back({m.inboard, m.outboard});
+    for (StageBlock const& block : blocks_of(stage)) {
+        Range top{std::ssize(s.tops), 0};
+        for (std::int64_t i = block.root.begin; i < block.root.end; ++i) {
+            StageRoot const& closed = stage.roots[static_cast<std::size_t>(i)];
+            s.tops.push_back({closed.place, static_cast<std::int32_t>(closed.root.slot)});
+        }
+        for (std::int64_t i = block.up.begin; i < block.up.end; ++i) {
+            Handed const& up = stage.segments_up[static_cast<std::size_t>(i)];
+            s.tops.push_back({up.place, static_cast<std::int32_t>(up.at)});
+        }
+        top.end = std::ssize(s.tops);
+        s.blocks.push_back({block.item, block.merge, top});
+    }
+    s.level_end = level_ends_of(stage);
+    return s;
+}
+
 }  // namespace
 
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
@@ -217,12 +247,23 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
         plan.stages.push_back(planner.stage(planner.runs(), width, 0, level));
         plan.stages.back().of_runs = !plan.runs_apart;
     }
-    for (std::vector<std::int64_t> left = planner.needed(level, planner.end()); !left.empty();
-         left = planner.needed(level, planner.end())) {
-        int const end_level = std::ssize(left) <= sizes.most ? planner.end() : std::min(planner.end(), level + levels_above(sizes.most));
-        plan.stages.push_back(planner.stage(planner.needed(level, end_level), sizes.most, level, end_level));
-        level = end_level;
+    planner.add_upper(level, sizes.most, plan.stages);
+    return plan;
+}
+
+std::vector<ScanStage> plan_scan(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
+                                 std::vector<Root> const& roots, std::int64_t slots, std::int64_t most) {
+    Planner planner(runs, levels, roots, slots, {});
+    std::vector<Stage> stages;
+    int level = 0;
+    if (!runs.empty()) {
+        level = std::ssize(runs) <= most ? planner.end() : std::min(planner.end(), levels_above(most));
+        stages.push_back(planner.stage(planner.runs(), most, 0, level));
+        stages.back().of_runs = true;
     }
+    planner.add_upper(level, most, stages);
+    std::vector<ScanStage> plan;
+    for (Stage const& stage : stages) plan.push_back(scan_stage_of(stage));
     return plan;
 }
 

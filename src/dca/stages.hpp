@@ -90,6 +90,32 @@ int threads_for(Stage const&, StageSizes const&);
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
                       std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes);
 
+/// A scan's launches, as a sweep's stages: values of segments join on the way up, what lies before them is handed out on the way down.
+/// The joined value takes the inboard one's place, and that the outboard one's, which needs it on the way down.
+struct ScanMerge {
+    std::int32_t inboard = 0, outboard = 0;  // places
+};
+/// What is complete in its block and has what lies before it from elsewhere.
+struct ScanTop {
+    std::int32_t place = 0, slot = 0;
+};
+struct ScanBlock {
+    Range item, merge, top;
+};
+struct ScanStage {
+    int levels = 0;
+    bool of_runs = false;            // items are the schedule's runs
+    std::int64_t width = 0;          // most items of a block
+    std::vector<std::int32_t> slot;  // of items
+    std::vector<ScanMerge> merges;
+    std::vector<ScanTop> tops;
+    std::vector<ScanBlock> blocks;
+    std::vector<std::int32_t> level_end;  // as level_ends_of
+};
+/// Up to `most` items to a block, a power of two.
+std::vector<ScanStage> plan_scan(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
+                                 std::vector<Root> const& roots, std::int64_t slots, std::int64_t most);
+
 /// Chains that one thread of the host takes whole: nothing is shared.
 struct BlockPlan {
     int levels = 0;

@@ -163,7 +163,7 @@ class TreeSolver final : public ChainSolver {
 
     /// Whether both sweeps in one, with the bits of one after the other, save what is kept between them: what several runs side by side
     /// compute again, and launches.
-    static constexpr bool may_pay_at_once = !Leaf::at_once && (has_lanes || (goes_short && Space::by_launches));
+    static constexpr bool may_pay_at_once = !Leaf::at_once && (has_lanes || (Leaf::in_joints && K <= 5 && Space::by_launches));
     bool pays_at_once() const {
         if constexpr (has_lanes) return aside_.has_value();
         return group_.partition.trees.front().run_length > 1;

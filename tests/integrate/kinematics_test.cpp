@@ -1,19 +1,21 @@
-// The scan along chains: the way from joint to joint, and the same bits on any number of ranks.
+// The scan along chains: the way from joint to joint, and the same bits on any number of ranks and by the GPU's kernels.
 #include <gtest/gtest.h>
 
 #include "chain/joint_kinematics.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
+#include "tests/support/scan_space.hpp"
 
 namespace catena::test {
 namespace {
 
-class Moved {
+template <class Space>
+class MovedIn {
   public:
-    Moved(Scene const& scene, bool pairwise, Communicator const& communicator)
+    MovedIn(Scene const& scene, bool pairwise, Communicator const& communicator)
         : groups_(make_groups(scene, Axes::joint, Handles::projected, pairwise, communicator)),
           state_(make_joint_state(*groups_[0], scene)),
-          kinematics_(*groups_[0], HostSpace(*executor_), communicator),
+          kinematics_(*groups_[0], Space(*executor_), communicator),
           motion_(*groups_[0], HostSpace(*executor_)) {
         kinematics_.evaluate(state_.view(), true, motion_.view());
     }
@@ -50,9 +52,10 @@ class Moved {
     std::unique_ptr<Executor> executor_ = serial_executor();
     std::vector<std::unique_ptr<ChainGroup>> groups_;
     JointState state_;
-    JointKinematics<HostSpace> kinematics_;
+    JointKinematics<Space> kinematics_;
     BodyMotion motion_;
 };
+using Moved = MovedIn<HostSpace>;
 
 Scene two_chains(RandomJoints joints, std::size_t bodies, Base base) {
     Scene scene;
@@ -85,6 +88,26 @@ TEST(Kinematics, GoesFromJointToJoint) {
                 }
                 moved.expect_the_same_without_positions();
             }
+}
+
+TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
+    Communicator const& world = catena::testing::world();
+    ScanSpace::most_stages = 0;
+    for (RandomJoints const joints : all_joints)
+        for (std::size_t const bodies : {1, 16, 17, 300, 1031, 5000})
+            for (std::int64_t const most : {2, 8, 256}) {
+                if (bodies > 1031 && (most == 2 || joints != RandomJoints::helical)) continue;
+                Scene const scene = two_chains(joints, bodies, Base::free);
+                ScanSpace::most = most;
+                Moved const by_loops(scene, false, world);
+                MovedIn<ScanSpace> by_kernels(scene, false, world);
+                for (std::int64_t k = 0; k < by_loops.group().size; ++k)
+                    ASSERT_EQ(by_kernels.of(k), by_loops.of(k)) << "body " << k << " of " << bodies << ", " << most << " items a block";
+                by_kernels.expect_the_same_without_positions();
+            }
+    if (world.size() == 1) {
+        EXPECT_GE(ScanSpace::most_stages, 6U);
+    }
 }
 
 TEST(Kinematics, HasTheSameBitsOnAnyNumberOfRanks) {

@@ -9,7 +9,7 @@
 
 // After CUDA's words.
 #include "cuda/short_chain.cuh"
-#include "cuda/stage_kernels.cuh"
+#include "cuda/stage_walk.cuh"
 
 namespace catena::test {
 
@@ -68,24 +68,18 @@ class StageSpace : public HostSpace {
 
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
-        climb_below(tree, tree.plan_.stages.size(), sweep);
+        walk(tree).climb(sweep);
     }
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
-        descend_below(tree, tree.plan_.stages.size(), sweep);
+        walk(tree).descend(sweep);
     }
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
-        auto const& stages = tree.plan_.stages;
-        if (stages.empty()) return;
+        if (tree.plan_.stages.empty()) return;
         if constexpr (Sweep::goes_short)
             if (tree.short_.warps > 0 && turn_short(tree.short_, sweep)) return;
-        bool const together =
-            stages.size() > 1 && stages[stages.size() - 2].blocks() <= tree.sizes_.together && stages.back().blocks() == 1;
-        std::size_t const apart = stages.size() - (together ? 2 : 1);
-        climb_below(tree, apart, sweep);
-        turn(tree, stages[apart], together ? &stages.back() : nullptr, sweep);
-        descend_below(tree, apart, sweep);
+        walk(tree).climb_and_descend(sweep);
     }
 
   private:
@@ -104,33 +98,6 @@ class StageSpace : public HostSpace {
                 tree.blocks_[which].data(),
                 tree.level_ends_[which].data()};
     }
-    static int threads_for(Tree const& tree, dca::Stage const& stage) {
-        int const wanted = dca::threads_for(stage, tree.sizes_);
-        return stage.of_runs ? wanted : std::min(wanted, tree.threads_);
-    }
-    template <class Sweep>
-    static std::size_t numbers(cuda::kernels::DeviceStage const& stage, int of_threads) {
-        return static_cast<std::size_t>(cuda::kernels::BlockOfStage<Sweep>::size(stage, of_threads));
-    }
-    template <class Sweep>
-    static void launch_stage(void (*kernel)(cuda::kernels::DeviceStage, Sweep), Tree const& tree, dca::Stage const& stage,
-                             Sweep const& sweep) {
-        int const threads = threads_for(tree, stage);
-        auto const here = view(tree, stage);
-        cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
-    }
-    template <class Sweep>
-    static void turn(Tree const& tree, dca::Stage const& lower, dca::Stage const* upper, Sweep const& sweep) {
-        int const threads = std::max(threads_for(tree, lower), upper ? threads_for(tree, *upper) : 0);
-        auto const here = view(tree, lower), above = upper ? view(tree, *upper) : cuda::kernels::DeviceStage{};
-        if (upper)
-            seen.blocks_of_clusters.insert(here.blocks);
-        else
-            ++seen.turns_alone;
-        cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads),
-                              numbers<Sweep>(here, threads) + (upper ? numbers<Sweep>(above, threads) : 0), upper ? here.blocks : 1},
-                             cuda::kernels::turn<Sweep>, here, above, sweep);
-    }
     template <class Sweep>
     static bool turn_short(cuda::kernels::ShortChain const& chain, Sweep const& sweep) {
         cuda::kernels::ShortGrid const grid = cuda::kernels::grid_of_short<Sweep>(chain);
@@ -140,25 +107,76 @@ class StageSpace : public HostSpace {
                              chain, sweep);
         return true;
     }
-    template <class Sweep>
-    static void climb_below(Tree const& tree, std::size_t stages, Sweep const& sweep) {
-        if (tree.plan_.runs_apart)
-            over_runs(tree, sweep, cuda::kernels::grid_of_climb<Sweep>(std::ssize(tree.runs_)), cuda::kernels::climb_runs<Sweep>);
-        ++(tree.plan_.runs_apart ? seen.runs_apart : seen.runs_in_stages);
-        seen.most_stages = std::max(seen.most_stages, tree.plan_.stages.size());
-        for (std::size_t i = 0; i < stages; ++i) launch_stage(cuda::kernels::climb<Sweep>, tree, tree.plan_.stages[i], sweep);
-    }
-    template <class Sweep>
-    static void descend_below(Tree const& tree, std::size_t stages, Sweep const& sweep) {
-        for (std::size_t i = stages; i-- > 0;) launch_stage(cuda::kernels::descend<Sweep>, tree, tree.plan_.stages[i], sweep);
-        if (tree.plan_.runs_apart)
-            over_runs(tree, sweep, cuda::kernels::grid_of_descent<Sweep>(std::ssize(tree.runs_)), cuda::kernels::descend_runs<Sweep>);
-    }
-    template <class Sweep>
-    static void over_runs(Tree const& tree, Sweep const& sweep, cuda::kernels::RunsGrid const& grid,
-                          void (*kernel)(dca::Run const*, std::int64_t, Sweep)) {
-        cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_.data(), grid.runs, sweep);
-    }
+    /// Of StageWalk.
+    struct Launches {
+        Tree const& tree;
+
+        std::size_t stages() const { return tree.plan_.stages.size(); }
+        bool runs_apart() const { return tree.plan_.runs_apart; }
+        bool together() const {
+            auto const& stages = tree.plan_.stages;
+            return stages.size() > 1 && stages[stages.size() - 2].blocks() <= tree.sizes_.together && stages.back().blocks() == 1;
+        }
+        template <class Sweep>
+        void climb(std::size_t i, Sweep const& sweep) const {
+            launch(cuda::kernels::climb<Sweep>, stage(i), sweep);
+        }
+        template <class Sweep>
+        void descend(std::size_t i, Sweep const& sweep) const {
+            launch(cuda::kernels::descend<Sweep>, stage(i), sweep);
+        }
+        template <class Sweep>
+        void turn(std::size_t i, Sweep const& sweep) const {
+            see_stages();
+            bool const two = together();
+            int const threads = std::max(threads_for(stage(i)), two ? threads_for(stage(i + 1)) : 0);
+            auto const here = view(tree, stage(i)), above = two ? view(tree, stage(i + 1)) : cuda::kernels::DeviceStage{};
+            if (two)
+                seen.blocks_of_clusters.insert(here.blocks);
+            else
+                ++seen.turns_alone;
+            cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads),
+                                  numbers<Sweep>(here, threads) + (two ? numbers<Sweep>(above, threads) : 0), two ? here.blocks : 1},
+                                 cuda::kernels::turn<Sweep>, here, above, sweep);
+        }
+        template <class Sweep>
+        void climb_runs(Sweep const& sweep) const {
+            over_runs(cuda::kernels::climb_runs<Sweep>, cuda::kernels::grid_of_climb<Sweep>(std::ssize(tree.runs_)), sweep);
+        }
+        template <class Sweep>
+        void descend_runs(Sweep const& sweep) const {
+            over_runs(cuda::kernels::descend_runs<Sweep>, cuda::kernels::grid_of_descent<Sweep>(std::ssize(tree.runs_)), sweep);
+        }
+
+      private:
+        dca::Stage const& stage(std::size_t i) const { return tree.plan_.stages[i]; }
+        int threads_for(dca::Stage const& stage) const {
+            int const wanted = dca::threads_for(stage, tree.sizes_);
+            return stage.of_runs ? wanted : std::min(wanted, tree.threads_);
+        }
+        void see_stages() const {
+            ++(tree.plan_.runs_apart ? seen.runs_apart : seen.runs_in_stages);
+            seen.most_stages = std::max(seen.most_stages, stages());
+        }
+        template <class Sweep>
+        static std::size_t numbers(cuda::kernels::DeviceStage const& stage, int of_threads) {
+            return static_cast<std::size_t>(cuda::kernels::BlockOfStage<Sweep>::size(stage, of_threads));
+        }
+        template <class Sweep>
+        void launch(void (*kernel)(cuda::kernels::DeviceStage, Sweep), dca::Stage const& stage, Sweep const& sweep) const {
+            see_stages();
+            int const threads = threads_for(stage);
+            auto const here = view(tree, stage);
+            cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
+        }
+        template <class Sweep>
+        void over_runs(void (*kernel)(dca::Run const*, std::int64_t, Sweep), cuda::kernels::RunsGrid const& grid,
+                       Sweep const& sweep) const {
+            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_.data(), grid.runs,
+                                 sweep);
+        }
+    };
+    static cuda::StageWalk<Launches> walk(Tree const& tree) { return cuda::StageWalk<Launches>({tree}); }
 };
 
 }  // namespace catena::test
