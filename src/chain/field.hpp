@@ -42,7 +42,7 @@ template <class Real, int D>
 class BasicField {
   public:
     BasicField() = default;
-    explicit BasicField(std::int64_t size) : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_), Real(0)) {}
+    explicit BasicField(std::int64_t size) : pitch_(padded(size)), size_(size), data_(static_cast<std::size_t>(D * pitch_)) {}
 
     std::int64_t size() const { return size_; }
     /// All its memory, however it is laid out.

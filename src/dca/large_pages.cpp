@@ -1,15 +1,18 @@
 #include "dca/large_pages.hpp"
 
-#include <atomic>
-#include <cstdint>
 #include <cstdlib>
 #include <new>
 
 #if defined(__linux__)
 #include <sys/mman.h>
+
+#include <atomic>
+#include <cstdint>
 #endif
 
 namespace catena {
+
+#if defined(__linux__)
 namespace {
 
 constexpr std::size_t page = std::size_t{2} << 20;
@@ -22,21 +25,34 @@ std::size_t next_shift() {
     return step * (arrays.fetch_add(1, std::memory_order_relaxed) % steps);
 }
 
+std::size_t whole_pages(std::size_t bytes) { return (bytes + page - 1) / page * page; }
+
 }  // namespace
 
-void* allocate_large(std::size_t bytes) {
-    std::size_t const shift = next_shift();
-    void* place = nullptr;
-    if (::posix_memalign(&place, page, bytes + shift) != 0) throw std::bad_alloc();
-#if defined(__linux__)
-    static_cast<void>(::madvise(place, bytes + shift, MADV_HUGEPAGE));  // where that is refused, pages are small
-#endif
-    return static_cast<std::byte*>(place) + shift;
+void* allocate_zeros(std::size_t bytes) {
+    std::size_t const shift = next_shift(), length = whole_pages(shift + bytes);
+    void* const found = ::mmap(nullptr, length + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (found == MAP_FAILED) throw std::bad_alloc();
+    std::size_t const before = whole_pages(reinterpret_cast<std::uintptr_t>(found)) - reinterpret_cast<std::uintptr_t>(found);
+    std::byte* const begin = static_cast<std::byte*>(found) + before;
+    if (before > 0) ::munmap(found, before);
+    ::munmap(begin + length, page - before);
+    static_cast<void>(::madvise(begin, length, MADV_HUGEPAGE));  // where that is refused, pages are small
+    return begin + shift;
 }
 
-void free_large(void* place) {
-    auto const shift = reinterpret_cast<std::uintptr_t>(place) % page;
-    std::free(static_cast<std::byte*>(place) - shift);
+void free_zeros(void* place, std::size_t bytes) {
+    std::size_t const shift = reinterpret_cast<std::uintptr_t>(place) % page;
+    ::munmap(static_cast<std::byte*>(place) - shift, whole_pages(shift + bytes));
 }
+#else
+void* allocate_zeros(std::size_t bytes) {
+    void* const place = std::calloc(bytes, 1);
+    if (!place) throw std::bad_alloc();
+    return place;
+}
+
+void free_zeros(void* place, std::size_t /*bytes*/) { std::free(place); }
+#endif
 
 }  // namespace catena

@@ -41,7 +41,7 @@ using ConstDirectionsView = BasicDirectionsView<double const>;
 class DirectionsField {
   public:
     DirectionsField() = default;
-    DirectionsField(std::int64_t size, int directions) : pitch_(size | 1), data_(static_cast<std::size_t>(pitch_ * directions), 0.0) {}
+    DirectionsField(std::int64_t size, int directions) : pitch_(size | 1), data_(static_cast<std::size_t>(pitch_ * directions)) {}
     DirectionsView view() { return {data_.data(), pitch_}; }
     ConstDirectionsView view() const { return {data_.data(), pitch_}; }
 

@@ -92,6 +92,8 @@ class AbsoluteDynamics : public BeadHost {
     /// Positions by h along the velocities, impulses along the joints of the configuration updated last added in `sweeps` quasi-Newton
     /// sweeps so that the joints close at the end; velocities become the drift's. Collective.
     virtual void drift(double h, int sweeps) = 0;
+    /// One more sweep of the drift by h that was done last, as if it had been asked for at once; false: ask for it at once. Collective.
+    virtual bool close_further(double /*h*/) { return false; }
     /// Velocities between those of before and noise, which kick() then projects.
     virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;
     /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is. Collective.
@@ -106,7 +108,7 @@ class AbsoluteDynamics : public BeadHost {
     /// Everything that a checkpoint needs.
     virtual std::vector<StateArray> state() const = 0;
     virtual void set_state(std::vector<StateArray> const&) = 0;
-    /// Velocities of the last observe(): `velocity` (W) and for bodies `omega` (B).
+    /// `position`, for bodies `orientation`, and the velocities of the last observe(): `velocity` (W) and for bodies `omega` (B).
     virtual std::vector<StateArray> observed_state() const = 0;
     /// Accelerations and joint forces at the configuration, matrices and forces of now and the velocities observed last: one bias sweep.
     /// Collective.

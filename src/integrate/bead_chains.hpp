@@ -91,6 +91,9 @@ struct BeadChainsIn {
     CATENA_HD_IN_PLACE Vec3 noise(std::int64_t k, std::uint64_t seed, std::uint64_t step) const {
         return normal3(seed, step, places.piece_of(k).body_of(k), NoiseStage::thermostat);
     }
+    CATENA_HD_IN_PLACE void draw_velocity(std::int64_t k, double kt, std::uint64_t seed) const {
+        velocity.store(k, std::sqrt(kt * inverse_mass.at(k, 0)) * normal3(seed, 0, places.piece_of(k).body_of(k), NoiseStage::start));
+    }
     CATENA_HD_IN_PLACE void thermalise(std::int64_t k, double keep, double spread, Vec3 const& noise) const {
         velocity.store(k, plus_scaled(keep * velocity.load(k), spread * std::sqrt(inverse_mass.at(k, 0)), noise));
     }

@@ -125,6 +125,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         put_at_step_ = never;
         parts().drift(h, sweeps);
     }
+    bool close_further(double h) override {
+        parts().close(h);
+        return true;
+    }
     void thermalise(Thermostat const& thermostat, std::uint64_t step) override { parts().thermalise(thermostat, step); }
     /// Block by block where it pays.
     void step(ConstrainedStep const& step) override {
@@ -132,13 +136,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     }
 
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
-        space_.edit(velocity_, [&](View<3> velocity) {
-            for (dca::Piece const& piece : group_.pieces)
-                for (std::int64_t k = piece.local; of_chain[piece.chain] && k < piece.local + piece.count; ++k) {
-                    Vec3 const noise = normal3(seed, 0, static_cast<std::uint64_t>(group_.scene_index(k)), NoiseStage::start);
-                    velocity.store(k, std::sqrt(kt * group_.inverse_mass.view().at(k, 0)) * noise);
-                }
-        });
+        for (dca::Piece const& piece : group_.pieces)
+            if (of_chain[piece.chain])
+                space_.for_each(piece.count, [c = chains(), kt, seed, first = piece.local] CATENA_LAMBDA(std::int64_t i) {
+                    c.draw_velocity(first + i, kt, seed);
+                });
         kick(0.0);
     }
 
@@ -162,7 +164,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
         space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
     }
-    std::vector<StateArray> observed_state() const override { return {to_array<3>("velocity", space_.read(observed_).view())}; }
+    std::vector<StateArray> observed_state() const override {
+        solver_->check();
+        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(observed_).view())};
+    }
 
     void evaluate() override {
         settle_forces();

@@ -40,13 +40,15 @@ struct BeadStep {
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void drift(double h, int sweeps) const {
         way.each_bead([c = c, h] CATENA_LAMBDA(std::int64_t k) { c.drift(k, h); });
-        for (int sweep = 0; sweep < sweeps; ++sweep) {
-            way.from_inboard();
-            way.each_bead([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
-            way.each_tip([c = c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_excess(i); });
-            way.close(c.bias, c.tip_bias, c.change);
-            way.each_bead([c = c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
-        }
+        for (int sweep = 0; sweep < sweeps; ++sweep) close(h);
+    }
+    CATENA_EITHER_SIDE
+    CATENA_HD_IN_PLACE void close(double h) const {
+        way.from_inboard();
+        way.each_bead([c = c] CATENA_LAMBDA(std::int64_t k) { c.set_excess(k); });
+        way.each_tip([c = c] CATENA_LAMBDA(std::int64_t i) { c.set_tip_excess(i); });
+        way.close(c.bias, c.tip_bias, c.change);
+        way.each_bead([c = c, per_step = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.close(k, per_step); });
     }
     CATENA_EITHER_SIDE
     CATENA_HD_IN_PLACE void thermalise(Thermostat const& t, std::uint64_t step) const {

@@ -51,45 +51,42 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
     std::size_t result = 0;
     auto const add = [&](ChainGroup const& group, auto const& row) {
         std::vector<double>& rows = own.rows[index_of(group)];
-        rows.reserve(static_cast<std::size_t>(group.size * own.width()));
-        for (std::int64_t k = 0; k < group.size; ++k) {
-            row(rows, k);
-            if (!joint_forces) continue;
-            Vector<double, 6> const& wrench = found[result].joint_force[static_cast<std::size_t>(k)];
-            rows.insert(rows.end(), wrench.data, wrench.data + 6);
-        }
+        rows.resize(static_cast<std::size_t>(group.size * own.width()));
+        executor_->for_each(group.size, [&](std::int64_t k) {
+            double* to = rows.data() + k * own.width();
+            auto const put = [&to](double const* numbers, int count) { to = std::copy_n(numbers, count, to); };
+            row(k, put);
+            if (joint_forces) put(found[result].joint_force[static_cast<std::size_t>(k)].data, 6);
+        });
         ++result;
     };
     for (auto const& group : absolute_) {
         bool const beads = group->group().beads;
-        std::vector<StateArray> const state = group->state(), observed = group->observed_state();
-        std::vector<double> const &x = array_named(state, "position").values, &v = array_named(observed, "velocity").values, none;
-        std::vector<double> const &q = beads ? none : array_named(state, "orientation").values,
-                                  &w = beads ? none : array_named(observed, "omega").values;
-        add(group->group(), [&](std::vector<double>& rows, std::int64_t k) {
-            auto const put = [&](std::vector<double> const& of, int n) {
-                rows.insert(rows.end(), of.begin() + n * k, of.begin() + n * (k + 1));
-            };
-            put(x, 3);
-            put(v, 3);
+        std::vector<StateArray> const observed = group->observed_state();
+        auto const of = [&](char const* name) { return array_named(observed, name).values.data(); };
+        double const *x = of("position"), *v = of("velocity"), *q = beads ? nullptr : of("orientation"), *w = beads ? nullptr : of("omega");
+        add(group->group(), [&](std::int64_t k, auto const& put) {
+            static constexpr double at_rest[] = {1, 0, 0, 0, 0, 0, 0};
+            put(x + 3 * k, 3);
+            put(v + 3 * k, 3);
             if (!turning) return;
-            if (beads) return static_cast<void>(rows.insert(rows.end(), {1, 0, 0, 0, 0, 0, 0}));
-            put(q, 4);
-            put(w, 3);
+            if (beads) return put(at_rest, 7);
+            put(q + 4 * k, 4);
+            put(w + 3 * k, 3);
         });
     }
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         BodyMotion const motion = dynamics->motion();
-        add(group, [&](std::vector<double>& rows, std::int64_t k) {
+        add(group, [&](std::int64_t k, auto const& put) {
             Vector<double, 4> const q = motion.orientation[k];
             Mat3 const turn = to_matrix(Quat{q[0], q[1], q[2], q[3]});
             Vec3 const omega = motion.omega[k], x = motion.origin[k] - turn * group.r1[k];
             Vec3 const v = turn * (motion.velocity[k] - cross(omega, group.r1[k]));
-            rows.insert(rows.end(), x.data, x.data + 3);
-            rows.insert(rows.end(), v.data, v.data + 3);
-            rows.insert(rows.end(), q.data, q.data + 4);
-            rows.insert(rows.end(), omega.data, omega.data + 3);
+            put(x.data, 3);
+            put(v.data, 3);
+            put(q.data, 4);
+            put(omega.data, 3);
         });
     }
     return own;
@@ -101,6 +98,12 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
     ChainSystem::Bodies bodies;
     bodies.first = first;
     ChainSystem::Snapshot& motion = bodies.motion;
+    std::size_t const count = values.size() / static_cast<std::size_t>(own.width());
+    motion.position.reserve(count);
+    motion.velocity.reserve(count);
+    motion.orientation.reserve(count);
+    motion.omega.reserve(count);
+    if (own.joint_forces) bodies.joint_force.reserve(count);
     for (auto row = values.begin(); row != values.end();) {
         auto const next = [&] { return *row++; };
         auto const three = [&] { return Vec3{{next(), next(), next()}}; };
@@ -146,6 +149,7 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
     std::vector<std::vector<double>> own(groups_.size());
     auto const add = [&](ChainGroup const& group, PotentialEnergy const& e) {
         std::vector<double>& rows = own[index_of(group)];
+        rows.reserve(static_cast<std::size_t>(group.size * width));
         for (auto k = std::size_t{0}; k < static_cast<std::size_t>(group.size); ++k) {
             rows.insert(rows.end(), {e.gravity[k], e.springs[k]});
             if (scene_.dynamics.fixman) rows.push_back(e.fixman[k]);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "error.hpp"
 
@@ -30,38 +31,47 @@ void ConstrainedIntegrator::observe() {
     for (AbsoluteDynamics* group : groups_) group->observe((pending_ - 0.5) * scheme_.step);
 }
 
-double ConstrainedIntegrator::error_after(int sweeps) {
-    double const h = scheme_.step / drifts();
-    double worst = 0;
-    for (AbsoluteDynamics* group : groups_) {
-        std::vector<StateArray> const before = group->state();
-        // Steps with implicit joints are long for what may start at rest.
-        if (is_implicit(scheme_.kind))
-            group->draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group->group().chain.size(), true));
-        group->kick(pending_ * scheme_.step);
-        group->drift(h, sweeps);
-        double const error = group->constraint_error();
-        group->set_state(before);
-        group->update_configuration();
-        worst = larger(worst, error);
-    }
-    return worst;
+/// The first drift of a step from the state of now.
+void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps) const {
+    // Steps with implicit joints are long for what may start at rest.
+    if (is_implicit(scheme_.kind)) group.draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group.group().chain.size(), true));
+    group.kick(pending_ * scheme_.step);
+    group.drift(scheme_.step / drifts(), sweeps);
 }
 
 /// Where so many suffice.
 bool ConstrainedIntegrator::choose_sweeps(int most) {
-    double before = std::numeric_limits<double>::infinity();
-    for (int sweeps = 1; sweeps <= most; ++sweeps) {
-        double const error = error_after(sweeps);
-        bool const at_rounding = error <= scheme_.tolerance && error > 0.5 * before;
-        if (error <= 0.01 * scheme_.tolerance || at_rounding) {
-            sweeps_ = std::min(sweeps + 1, most_sweeps);
-            return true;
+    std::vector<std::vector<StateArray>> before;
+    for (AbsoluteDynamics* group : groups_) before.push_back(group->state());
+    auto const put_back = [&](std::size_t g) {
+        groups_[g]->set_state(before[g]);
+        groups_[g]->update_configuration();
+    };
+    auto const error_after = [&](int sweeps) {
+        double worst = 0;
+        for (std::size_t g = 0; g < groups_.size(); ++g) {
+            if (sweeps == 1)
+                begin_trial(*groups_[g], sweeps);
+            else if (!groups_[g]->close_further(scheme_.step / drifts())) {
+                put_back(g);
+                begin_trial(*groups_[g], sweeps);
+            }
+            worst = larger(worst, groups_[g]->constraint_error());
         }
-        before = error;
+        return worst;
+    };
+    double error = std::numeric_limits<double>::infinity();
+    int sweeps = 0;
+    bool enough = false;
+    while (!enough && sweeps < most) {
+        double const last = std::exchange(error, error_after(++sweeps));
+        bool const at_rounding = error <= scheme_.tolerance && error > 0.5 * last;
+        enough = error <= 0.01 * scheme_.tolerance || at_rounding;
     }
-    last_error_ = before;
-    return false;
+    for (std::size_t g = 0; g < groups_.size(); ++g) put_back(g);
+    if (enough) sweeps_ = std::min(sweeps + 1, most_sweeps);
+    last_error_ = error;
+    return enough;
 }
 
 void ConstrainedIntegrator::choose_sweeps() {

@@ -45,7 +45,7 @@ class ConstrainedIntegrator {
 
   private:
     int drifts() const { return (is_langevin(scheme_.kind) ? 2 : 1) * parts_; }
-    double error_after(int sweeps);
+    void begin_trial(AbsoluteDynamics&, int sweeps) const;
     bool choose_sweeps(int most);
     ConstrainedScheme scheme_;
     std::vector<AbsoluteDynamics*> groups_;

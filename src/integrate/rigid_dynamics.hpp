@@ -181,7 +181,9 @@ class RigidDynamics final : public AbsoluteDynamics {
         if (rotors() > 0) space_.edit(rotor_, [&](View<3> view) { from_array<3>(array_named(arrays, "rotor"), view); });
     }
     std::vector<StateArray> observed_state() const override {
-        return {to_array<3>("velocity", space_.read(observed_velocity_).view()), to_array<3>("omega", space_.read(observed_omega_).view())};
+        solver_->check();
+        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(observed_velocity_).view()),
+                to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(observed_omega_).view())};
     }
 
     void evaluate() override {

@@ -119,8 +119,8 @@ void RunFolder::throw_kept() {
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-void RunFolder::put_topology(Frame const& part) {
-    keeping_failure([&] { topology_->put(part.positions); });
+void RunFolder::put_topology(Frame const& part, Executor const& executor) {
+    keeping_failure([&] { topology_->put(part.positions, executor); });
 }
 
 void RunFolder::end_topology() {

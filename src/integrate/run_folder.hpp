@@ -25,7 +25,7 @@ class RunFolder {
     void open(Topology const&, std::vector<std::string> const& columns);
     /// Whether the topology's files are wanted: the first state's parts, and the end of it.
     bool wants_topology() const { return !appends_; }
-    void put_topology(Frame const& part);
+    void put_topology(Frame const& part, Executor const&);
     void end_topology();
     /// How frames are written.
     FileWay const& frames_way() const { return frames_way_; }

@@ -35,8 +35,8 @@ json as_json(Traffic const& sum, std::int64_t steps) {
 
 class Run {
   public:
-    Run(Scene scene, Communicator const& communicator, RunOptions const& options)
-        : scene_(std::move(scene)),
+    Run(Scene const& scene, Communicator const& communicator, RunOptions const& options)
+        : scene_(scene),
           communicator_(communicator),
           options_(options),
           root_(communicator.rank() == 0),
@@ -114,7 +114,8 @@ class Run {
         folder_->open(sites_.topology(), observables_->columns());
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
-        system_.pass_bodies(false, [&](ChainSystem::Bodies const& bodies) { folder_->put_topology(sites_.part(bodies, false)); });
+        system_.pass_bodies(
+            false, [&](ChainSystem::Bodies const& bodies) { folder_->put_topology(sites_.part(bodies, false), system_.executor()); });
         folder_->end_topology();
     }
 
@@ -299,7 +300,7 @@ class Run {
         return s;
     }
 
-    Scene scene_;
+    Scene const& scene_;
     Communicator const& communicator_;
     RunOptions options_;
     bool root_;
@@ -327,8 +328,10 @@ json run_simulation(Scene const& scene, Communicator const& communicator, RunOpt
     if (!options.steps && scene.dynamics.steps == 0)
         throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
     // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
-    if (uses_joint_coordinates(scene.dynamics.integrator))
-        return Run(with_start_velocities(scene, communicator), communicator, options).run();
+    if (uses_joint_coordinates(scene.dynamics.integrator)) {
+        Scene const with_velocities = with_start_velocities(scene, communicator);
+        return Run(with_velocities, communicator, options).run();
+    }
     return Run(scene, communicator, options).run();
 }
 

@@ -11,6 +11,13 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
     topology_.title = scene.title;
     topology_.box = scene.box;
     topology_.si = scene.si;
+    std::size_t most = 0;
+    for (ChainSpec const& chain : scene.chains) most += std::max(chain.size(), chain.bead_count());
+    if (with_topology) {
+        sites_.reserve(most);
+        topology_.mass.reserve(most);
+        topology_.residue.reserve(most);
+    }
     for (ChainSpec const& chain : scene.chains) {
         std::size_t const first = next_site_;
         add(chain, with_topology);
@@ -70,6 +77,7 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities) const {
     part.first_site = begin != sites_.end() ? begin->site : next_site_;
     part.first_body = turning != turning_.end() ? turning->number : next_turning_;
     ChainSystem::Snapshot const& s = bodies.motion;
+    part.positions.reserve(s.position.size());
     for (auto site = begin; site != sites_.end() && site->body < end; ++site) {
         std::size_t const k = site->body - first;
         Mat3 const turn = to_matrix(s.orientation[k]);

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "dca/executor.hpp"
 #include "dca/linear.hpp"
 #include "dca/rotation.hpp"
 #include "io/file_way.hpp"
@@ -87,8 +88,8 @@ class TopologyWriter {
   public:
     TopologyWriter(std::string const& folder, Topology const&);
     ~TopologyWriter();
-    /// The next sites' places.
-    void put(std::vector<Vec3> const& positions);
+    /// The next sites' places; their lines are made by the executor's threads.
+    void put(std::vector<Vec3> const& positions, Executor const&);
     /// Returns the paths written.
     std::vector<std::string> finish();
 

@@ -76,23 +76,27 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::write(std::string_view text) {
+    if (buffer_.size() + text.size() >= buffer_size) flush();
+    if (text.size() >= buffer_size) return hand_over(text);
     buffer_ += text;
-    if (buffer_.size() >= buffer_size) flush();
 }
 
 void OutputFile::flush() {
-    std::string_view rest = buffer_;
+    hand_over(buffer_);
+    buffer_.clear();
+}
+
+void OutputFile::hand_over(std::string_view rest) {
     while (!rest.empty()) {
         ssize_t const written = ::write(descriptor_, rest.data(), rest.size());
         if (written < 0 && errno == EINTR) continue;
         if (written < 0) {
             int const error = errno;
-            buffer_ = rest;
+            buffer_ = std::string(rest);
             fail("write", name_, error);
         }
         rest.remove_prefix(static_cast<std::size_t>(written));
     }
-    buffer_.clear();
 }
 
 void OutputFile::sync() {

@@ -38,6 +38,8 @@ class OutputFile {
     std::string const& name() const { return name_; }
 
   private:
+    /// What the system does not take stays in the buffer.
+    void hand_over(std::string_view rest);
     OutputFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
     int descriptor_ = -1;
     std::string name_, buffer_;

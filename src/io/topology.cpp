@@ -1,11 +1,15 @@
 // topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) and, where its columns are too narrow, topology.cif.
+#include <fmt/compile.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <optional>
+#include <span>
 
+#include "io/decimals.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
 
@@ -26,7 +30,7 @@ std::string plain(std::string_view text) {
 /// Serial numbers as they are up to 99,999, then hybrid-36 (http://cci.lbl.gov/hybrid_36): A0000, A0001, ..., ZZZZZ, a0000, ...
 std::string serial(std::int64_t number) {
     constexpr std::int64_t letters = 26 * 36 * 36 * 36 * 36;
-    if (number <= most_pdb_serials) return fmt::format("{:5}", number);
+    if (number <= most_pdb_serials) return fmt::format(FMT_COMPILE("{:5}"), number);
     std::int64_t rest = number - most_pdb_serials - 1;
     bool const lower = rest >= letters;
     rest = rest % letters + 10 * 36 * 36 * 36 * 36;
@@ -39,12 +43,11 @@ std::string serial(std::int64_t number) {
 }
 
 /// A number in `width` columns with up to 3 decimals, fewer where it is large; blank-padded 0.000 where even its integer part is too wide.
-std::string fixed(double value, int width) {
-    for (int decimals = 3; decimals >= 0; --decimals) {
-        std::string const text = fmt::format("{:{}.{}f}", value, width, decimals);
-        if (text.size() == static_cast<std::size_t>(width)) return text;
-    }
-    return fmt::format("{:{}.3f}", 0.0, width);
+std::string fixed(double value, std::size_t width) {
+    for (int places = 3; places >= 0; --places)
+        if (Decimals const number(value, places); number.text().size() <= width)
+            return std::string(width - number.text().size(), ' ').append(number.text());
+    return fixed(0.0, width);
 }
 
 /// Angstrom for each unit of the scene: 10 for nm; with `units: si` the power of ten that makes a typical link 1 to 10 Angstrom long.
@@ -124,6 +127,11 @@ void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
 }  // namespace
 
 struct TopologyWriter::Files {
+    /// Of neighbouring sites, in both files.
+    struct Lines {
+        fmt::memory_buffer pdb, cif;
+    };
+
     Files(std::string const& folder, Topology const& of) : topology(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
         written.push_back((std::filesystem::path(folder) / "topology.pdb").string());
         for (Topology::Chain const& each : topology.chains) sites += each.count;
@@ -139,23 +147,47 @@ struct TopologyWriter::Files {
         begun = true;
     }
 
-    void add(Vec3 const& position) {
-        Topology::Chain const& in = topology.chains[chain];
-        auto const site = static_cast<std::size_t>(in.first + k);
-        std::string const residue = residue_of(topology, site);
-        Vec3 const x = scale * position;
-        pdb.write(fmt::format("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n", serial(in.first + k + 1), residue,
-                              chain_letters[chain % chain_letters.size()], (k + 1) % 10000, fixed(x[0], 8), fixed(x[1], 8),
-                              fixed(x[2], 8)));
-        if (cif) {
-            if (k == 0) name = chain_name(chain);
-            cif->write(fmt::format("ATOM {} C CA . {} {} 1 {} ? {:.3f} {:.3f} {:.3f} 1.00 0.00 {} {} 1\n", site + 1, residue, name, k + 1,
-                                   x[0], x[1], x[2], k + 1, name));
+    void put(std::span<Vec3 const> positions, Executor const& executor) {
+        std::int64_t const count = std::ssize(positions), parts = std::min<std::int64_t>(executor.threads(), count);
+        lines.resize(std::max(lines.size(), static_cast<std::size_t>(parts)));
+        executor.for_ranges(parts, static_cast<int>(count / std::max<std::int64_t>(parts, 1)), [&](std::int64_t first, std::int64_t last) {
+            for (std::int64_t part = first; part < last; ++part)
+                format(positions, count * part / parts, count * (part + 1) / parts, lines[static_cast<std::size_t>(part)]);
+        });
+        for (std::int64_t part = 0; part < parts; ++part) {
+            Lines const& of_part = lines[static_cast<std::size_t>(part)];
+            pdb.write({of_part.pdb.data(), of_part.pdb.size()});
+            if (cif) cif->write({of_part.cif.data(), of_part.cif.size()});
         }
-        if (++k < in.count) return;
-        pdb.write("TER\n");
-        k = 0;
-        ++chain;
+        next += count;
+    }
+
+    /// Sites [begin, end) of those that come next.
+    void format(std::span<Vec3 const> positions, std::int64_t begin, std::int64_t end, Lines& to) const {
+        to.pdb.clear();
+        to.cif.clear();
+        auto chain = std::upper_bound(topology.chains.begin(), topology.chains.end(), next + begin,
+                                      [](std::int64_t site, Topology::Chain const& each) { return site < each.first; });
+        --chain;
+        std::string name = chain_name(static_cast<std::size_t>(chain - topology.chains.begin()));
+        for (std::int64_t site = next + begin; site < next + end; ++site) {
+            if (site == chain->first + chain->count) name = chain_name(static_cast<std::size_t>(++chain - topology.chains.begin()));
+            std::int64_t const number = site - chain->first + 1;
+            add(site, number, name, static_cast<std::size_t>(chain - topology.chains.begin()),
+                scale * positions[static_cast<std::size_t>(site - next)], to);
+            if (number == chain->count) to.pdb.append(std::string_view("TER\n"));
+        }
+    }
+
+    /// `number`: in its chain, from 1.
+    void add(std::int64_t site, std::int64_t number, std::string const& name, std::size_t chain, Vec3 const& x, Lines& to) const {
+        std::string const residue = residue_of(topology, static_cast<std::size_t>(site));
+        fmt::format_to(std::back_inserter(to.pdb), FMT_COMPILE("ATOM  {}  CA  {:>3} {}{:4}    {}{}{}  1.00  0.00           C\n"),
+                       serial(site + 1), residue, chain_letters[chain % chain_letters.size()], number % 10000, fixed(x[0], 8),
+                       fixed(x[1], 8), fixed(x[2], 8));
+        if (!cif) return;
+        fmt::format_to(std::back_inserter(to.cif), FMT_COMPILE("ATOM {} C CA . {} {} 1 {} ? {} {} {} 1.00 0.00 {} {} 1\n"), site + 1,
+                       residue, name, number, Decimals(x[0], 3).text(), Decimals(x[1], 3).text(), Decimals(x[2], 3).text(), number, name);
     }
 
     void finish() {
@@ -172,10 +204,9 @@ struct TopologyWriter::Files {
     AtomicFile pdb;
     std::optional<AtomicFile> cif;
     std::vector<std::string> written;
-    std::int64_t sites = 0, k = 0;  // k: of the next site in its chain
-    std::size_t chain = 0;
+    std::vector<Lines> lines;          // a thread
+    std::int64_t sites = 0, next = 0;  // in all; the one that comes next
     double scale = 1;
-    std::string name;
     bool begun = false;
 };
 
@@ -183,9 +214,9 @@ TopologyWriter::TopologyWriter(std::string const& folder, Topology const& topolo
 
 TopologyWriter::~TopologyWriter() = default;
 
-void TopologyWriter::put(std::vector<Vec3> const& positions) {
+void TopologyWriter::put(std::vector<Vec3> const& positions, Executor const& executor) {
     if (!files_->begun) files_->begin(positions);
-    for (Vec3 const& x : positions) files_->add(x);
+    files_->put(positions, executor);
 }
 
 std::vector<std::string> TopologyWriter::finish() {
@@ -195,7 +226,7 @@ std::vector<std::string> TopologyWriter::finish() {
 
 std::vector<std::string> write_topology(std::string const& folder, Topology const& topology, Frame const& first) {
     TopologyWriter writer(folder, topology);
-    writer.put(first.positions);
+    writer.put(first.positions, *serial_executor());
     return writer.finish();
 }
 
