@@ -7,6 +7,8 @@
 
 namespace catena::cuda::kernels {
 
+constexpr int most_in_cluster = 8;  // any GPU that has clusters takes so many blocks
+
 template <class T>
 inline constexpr int numbers_of = static_cast<int>(sizeof(T) / sizeof(double));
 template <class T>

@@ -164,9 +164,8 @@ class CountingSpace : public HostAccess {
       public:
         ScanTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
                  std::int64_t slots) {
-            constexpr std::int64_t most = 256;  // kernels::most_of_scan
             count(runs);
-            for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, most)) {
+            for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, dca::most_of_scan)) {
                 count(stage.slot);
                 count(stage.merges);
                 count(stage.tops);
@@ -202,6 +201,8 @@ class CountingSpace : public HostAccess {
     void descend(AnyTree const&, Sweep const&) const {}
     template <class AnyTree, class Sweep>
     void climb_and_descend(AnyTree const&, Sweep const&) const {}
+    template <class Scan, class Action>
+    void climb_and_descend(ScanTree const&, Scan const&, std::int64_t, Action const&) const {}
     template <class Value>
     double largest(std::int64_t, Value const&) const {
         return 0;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cuda/clusters.hpp"
 #include "cuda/owners.hpp"
 #include "cuda/scan_kernels.cuh"
 
@@ -19,18 +20,20 @@ class DeviceScan {
     }
     template <class Scan>
     void climb(Scan const& scan, cudaStream_t stream) const {
-        climb_below(stages_.size(), scan, stream);
+        walk(stream).climb(scan);
     }
     template <class Scan>
     void descend(Scan const& scan, cudaStream_t stream) const {
-        descend_below(stages_.size(), scan, stream);
+        walk(stream).descend(scan);
     }
     template <class Scan>
     void climb_and_descend(Scan const& scan, cudaStream_t stream) const {
-        if (stages_.empty()) return;
-        climb_below(stages_.size() - 1, scan, stream);
-        launch(kernels::turn_scan<Scan>, stages_.back(), scan, stream);
-        descend_below(stages_.size() - 1, scan, stream);
+        walk(stream).climb_and_descend(scan);
+    }
+    /// As ScanWalk::at_once.
+    template <class Scan, class Action>
+    bool at_once(Scan const& scan, std::int64_t count, Action const& action, cudaStream_t stream) const {
+        return walk(stream).at_once(scan, count, action);
     }
 
   private:
@@ -57,22 +60,58 @@ class DeviceScan {
         Buffer<std::int32_t> level_end;
         kernels::DeviceScanStage view;
     };
-    template <class Scan>
-    void launch(void (*kernel)(kernels::DeviceScanStage, Scan), Stage const& stage, Scan const& scan, cudaStream_t stream) const {
-        auto const threads = static_cast<unsigned>((stage.view.width + 31) / 32 * 32);
-        std::size_t const bytes = sizeof(double) * static_cast<std::size_t>(kernels::BlockOfScan<Scan>::size(stage.view));
-        kernel<<<stage.view.blocks, threads, bytes, stream>>>(stage.view, scan);
-        check(cudaGetLastError(), "start a kernel");
-    }
-    template <class Scan>
-    void climb_below(std::size_t stages, Scan const& scan, cudaStream_t stream) const {
-        for (std::size_t i = 0; i < stages; ++i) launch(kernels::climb_scan<Scan>, stages_[i], scan, stream);
-    }
-    template <class Scan>
-    void descend_below(std::size_t stages, Scan const& scan, cudaStream_t stream) const {
-        for (std::size_t i = stages; i-- > 0;) launch(kernels::descend_scan<Scan>, stages_[i], scan, stream);
-    }
+    /// Of ScanWalk.
+    struct Launches {
+        DeviceScan const& tree;
+        cudaStream_t stream;
 
+        std::size_t stages() const { return tree.stages_.size(); }
+        unsigned blocks() const { return tree.stages_.front().view.blocks; }
+        template <class Scan>
+        void climb(std::size_t i, Scan const& scan) const {
+            launch(kernels::climb_scan<Scan>, i, scan);
+        }
+        template <class Scan>
+        void turn(std::size_t i, Scan const& scan) const {
+            launch(kernels::turn_scan<Scan>, i, scan);
+        }
+        template <class Scan>
+        void descend(std::size_t i, Scan const& scan) const {
+            launch(kernels::descend_scan<Scan>, i, scan);
+        }
+        template <class Scan, class Action>
+        bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
+            if (!tree.has_clusters_) return false;
+            kernels::DeviceScanStage const& stage = tree.stages_.front().view;
+            cudaLaunchAttribute cluster{};
+            cluster.id = cudaLaunchAttributeClusterDimension;
+            cluster.val.clusterDim = {kernels::blocks_of_turn(count), 1, 1};
+            cudaLaunchConfig_t config{};
+            config.gridDim = {kernels::blocks_of_turn(count)};
+            config.blockDim = {kernels::most_of_scan};
+            config.dynamicSmemBytes = bytes<Scan>(stage);
+            config.stream = stream;
+            config.attrs = &cluster;
+            config.numAttrs = 1;
+            check(cudaLaunchKernelEx(&config, kernels::turn_scan_then<Scan, Action>, stage, scan, count, action), "start a kernel");
+            return true;
+        }
+
+      private:
+        template <class Scan>
+        static std::size_t bytes(kernels::DeviceScanStage const& stage) {
+            return sizeof(double) * static_cast<std::size_t>(kernels::BlockOfScan<Scan>::size(stage));
+        }
+        template <class Scan>
+        void launch(void (*kernel)(kernels::DeviceScanStage, Scan), std::size_t i, Scan const& scan) const {
+            kernels::DeviceScanStage const& stage = tree.stages_[i].view;
+            kernel<<<stage.blocks, kernels::threads_of_scan(stage), bytes<Scan>(stage), stream>>>(stage, scan);
+            check(cudaGetLastError(), "start a kernel");
+        }
+    };
+    ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
+
+    bool has_clusters_ = knows_clusters();
     Buffer<dca::Run> runs_;
     std::vector<Stage> stages_;
 };

@@ -52,13 +52,12 @@ class DeviceSpace {
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
              std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
             : runs_(runs) {
-            int most_shared_bytes = 0;
-            dca::StageSizes const sizes = sizes_here(records, most_shared_bytes);
+            dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
             for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
             together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
-            if (sizes.together > 0) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes);
+            if (sizes.together > 0) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
         }
 
       private:
@@ -102,6 +101,7 @@ class DeviceSpace {
             check(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "say how large it is");
             return dca::stage_sizes(records, shared_bytes, knows_clusters() ? kernels::most_in_cluster : 0);
         }
+        int most_shared_bytes_ = 0;  // of a block
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;
         bool runs_apart_ = false, together_ = false;
@@ -149,6 +149,12 @@ class DeviceSpace {
     template <class Scan>
     void climb_and_descend(ScanTree const& tree, Scan const& scan) const {
         tree.climb_and_descend(scan, stream());
+    }
+    template <class Scan, class Action>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count, Action const& action) const {
+        if (tree.at_once(scan, count, action, stream())) return;
+        climb_and_descend(tree, scan);
+        for_each(count, action);
     }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
@@ -335,7 +341,9 @@ class DeviceSpace {
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
-            launch(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(static_cast<std::int64_t>(tree.runs_.size())), sweep);
+            auto const runs = static_cast<std::int64_t>(tree.runs_.size());
+            launch(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
+                   sweep);
         }
 
       private:

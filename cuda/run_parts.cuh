@@ -98,8 +98,32 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
     __syncthreads();
 }
 
+/// Where a thread keeps what a sweep wants of its part's joints on the way down, if it does (ForgetfulSweeps).
+template <class Sweep>
+struct KeptOfPart {
+    double* memory;
+    static __host__ __device__ std::size_t size(int threads) {
+        if constexpr (requires { Sweep::kept_of_part; })
+            return Sweep::kept_of_part * SharedRecords<typename Sweep::Kept>::size(threads);
+        else
+            return 0;
+    }
+    template <class Kept>
+    __device__ void put(int i, Kept const& kept) const {
+        records<Kept>(i).store(static_cast<int>(threadIdx.x), kept);
+    }
+    __device__ auto get(int i) const { return records<typename Sweep::Kept>(i).load(static_cast<int>(threadIdx.x)); }
+
+  private:
+    template <class Kept>
+    __device__ SharedRecords<Kept> records(int i) const {
+        int const threads = static_cast<int>(blockDim.x);
+        return {memory + i * SharedRecords<Kept>::size(threads), SharedRecords<Kept>::pitch_for(threads)};
+    }
+};
+
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a state a thread; `part`: as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
+/// those after it. `memory`: for a state a thread, and for what KeptOfPart has of all after these; `part`: as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
@@ -137,7 +161,11 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     }
     if (mine.part >= count) return;
     if (mine.part == 0 && count > 1) next = at_part.load(here + lanes);
-    sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next);
+    if constexpr (requires { Sweep::kept_of_part; })
+        sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next,
+                                    KeptOfPart<Sweep>{memory + SharedRecords<State>::size(static_cast<int>(blockDim.x))});
+    else
+        sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next);
 }
 
 }  // namespace catena::cuda::kernels

@@ -2,13 +2,15 @@
 // host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
+#include <algorithm>
+
+#include "cuda/cluster.cuh"
 #include "cuda/run_parts.cuh"
 #include "dca/stages.hpp"
 
 namespace catena::cuda::kernels {
 
-/// Items of a block, and threads.
-constexpr int most_of_scan = 256;
+using dca::most_of_scan;
 
 /// A stage of a scan on a device.
 struct DeviceScanStage {
@@ -123,6 +125,19 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage,
     block.climb();
     block.descend();
 }
+/// Of one block, and then action(k) for every body k: by one cluster.
+template <class Scan, class Action>
+__global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
+    if (blockIdx.x == 0) {
+        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
+        block.climb();
+        block.descend();
+    }
+    meet_cluster();
+    std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
+    for (std::int64_t place = thread(); place < gpu_order::padded(count); place += threads)
+        if (std::int64_t const k = gpu_order::body(place); k < count) action(k);
+}
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {
     BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
@@ -130,4 +145,54 @@ __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_sca
     block.descend();
 }
 
+inline unsigned threads_of_scan(DeviceScanStage const& stage) { return static_cast<unsigned>((stage.width + 31) / 32 * 32); }
+/// Of turn_scan_then(), of most_of_scan threads each.
+inline unsigned blocks_of_turn(std::int64_t count) {
+    return static_cast<unsigned>(std::min<std::int64_t>(most_in_cluster, (count - 1) / most_of_scan + 1));
+}
+
 }  // namespace catena::cuda::kernels
+
+namespace catena::cuda {
+
+/// Which launches a scan takes, whoever makes them. `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and
+/// descend(i, scan) of stage i; whether turn_then(scan, count, action) was launched.
+template <class Launches>
+class ScanWalk {
+  public:
+    explicit ScanWalk(Launches const& launches) : launches_(launches) {}
+    template <class Scan>
+    void climb(Scan const& scan) const {
+        climb_below(launches_.stages(), scan);
+    }
+    template <class Scan>
+    void descend(Scan const& scan) const {
+        descend_below(launches_.stages(), scan);
+    }
+    template <class Scan>
+    void climb_and_descend(Scan const& scan) const {
+        if (launches_.stages() == 0) return;
+        std::size_t const last = launches_.stages() - 1;
+        climb_below(last, scan);
+        launches_.turn(last, scan);
+        descend_below(last, scan);
+    }
+    /// And then action(k) for k < count, if one launch does all; else nothing is done.
+    template <class Scan, class Action>
+    bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
+        return launches_.stages() == 1 && launches_.blocks() == 1 && launches_.turn_then(scan, count, action);
+    }
+
+  private:
+    template <class Scan>
+    void climb_below(std::size_t stages, Scan const& scan) const {
+        for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, scan);
+    }
+    template <class Scan>
+    void descend_below(std::size_t stages, Scan const& scan) const {
+        for (std::size_t i = stages; i-- > 0;) launches_.descend(i, scan);
+    }
+    Launches launches_;
+};
+
+}  // namespace catena::cuda

@@ -199,7 +199,6 @@ __global__ void __launch_bounds__(threads_of<Sweep>) descend(DeviceStage stage, 
     block.take_nodes();
     block.template descend<true>(nullptr);
 }
-constexpr int most_in_cluster = 8;  // any GPU that has clusters takes so many blocks
 /// Up and down again: two stages, the upper one of one block, by one cluster of blocks, or the lower one alone. The same instructions do
 /// both.
 template <class Sweep>
@@ -250,7 +249,7 @@ __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     descend_some_runs<true, false>(
-        runs, static_cast<std::int64_t>(blockIdx.x) * (threads / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
+        runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
         [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
         [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
 }
@@ -271,10 +270,16 @@ RunsGrid grid_of_climb(std::int64_t runs) {
     if (!whole_runs<Sweep>) grid.shared_bytes = sizeof(double) * SharedRecords<typename Sweep::Segment>::size(threads);
     return grid;
 }
+/// Of a GPU whose blocks may share so many bytes.
 template <class Sweep>
-RunsGrid grid_of_descent(std::int64_t runs) {
-    RunsGrid grid = grid_of_runs(runs, dca::parts_of_run, threads);
-    grid.shared_bytes = sizeof(double) * SharedRecords<typename Sweep::Sweeps::State>::size(threads);
+RunsGrid grid_of_descent(std::int64_t runs, std::size_t most_shared_bytes) {
+    auto const bytes = [](int of_block) {
+        return sizeof(double) * (SharedRecords<typename Sweep::Sweeps::State>::size(of_block) + KeptOfPart<Sweep>::size(of_block));
+    };
+    int of_block = threads;
+    while (of_block > 32 && bytes(of_block) > most_shared_bytes) of_block /= 2;
+    RunsGrid grid = grid_of_runs(runs, dca::parts_of_run, of_block);
+    grid.shared_bytes = bytes(of_block);
     return grid;
 }
 

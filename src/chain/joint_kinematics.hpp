@@ -121,17 +121,21 @@ class JointKinematics {
     void evaluate(StateView const& state, bool with_positions, MotionView const& motion) {
         with_positions ? evaluate<true>(scan(state, motion)) : evaluate<false>(scan(state, motion));
     }
-    /// Up and down the tree, between set_relative() and set_motion() of every body. Collective where a chain is shared by ranks.
+    /// Up and down the tree, after set_relative() of every body, and then last(k) for every body, with set_motion(). Collective where a
+    /// chain is shared by ranks.
+    template <bool positions, class Last>
+    void sweep(JointScan const& s, Last const& last) {
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, MotionScan<positions>{s}, group_.size, last);
+        sweep<positions>(s);
+        space_.for_each(group_.size, last);
+    }
     template <bool positions>
     void sweep(JointScan const& s) {
         MotionScan<positions> const scan{s};
-        if (group_.schedule.shared.empty()) {
-            space_.climb_and_descend(tree_, scan);
-        } else {
-            space_.climb(tree_, scan);
-            sweep_shared(scan);
-            space_.descend(tree_, scan);
-        }
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan);
+        space_.climb(tree_, scan);
+        sweep_shared(scan);
+        space_.descend(tree_, scan);
         if (group_.moving_meeting()) exchange_meeting(s);
     }
 
@@ -139,8 +143,7 @@ class JointKinematics {
     template <bool positions>
     void evaluate(JointScan const& s) {
         space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_relative<positions>(k); });
-        sweep<positions>(s);
-        space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
+        sweep<positions>(s, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
     }
     template <class Scan>
     void sweep_shared(Scan const& scan) {

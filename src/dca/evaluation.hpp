@@ -270,25 +270,29 @@ struct ForgetfulSweeps : JoinsBoth<Leaf> {
     Bodies bodies;
     AccelerationsView out;
 
+    /// What the way down keeps of a part's joints, but the first body's and the last one's.
+    using Kept = HalfDisassembled<double, K>;
+    static constexpr int kept_of_part = part_length - 2;
+
     CATENA_HD Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
     CATENA_HD Segment part(Run const& run, int p, Part const& part) const {
         return join_bodies(run, p, part, [](int, Node const&) {});
     }
-    template <bool /*unroll*/>
-    CATENA_HD void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
+    /// `kept`: put(i, Kept) and get(i), i < kept_of_part.
+    template <bool /*unroll*/, class Memory>
+    CATENA_HD void down(Run const& run, int p, Part const& part, Directions const& first, Directions next, Memory const& kept) const {
         std::int64_t const begin = begin_of(run, p);
         int const last = static_cast<int>(end_of(run, p) - begin) - 1;
-        HalfDisassembled<double, K> at[part_length - 2];  // of the joints between the first body's and the last one's
         Directions at_last = first;
         join_bodies(run, p, part, [&](int i, Node const& node) {
-            auto const half = half_disassemble(node.joint, node.offset, first);
+            Kept const half = half_disassemble(node.joint, node.offset, first);
             if (i == last)
                 at_last = disassemble(half, next);
             else
-                at[i - 1] = half;
+                kept.put(i - 1, half);
         });
         each_body_back<unrolled<K>>(0, last + 1, [&](int i) {
-            Directions const at_i = i == last ? at_last : i == 0 ? first : disassemble(at[i - 1], next);
+            Directions const at_i = i == last ? at_last : i == 0 ? first : disassemble(kept.get(i - 1), next);
             bodies.accelerate(part, i, at_i, next, out);
             store_forces(s.leaf.group(), out, begin + i, at_i, next);
             next = at_i;
@@ -302,9 +306,9 @@ struct ForgetfulSweeps : JoinsBoth<Leaf> {
         std::int64_t const begin = begin_of(run, p);
         Segment segment = bodies.segment(bodies.body(part, 0));
         each_body<unrolled<K>>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
-            auto const body = bodies.body(part, i);
+            auto const own = bodies.body(part, i);
             Node node;
-            segment = this->joined(segment, bodies.segment(body), {begin + i, body.restricted}, node);
+            segment = this->joined(segment, bodies.segment(own), {begin + i, own.restricted}, node);
             see(i, node);
         });
         return segment;

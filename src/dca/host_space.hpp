@@ -94,9 +94,10 @@ class HostSpace : public HostAccess {
         std::span<dca::Root const> roots_;
     };
 
-    /// Of scans along the chains: of_run(run) is a run's value, joined(inboard, outboard) what two neighbours make, and what lies before a
-    /// root is in before(its slot). whole(), set_whole(), before(), set_before() are by slot; after the way up whole() of a segment is what
-    /// the way down needs, but for what other ranks see, after it before() of every run is known.
+    /// Of scans along the chains: of_run(run) is a run's value, joined(inboard, outboard) what two neighbours make. whole(), set_whole(),
+    /// before(), set_before() are by slot. After climb() whole() is known of what is complete (roots, and what other ranks need) and stays
+    /// as it is until descend(), which finds before() in these slots and leaves it in those of the runs, or of what the lowest level joins.
+    /// Nothing else is promised of them.
     class ScanTree {
       public:
         ScanTree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
@@ -170,6 +171,12 @@ class HostSpace : public HostAccess {
     void climb_and_descend(AnyTree const& tree, Sweep const& sweep) const {
         climb(tree, sweep);
         descend(tree, sweep);
+    }
+    /// And then action(k) for k < count.
+    template <class Scan, class Action>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count, Action const& action) const {
+        climb_and_descend(tree, scan);
+        for_each(count, action);
     }
     /// The largest of value(0), ..., value(count - 1), which are 0 or more; a NaN counts as the largest. 0 of none.
     template <class Value>

@@ -112,7 +112,9 @@ struct ScanStage {
     std::vector<ScanBlock> blocks;
     std::vector<std::int32_t> level_end;  // as level_ends_of
 };
-/// Up to `most` items to a block, a power of two.
+/// Of a block, which has a thread for each.
+constexpr std::int64_t most_of_scan = 256;
+/// Up to `most` items to a block, a power of two. Precondition: slots find place in 32 bits.
 std::vector<ScanStage> plan_scan(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
                                  std::vector<Root> const& roots, std::int64_t slots, std::int64_t most);
 

@@ -92,7 +92,8 @@ class AbsoluteDynamics : public BeadHost {
     /// Positions by h along the velocities, impulses along the joints of the configuration updated last added in `sweeps` quasi-Newton
     /// sweeps so that the joints close at the end; velocities become the drift's. Collective.
     virtual void drift(double h, int sweeps) = 0;
-    /// One more sweep of the drift by h that was done last, as if it had been asked for at once; false: ask for it at once. Collective.
+    /// One more sweep of the drift by h that was done last, as if it had been asked for at once; false: ask for it at once. Precondition:
+    /// nothing but constraint_error() has been called since. Collective.
     virtual bool close_further(double /*h*/) { return false; }
     /// Velocities between those of before and noise, which kick() then projects.
     virtual void thermalise(Thermostat const&, std::uint64_t step) = 0;

@@ -136,11 +136,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
     }
 
     void draw_velocities(double kt, std::uint64_t seed, std::vector<bool> const& of_chain) override {
-        for (dca::Piece const& piece : group_.pieces)
-            if (of_chain[piece.chain])
-                space_.for_each(piece.count, [c = chains(), kt, seed, first = piece.local] CATENA_LAMBDA(std::int64_t i) {
-                    c.draw_velocity(first + i, kt, seed);
+        auto const drawn = [&](std::size_t i) { return of_chain[static_cast<std::size_t>(group_.pieces[i].chain)]; };
+        for (std::size_t i = 0, end = 0; i < group_.pieces.size(); i = end) {  // neighbours in one loop
+            std::int64_t count = 0;
+            for (end = i; end < group_.pieces.size() && drawn(end) == drawn(i); ++end) count += group_.pieces[end].count;
+            if (drawn(i))
+                space_.for_each(count, [c = chains(), kt, seed, first = group_.pieces[i].local] CATENA_LAMBDA(std::int64_t k) {
+                    c.draw_velocity(first + k, kt, seed);
                 });
+        }
         kick(0.0);
     }
 

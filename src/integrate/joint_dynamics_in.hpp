@@ -227,9 +227,13 @@ class JointDynamicsIn final : public JointDynamics {
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
                                  [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
         if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
-        kinematics_.template sweep<positions>(c.scan);
-        each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
-                             [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); });
+        auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); };
+        if constexpr (has_lanes) {
+            kinematics_.template sweep<positions>(c.scan);
+            each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); }, set_motion);
+        } else {
+            kinematics_.template sweep<positions>(c.scan, set_motion);
+        }
         if (!group_.has_tips()) return;
         set_ends();
         space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {

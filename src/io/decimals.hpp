@@ -9,7 +9,7 @@
 
 namespace catena {
 
-/// What "{:.{places}f}" makes of a number; places from 0 to 3.
+/// What "{:.{places}f}" makes of a number. Precondition: places from 0 to 3.
 class Decimals {
   public:
     Decimals(double value, int places) {

@@ -29,6 +29,7 @@ class OutputFile {
     /// Closes without a word; what was not flushed may be lost.
     ~OutputFile();
 
+    /// Text whose write() throws is lost.
     void write(std::string_view text);
     /// Hands the buffer to the system.
     void flush();
@@ -38,7 +39,6 @@ class OutputFile {
     std::string const& name() const { return name_; }
 
   private:
-    /// What the system does not take stays in the buffer.
     void hand_over(std::string_view rest);
     OutputFile(int descriptor, std::string name) : descriptor_(descriptor), name_(std::move(name)) {}
     int descriptor_ = -1;

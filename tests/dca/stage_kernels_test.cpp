@@ -44,8 +44,16 @@ std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
                             std::to_string(together) + " blocks together" + (runs_apart ? ", runs apart" : ""),
                         {{threads, most, together}, runs_apart}};
     };
-    return {with(32, 2, 0, false),   with(64, 4, 3, true),   with(64, 12, 0, false),
-            with(128, 8, 8, false),  with(256, 16, 8, true), {"of too few threads", {{128, 32, 4}, false, 32}},
+    NamedGpu small = with(64, 4, 3, true);
+    small.name += ", of little shared memory";
+    small.gpu.shared_bytes = 40 << 10;  // less than any GPU has
+    return {small,
+            with(32, 2, 0, false),
+            with(64, 4, 3, true),
+            with(64, 12, 0, false),
+            with(128, 8, 8, false),
+            with(256, 16, 8, true),
+            {"of too few threads", {{128, 32, 4}, false, 32}},
             {h100, of_h100(records)}};
 }
 

@@ -80,6 +80,42 @@ TEST_P(AtOnce, IsTheSolution) {
     }
 }
 
+/// A drift that goes on by single sweeps is the drift with as many of them.
+TEST_P(AtOnce, DriftsGoOnByASweep) {
+    constexpr double h = 0.002;
+    for (Backend const backend : {Backend::serial, Backend::segments}) {
+        ChainSystem system(scene(backend), Axes::world, catena::testing::world());
+        move(system);
+        for (AbsoluteDynamics* const group : system.absolute()) group->update_configuration();
+        system.forces_and_matrices(nullptr);
+        for (AbsoluteDynamics* const group : system.absolute()) {
+            auto const begin = [&](int sweeps) {
+                group->kick(h);
+                group->drift(h, sweeps);
+            };
+            auto const start = group->state();
+            begin(3);
+            double const error = group->constraint_error();
+            auto const expected = group->state();
+            group->set_state(start);
+            group->update_configuration();
+            begin(1);
+            for (int further = 0; further < 2; ++further) {
+                group->constraint_error();
+                if (!group->close_further(h)) {
+                    EXPECT_FALSE(group->group().beads);
+                    break;
+                }
+            }
+            if (!group->group().beads) continue;
+            EXPECT_EQ(group->constraint_error(), error);
+            auto const found = group->state();
+            ASSERT_EQ(found.size(), expected.size());
+            for (std::size_t i = 0; i < found.size(); ++i) EXPECT_EQ(found[i].values, expected[i].values) << found[i].name;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Chains, AtOnce, ::testing::ValuesIn(cases), [](auto const& each) { return each.param.name; });
 
 }  // namespace

@@ -93,21 +93,29 @@ TEST(Kinematics, GoesFromJointToJoint) {
 TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     Communicator const& world = catena::testing::world();
     ScanSpace::most_stages = 0;
+    ScanSpace::blocks_of_clusters.clear();
+    auto const expect_the_same = [&](Scene const& scene, std::int64_t most) {
+        ScanSpace::most = most;
+        Moved const by_loops(scene, false, world);
+        MovedIn<ScanSpace> by_kernels(scene, false, world);
+        ScanSpace::most = dca::most_of_scan;
+        std::int64_t different = 0;
+        for (std::int64_t k = 0; k < by_loops.group().size; ++k) different += by_kernels.of(k) != by_loops.of(k) ? 1 : 0;
+        EXPECT_EQ(different, 0) << "of " << by_loops.group().size << " bodies, " << most << " items a block";
+        by_kernels.expect_the_same_without_positions();
+    };
     for (RandomJoints const joints : all_joints)
-        for (std::size_t const bodies : {1, 16, 17, 300, 1031, 5000})
-            for (std::int64_t const most : {2, 8, 256}) {
-                if (bodies > 1031 && (most == 2 || joints != RandomJoints::helical)) continue;
-                Scene const scene = two_chains(joints, bodies, Base::free);
-                ScanSpace::most = most;
-                Moved const by_loops(scene, false, world);
-                MovedIn<ScanSpace> by_kernels(scene, false, world);
-                for (std::int64_t k = 0; k < by_loops.group().size; ++k)
-                    ASSERT_EQ(by_kernels.of(k), by_loops.of(k)) << "body " << k << " of " << bodies << ", " << most << " items a block";
-                by_kernels.expect_the_same_without_positions();
-            }
-    if (world.size() == 1) {
-        EXPECT_GE(ScanSpace::most_stages, 6U);
-    }
+        for (std::size_t const bodies : {1, 16, 17, 300, 1031, 2000, 5000})
+            for (std::int64_t const most : {2, 8, 256})
+                if (bodies <= 1031 || (most > 2 && joints == RandomJoints::helical))
+                    expect_the_same(two_chains(joints, bodies, bodies % 2 == 0 ? Base::free : Base::fixed), most);
+    Scene many;
+    for (std::size_t bodies = 1; bodies <= 40; ++bodies)
+        many.chains.push_back(random_chain(bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
+    for (std::int64_t const most : {2, 8, 256}) expect_the_same(many, most);
+    if (world.size() > 1) return;
+    EXPECT_GE(ScanSpace::most_stages, 6U);
+    EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
 }
 
 TEST(Kinematics, HasTheSameBitsOnAnyNumberOfRanks) {

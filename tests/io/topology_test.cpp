@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
+#include "dca/executor.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
 #include "sample_frames.hpp"
@@ -69,6 +72,32 @@ TEST(Topology, NamesAndNumbersWrapAsThePdbAllows) {
     EXPECT_EQ(beads[9998].substr(22, 4), "9999");
     EXPECT_EQ(beads[9999].substr(22, 4), "   0");
     EXPECT_EQ(beads[10001].substr(22, 4), "   2");
+}
+
+TEST(Topology, PartsAndThreadsWriteTheSameLines) {
+    for (auto const& [chains, count] : {std::pair<std::int64_t, std::int64_t>{7, 13}, {30, 3400}}) {
+        TemporaryFolder const folder;
+        Frame frame;
+        Topology const topology = rows_of_beads(chains, count, frame);
+        auto const text_of = [](std::vector<std::string> const& files) {
+            std::string all;
+            for (std::string const& file : files) all += read_text_file(file);
+            return all;
+        };
+        std::string const whole = text_of(write_topology(folder.path(), topology, frame));
+        for (int const threads : {1, 2, 3, 8})
+            for (std::ptrdiff_t const most : {5L, 13L, 26L, 9999L}) {
+                if (count > 100 && most < 9999) continue;
+                auto const executor = openmp_executor(threads);
+                TopologyWriter writer(folder.path(), topology);
+                for (auto at = frame.positions.begin(); at != frame.positions.end();) {
+                    auto const end = at + std::min(most, frame.positions.end() - at);
+                    writer.put({at, end}, *executor);
+                    at = end;
+                }
+                EXPECT_TRUE(text_of(writer.finish()) == whole) << threads << " threads, " << most << " sites at a time";
+            }
+    }
 }
 
 TEST(Topology, LargeCoordinatesLoseDecimalsNotColumns) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <set>
 
 #include "dca/host_space.hpp"
 #include "tests/support/cuda_on_host.hpp"
@@ -16,9 +17,10 @@ class ScanSpace : public HostSpace {
     using HostSpace::HostSpace;
     SimdLevel simd() const = delete;  // as a GPU
 
-    /// Items of a block in trees made from now on, and the most stages that any has had.
+    /// Items of a block in trees made from now on; the most stages that any has had, and clusters.
     static inline std::int64_t most = cuda::kernels::most_of_scan;
     static inline std::size_t most_stages = 0;
+    static inline std::set<unsigned> blocks_of_clusters;
 
     class ScanTree {
       public:
@@ -39,36 +41,64 @@ class ScanSpace : public HostSpace {
     };
     template <class Scan>
     void climb(ScanTree const& tree, Scan const& scan) const {
-        climb_below(tree, tree.stages_.size(), scan);
+        walk(tree).climb(scan);
     }
     template <class Scan>
     void descend(ScanTree const& tree, Scan const& scan) const {
-        descend_below(tree, tree.stages_.size(), scan);
+        walk(tree).descend(scan);
     }
     template <class Scan>
     void climb_and_descend(ScanTree const& tree, Scan const& scan) const {
-        if (tree.stages_.empty()) return;
-        climb_below(tree, tree.stages_.size() - 1, scan);
-        launch(cuda::kernels::turn_scan<Scan>, tree.stages_.back(), scan);
-        descend_below(tree, tree.stages_.size() - 1, scan);
+        walk(tree).climb_and_descend(scan);
+    }
+    template <class Scan, class Action>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::int64_t count, Action const& action) const {
+        if (walk(tree).at_once(scan, count, action)) return;
+        climb_and_descend(tree, scan);
+        for_each(count, action);
     }
 
   private:
-    template <class Scan>
-    static void launch(void (*kernel)(cuda::kernels::DeviceScanStage, Scan), cuda::kernels::DeviceScanStage const& stage,
-                       Scan const& scan) {
-        auto const threads = static_cast<unsigned>((stage.width + 31) / 32 * 32);
-        auto const numbers = static_cast<std::size_t>(cuda::kernels::BlockOfScan<Scan>::size(stage));
-        cuda_on_host::launch({stage.blocks, threads, numbers}, kernel, stage, scan);
-    }
-    template <class Scan>
-    static void climb_below(ScanTree const& tree, std::size_t stages, Scan const& scan) {
-        for (std::size_t i = 0; i < stages; ++i) launch(cuda::kernels::climb_scan<Scan>, tree.stages_[i], scan);
-    }
-    template <class Scan>
-    static void descend_below(ScanTree const& tree, std::size_t stages, Scan const& scan) {
-        for (std::size_t i = stages; i-- > 0;) launch(cuda::kernels::descend_scan<Scan>, tree.stages_[i], scan);
-    }
+    /// Of ScanWalk.
+    struct Launches {
+        ScanTree const& tree;
+
+        std::size_t stages() const { return tree.stages_.size(); }
+        unsigned blocks() const { return tree.stages_.front().blocks; }
+        template <class Scan>
+        void climb(std::size_t i, Scan const& scan) const {
+            launch(cuda::kernels::climb_scan<Scan>, i, scan);
+        }
+        template <class Scan>
+        void turn(std::size_t i, Scan const& scan) const {
+            launch(cuda::kernels::turn_scan<Scan>, i, scan);
+        }
+        template <class Scan>
+        void descend(std::size_t i, Scan const& scan) const {
+            launch(cuda::kernels::descend_scan<Scan>, i, scan);
+        }
+        template <class Scan, class Action>
+        bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
+            auto const& stage = tree.stages_.front();
+            unsigned const blocks = cuda::kernels::blocks_of_turn(count);
+            blocks_of_clusters.insert(blocks);
+            cuda_on_host::launch({blocks, cuda::kernels::most_of_scan, numbers<Scan>(stage), blocks},
+                                 cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count, action);
+            return true;
+        }
+
+      private:
+        template <class Scan>
+        static std::size_t numbers(cuda::kernels::DeviceScanStage const& stage) {
+            return static_cast<std::size_t>(cuda::kernels::BlockOfScan<Scan>::size(stage));
+        }
+        template <class Scan>
+        void launch(void (*kernel)(cuda::kernels::DeviceScanStage, Scan), std::size_t i, Scan const& scan) const {
+            auto const& stage = tree.stages_[i];
+            cuda_on_host::launch({stage.blocks, cuda::kernels::threads_of_scan(stage), numbers<Scan>(stage)}, kernel, stage, scan);
+        }
+    };
+    static cuda::ScanWalk<Launches> walk(ScanTree const& tree) { return cuda::ScanWalk<Launches>({tree}); }
 };
 
 }  // namespace catena::test

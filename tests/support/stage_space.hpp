@@ -18,6 +18,7 @@ struct StagedGpu {
     bool runs_apart = false;               // also where they are few
     std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
     bool short_chains = false;             // by themselves
+    std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart downwards
 };
 /// In launches so far.
 struct StagesSeen {
@@ -60,6 +61,7 @@ class StageSpace : public HostSpace {
         std::span<dca::Run const> runs_;
         dca::StageSizes sizes_;
         int threads_;
+        std::size_t shared_bytes_ = gpu.shared_bytes;
         dca::StagePlan plan_;
         cuda::kernels::ShortChain short_;
         std::vector<std::vector<dca::StageBlock>> blocks_;  // of every stage
@@ -145,7 +147,8 @@ class StageSpace : public HostSpace {
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
-            over_runs(cuda::kernels::descend_runs<Sweep>, cuda::kernels::grid_of_descent<Sweep>(std::ssize(tree.runs_)), sweep);
+            over_runs(cuda::kernels::descend_runs<Sweep>, cuda::kernels::grid_of_descent<Sweep>(std::ssize(tree.runs_), tree.shared_bytes_),
+                      sweep);
         }
 
       private:
