@@ -84,7 +84,8 @@ TEST_P(AtOnce, IsTheSolution) {
 TEST_P(AtOnce, DriftsGoOnByASweep) {
     constexpr double h = 0.002;
     for (Backend const backend : {Backend::serial, Backend::segments}) {
-        ChainSystem system(scene(backend), Axes::world, catena::testing::world());
+        Scene const s = scene(backend);
+        ChainSystem system(s, Axes::world, catena::testing::world());
         move(system);
         for (AbsoluteDynamics* const group : system.absolute()) group->update_configuration();
         system.forces_and_matrices(nullptr);
