@@ -88,7 +88,7 @@ TEST(Topology, PartsAndThreadsWriteTheSameLines) {
         for (int const threads : {1, 2, 3, 8})
             for (std::ptrdiff_t const most : {5L, 13L, 26L, 9999L}) {
                 if (count > 100 && most < 9999) continue;
-                auto const executor = openmp_executor(threads);
+                auto const executor = openmp_is_built() ? openmp_executor(threads) : serial_executor();
                 TopologyWriter writer(folder.path(), topology);
                 for (auto at = frame.positions.begin(); at != frame.positions.end();) {
                     auto const end = at + std::min(most, frame.positions.end() - at);
