@@ -1,9 +1,9 @@
+#include <sched.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
-#include <thread>
 
 #include "mpi/communicator.hpp"
 
@@ -42,8 +42,10 @@ class SerialCommunicator final : public Communicator {
 std::unique_ptr<Communicator> serial_communicator() { return std::make_unique<SerialCommunicator>(); }
 
 int cores_of_rank(Communicator const& communicator) {
-    int const usable = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));  // respects the rank's binding
-    long const online = sysconf(_SC_NPROCESSORS_ONLN);
+    long const online = std::max(1L, sysconf(_SC_NPROCESSORS_ONLN));
+    cpu_set_t bound;  // std::thread::hardware_concurrency() knows it with some versions of glibc alone
+    bool const known = sched_getaffinity(0, sizeof(bound), &bound) == 0;
+    int const usable = known ? std::max(1, CPU_COUNT(&bound)) : static_cast<int>(online);
     int const share = std::max(1, static_cast<int>(online) / std::max(1, communicator.ranks_on_host()));
     return online > usable ? usable : share;
 }

@@ -9,6 +9,7 @@
 #include "command/predictions.hpp"
 #include "command/text.hpp"
 #include "command/version.hpp"
+#include "error.hpp"
 #include "report/hardware.hpp"
 
 namespace catena::command {
@@ -125,6 +126,19 @@ void add_case(Outcome& outcome, Table& table, Worst& worst, plan::Planner& plann
                                        {"valid", valid}});
 }
 
+/// A chain that cannot be computed is a finding: the others are compared all the same.
+void add_case_or_failure(Outcome& outcome, Table& table, Worst& worst, plan::Planner& planner, plan::Family const& family,
+                         std::int64_t bodies) {
+    try {
+        add_case(outcome, table, worst, planner, family, bodies);
+    } catch (ComputationError const& error) {
+        spdlog::warn("{}, {} bodies: {}", family.name(), bodies, error.what());
+        outcome.valid = false;
+        table.add({family.name(), std::to_string(bodies), "-", "-", "-", "-", "-", "-", "-", "-", "FAILED"});
+        outcome.json["results"].push_back({{"kind", family.name()}, {"bodies", bodies}, {"failure", error.what()}, {"valid", false}});
+    }
+}
+
 }  // namespace
 
 Outcome bench_plan(Communicator const& communicator, BenchRequest const& request) {
@@ -138,7 +152,8 @@ Outcome bench_plan(Communicator const& communicator, BenchRequest const& request
     plan::with_planner(communicator, request.threads.empty() ? 0 : std::stoi(request.threads), largest_sample, "",
                        [&](plan::Planner& planner) {
                            for (plan::Family const& family : families_named(request.joints, handles))
-                               for (std::int64_t const bodies : request.sizes) add_case(outcome, table, worst, planner, family, bodies);
+                               for (std::int64_t const bodies : request.sizes)
+                                   add_case_or_failure(outcome, table, worst, planner, family, bodies);
                            outcome.json["left_out"] = planner.machine().no_gpu;
                        });
     outcome.json["worst_ratio"] = worst.ratio;
@@ -153,7 +168,7 @@ Outcome bench_plan(Communicator const& communicator, BenchRequest const& request
     outcome.text += fmt::format("worst ratio {:.2f}, worst choice {:.0f} % slower than the best\n", worst.ratio, 100 * worst.choice);
     std::string const no_gpu = outcome.json["left_out"];
     if (!no_gpu.empty()) outcome.text += "left out: cuda, cuda-levels: " + no_gpu + "\n";
-    outcome.complaint = "a residual above its bound: see the results";
+    outcome.complaint = "a residual above its bound, or a chain that cannot be computed: see the results";
     return outcome;
 }
 

@@ -64,6 +64,16 @@ constexpr char const* alpha_synuclein =
     "PSEEGYQDYEPEA";
 constexpr std::int64_t beads_of_chain = 140;
 
+std::string alpha_synucleins(std::int64_t chains, std::string const& box) {
+    return fmt::format(
+        "title: {0} of alpha-synuclein\n"
+        "chains: [{{name: asyn, count: {0}, sequence: {1}, model: calvados2, conformation: self_avoiding, velocities: thermal}}]\n"
+        "box: {2}\n"
+        "forces: {{openmm: {{builder: calvados2, temperature: 300, ionic_strength: 0.15}}}}\n"
+        "dynamics: {{integrator: g-baoab, step: 0.01, temperature: 300, friction: 0.01, seed: 1}}\n",
+        chains, alpha_synuclein, box);
+}
+
 std::int64_t chains_for(std::int64_t beads) { return std::max<std::int64_t>(1, (beads + beads_of_chain / 2) / beads_of_chain); }
 
 }  // namespace
@@ -74,14 +84,12 @@ Scene condensate_scene(std::int64_t beads, std::vector<std::string> const& overr
     std::int64_t const chains = chains_for(beads);
     // As inputs/condensate.yaml, but no smaller than the cutoff of 4 nm allows.
     double const edge = chains == 1 ? 60.0 : std::max(8.1, 19.38 * std::cbrt(static_cast<double>(chains) / 100));
-    std::string const text = fmt::format(
-        "title: {0} of alpha-synuclein\n"
-        "chains: [{{name: asyn, count: {0}, sequence: {1}, model: calvados2, conformation: self_avoiding, velocities: thermal}}]\n"
-        "box: {{periodic: [{2}, {2}, {2}]}}\n"
-        "forces: {{openmm: {{builder: calvados2, temperature: 300, ionic_strength: 0.15}}}}\n"
-        "dynamics: {{integrator: g-baoab, step: 0.01, temperature: 300, friction: 0.01, seed: 1}}\n",
-        chains, alpha_synuclein, edge);
-    return parse_scene(text, fmt::format("condensate-{}", beads_of_chain * chains), overrides);
+    return parse_scene(alpha_synucleins(chains, fmt::format("{{periodic: [{0}, {0}, {0}]}}", edge)),
+                       fmt::format("condensate-{}", beads_of_chain * chains), overrides);
+}
+
+Scene single_chain_scene(std::vector<std::string> const& overrides) {
+    return parse_scene(alpha_synucleins(1, "none"), "alpha-synuclein", overrides);
 }
 
 }  // namespace catena::command

@@ -24,6 +24,8 @@ Scene coil_scene(std::int64_t bodies, std::vector<std::string> const& overrides)
 /// Copies of alpha-synuclein (140 beads) at 330 mg/ml, g-BAOAB at 10 fs with OpenMM's forces: the chains that hold about so many beads;
 /// one has room around it.
 Scene condensate_scene(std::int64_t beads, std::vector<std::string> const& overrides);
+/// One such chain without a box.
+Scene single_chain_scene(std::vector<std::string> const& overrides);
 /// How many beads that scene has.
 std::int64_t beads_of_condensate(std::int64_t beads);
 

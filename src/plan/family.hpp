@@ -16,6 +16,8 @@ struct Family {
     Axes axes = Axes::joint;
     Handles handles = Handles::projected;
 
+    /// Alone: without rigid bodies.
+    bool beads() const { return joint == scene::RandomJoint::link && !linked; }
     /// "revolute", "spherical, ground axes", "link, full handles"
     std::string name() const;
 };

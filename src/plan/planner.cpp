@@ -30,7 +30,7 @@ constexpr Sizes of_evaluations{16, 4}, of_levels{2, 8};
 
 PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
     PhaseCurve& curve = calibration_.of(family, arrangement);
-    auto const [low, high] = of_evaluations.around(bodies, largest_);
+    auto const [low, high] = of_evaluations.around(bodies, largest(family));
     for (std::int64_t const n : {low, high})
         if (!curve.has(n)) curve.add(n, machine_.measure(family, n, arrangement));
     return curve;
@@ -87,7 +87,7 @@ Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& l
 
 void Planner::measure_everything() {
     for (Family const& family : all_families()) {
-        for (std::int64_t const n : of_evaluations.up_to(largest_, largest_))
+        for (std::int64_t const n : of_evaluations.up_to(largest(family), largest(family)))
             for (auto const* list : {&machine_.alike, &machine_.others})
                 for (Arrangement const& arrangement : *list) phases_of(family, arrangement, n);
         levels_of(family, Place::host, largest_);
