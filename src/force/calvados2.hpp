@@ -29,6 +29,7 @@ Calvados2Residue const* find_calvados2(std::string_view three_letter_name);
 namespace calvados2 {
 
 inline constexpr double bond_length = 0.38;           // nm
+inline constexpr double bond_stiffness = 8033;        // kJ/mol/nm2, of harmonic bonds in the links' places
 inline constexpr double first_bead_mass = 2.0;        // amu, added to a chain's first bead
 inline constexpr double last_bead_mass = 16.0;        // amu, added to a chain's last bead
 inline constexpr double first_bead_charge = 1.0;      // e, added to a chain's first bead

@@ -33,6 +33,7 @@ class OpenMmForces final : public OpenMmForce {
     void forces_again(View<3> forces) override;
     std::vector<EnergyTerm> energies() override;
     Interval last_evaluation() const override { return interval_; }
+    bool leaves_a_core() const override { return leaves_a_core_; }
     std::vector<std::string> description() const override;
     std::string platform() const override { return platform_.name(); }
     std::string path() const override { return path_.name(); }
@@ -52,7 +53,7 @@ class OpenMmForces final : public OpenMmForce {
 
     Communicator const& communicator_;
     std::vector<std::int64_t> first_of_rank_;
-    bool replicate_, overlap_;
+    bool replicate_, overlap_, leaves_a_core_;
     OpenMmModel model_;
     OpenMmPlatform platform_;
     std::optional<Vec3> box_;  // where the forces are periodic
@@ -107,6 +108,7 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
       first_of_rank_(beads.first_of_rank),
       replicate_(spec.replicate),
       overlap_(spec.overlap),
+      leaves_a_core_(!platform.on_cpu() || cores_of_rank(communicator) > 1),
       model_(std::move(model)),
       platform_(std::move(platform)),
       box_(box_of(model_, beads)),
@@ -124,7 +126,6 @@ std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spe
 }
 
 void OpenMmForces::evaluate() noexcept {
-    interval_.begin = seconds_now();
     try {
         rank_->evaluate(forces_);
     } catch (...) {
@@ -142,6 +143,7 @@ void OpenMmForces::begin(ConstView<3> positions) {
     path_.settle(communicator_);
     error_ = nullptr;
     under_way_ = evaluated_ = true;
+    interval_.begin = seconds_now();
     if (!path_.runs_on_worker()) {
         evaluate();
         return;

@@ -73,8 +73,10 @@ class OpenMmForce {
     /// Potential energy of all beads, term by term in a fixed order, at the positions given last; the same on every rank. Collective, after
     /// finish().
     virtual std::vector<EnergyTerm> energies() = 0;
-    /// When the last evaluation ran.
+    /// When the last evaluation was under way: from when it was asked for, that a worker wakes up is a part of it.
     virtual Interval last_evaluation() const = 0;
+    /// Whether the caller has a core to go on with meanwhile: this rank has a second one, or the forces need none.
+    virtual bool leaves_a_core() const = 0;
     /// Lines for `check`, `plan` and the summary: platform and version, terms, threads, path, bonds left out because links replace them
     /// (with the number of them).
     virtual std::vector<std::string> description() const = 0;

@@ -2,17 +2,14 @@
 
 #include <OpenMM.h>
 
-#include <algorithm>
-#include <cmath>
-
+#include "force/calvados2.hpp"
 #include "force/openmm_model.hpp"
 #include "force/openmm_platform.hpp"
 
 namespace catena {
 namespace {
 
-double constexpr stiffness = 8033;  // kJ/mol/nm2, CALVADOS 2
-int constexpr no_force = 1 << 30;   // a group that holds none
+int constexpr no_force = 1 << 30;  // a group that holds none
 
 class Own final : public OpenMmOwn {
   public:
@@ -36,17 +33,15 @@ class Own final : public OpenMmOwn {
         context_->getState(OpenMM::State::Energy, false, no_force);  // its kinetic energy comes after the last step
     }
     double energy() override { return context_->getState(OpenMM::State::Energy).getPotentialEnergy(); }
-    double link_error() override {
+    double kinetic_energy() override { return context_->getState(OpenMM::State::Energy, false, no_force).getKineticEnergy(); }
+    std::vector<Vec3> positions() override {
         OpenMM::State const state = context_->getState(OpenMM::State::Positions);
-        auto const& x = state.getPositions();
-        double worst = 0;
-        for (auto const& link : links_) {
-            OpenMM::Vec3 const d = x[static_cast<std::size_t>(link.outboard)] - x[static_cast<std::size_t>(link.inboard)];
-            double const error = std::abs(std::sqrt(d.dot(d)) - link.length) / link.length;
-            if (!(error <= worst)) worst = error;
-        }
-        return worst;
+        std::vector<Vec3> x;
+        x.reserve(state.getPositions().size());
+        for (OpenMM::Vec3 const& each : state.getPositions()) x.push_back({each[0], each[1], each[2]});
+        return x;
     }
+    double link_error() override { return catena::link_error(links_, positions()); }
     std::string platform() const override { return platform_.name(); }
 
   private:
@@ -57,7 +52,7 @@ class Own final : public OpenMmOwn {
             if (links == OwnLinks::constraints)
                 model_.system->addConstraint(a, b, link.length);
             else
-                bonds->addBond(a, b, link.length, stiffness);
+                bonds->addBond(a, b, link.length, calvados2::bond_stiffness);
         }
         if (links == OwnLinks::constraints) return;
         bonds->setForceGroup(model_.system->getNumForces());

@@ -1,6 +1,7 @@
-// OpenMM integrating a scene's beads by itself, to be timed beside Catena.
+// OpenMM integrating a scene's beads by itself, to be timed and sampled beside Catena.
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,6 +20,17 @@ struct OwnRun {
     int device = -1;  // the GPU; -1: none, the platform is CPU unless the scene names one
 };
 
+/// Largest deviation of a link from its length, relative; NaN where a position is. `x`: of all beads.
+inline double link_error(std::vector<BeadSystem::Link> const& links, std::vector<Vec3> const& x) {
+    double worst = 0;
+    for (auto const& link : links) {
+        double const length = norm(x[static_cast<std::size_t>(link.outboard)] - x[static_cast<std::size_t>(link.inboard)]);
+        double const error = std::abs(length - link.length) / link.length;
+        if (!(error <= worst)) worst = error;
+    }
+    return worst;
+}
+
 class OpenMmOwn {
   public:
     virtual ~OpenMmOwn() = default;
@@ -26,7 +38,11 @@ class OpenMmOwn {
     virtual void step(int steps) = 0;
     /// kJ/mol, all forces and the bonds.
     virtual double energy() = 0;
-    /// Largest deviation of a link from its length, relative.
+    /// kJ/mol, of the velocities as the integrator keeps them.
+    virtual double kinetic_energy() = 0;
+    /// Of the beads in BeadSystem's order, nm, W, unwrapped. Throws what OpenMM throws where they are not finite.
+    virtual std::vector<Vec3> positions() = 0;
+    /// catena::link_error of these.
     virtual double link_error() = 0;
     virtual std::string platform() const = 0;
 };

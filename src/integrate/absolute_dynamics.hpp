@@ -142,10 +142,9 @@ StateArray const& array_named(std::vector<StateArray> const&, std::string const&
 
 template <int D>
 StateArray to_array(std::string const& name, ConstView<D> field) {
-    StateArray a{name, D, {}};
-    a.values.reserve(static_cast<std::size_t>(field.size * D));
+    StateArray a{name, D, std::vector<double>(static_cast<std::size_t>(field.size * D))};
     for (std::int64_t k = 0; k < field.size; ++k)
-        for (int i = 0; i < D; ++i) a.values.push_back(field.at(k, i));
+        for (int i = 0; i < D; ++i) a.values[static_cast<std::size_t>(k * D + i)] = field.at(k, i);
     return a;
 }
 template <int D>

@@ -227,7 +227,8 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
     double const exchange = communicator_.size() > 1 ? brought.end - brought.begin : 0.0;
-    hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
+    bool const beside = openmm_->leaves_a_core() || uses_gpu(backend_);  // what shares the forces' core makes them wait
+    if (beside) hidden_seconds_ += std::max(0.0, std::min(assembled, ran.end) - std::max(begun, ran.begin));
     seconds_["forces"] += ran.end - ran.begin;
     seconds_["waiting for forces"] += (finished - waits) + (begun - start) - exchange;
     if (communicator_.size() > 1) seconds_["exchange"] += exchange;

@@ -123,7 +123,7 @@ class ChainSystem {
     void measure(bool on) const;
     /// Seconds of the phases so far: "kinematics and loads", "matrix sweep", "bias sweep", "forces", "waiting for forces", "exchange".
     std::map<std::string, double> const& seconds() const { return seconds_; }
-    /// Seconds of matrix sweep and of these the ones during which OpenMM computed.
+    /// Seconds of matrix sweep, and of these the ones during which OpenMM's forces were under way beside it (on one core none are).
     double matrix_seconds() const { return matrix_seconds_; }
     double hidden_seconds() const { return hidden_seconds_; }
     /// Messages of this rank that brought positions to OpenMM.
@@ -157,6 +157,7 @@ class ChainSystem {
     void find_bead_hosts();
     void describe_beads();
     void order_beads_by_rank();
+    bool is_free_of_potentials() const;
     std::vector<BodyResults> results() const;
     std::size_t index_of(ChainGroup const&) const;
     std::vector<Vector<double, 6>> joint_forces(std::vector<BodyResults> const&) const;

@@ -94,25 +94,30 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
 
 namespace {
 
-ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first, std::span<double const> values) {
+ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t first, std::span<double const> values,
+                              Executor const& executor) {
     ChainSystem::Bodies bodies;
     bodies.first = first;
     ChainSystem::Snapshot& motion = bodies.motion;
     std::size_t const count = values.size() / static_cast<std::size_t>(own.width());
-    motion.position.reserve(count);
-    motion.velocity.reserve(count);
-    motion.orientation.reserve(count);
-    motion.omega.reserve(count);
-    if (own.joint_forces) bodies.joint_force.reserve(count);
-    for (auto row = values.begin(); row != values.end();) {
+    motion.position.resize(count);
+    motion.velocity.resize(count);
+    motion.orientation.resize(count, Quat::identity());
+    motion.omega.resize(count, Vec3::zero());
+    if (own.joint_forces) bodies.joint_force.resize(count);
+    executor.for_each(static_cast<std::int64_t>(count), [&](std::int64_t body) {
+        auto const k = static_cast<std::size_t>(body);
+        double const* row = values.data() + body * own.width();
         auto const next = [&] { return *row++; };
         auto const three = [&] { return Vec3{{next(), next(), next()}}; };
-        motion.position.push_back(three());
-        motion.velocity.push_back(three());
-        motion.orientation.push_back(own.turning ? Quat{next(), next(), next(), next()} : Quat::identity());
-        motion.omega.push_back(own.turning ? three() : Vec3::zero());
-        if (own.joint_forces) bodies.joint_force.push_back({{next(), next(), next(), next(), next(), next()}});
-    }
+        motion.position[k] = three();
+        motion.velocity[k] = three();
+        if (own.turning) {
+            motion.orientation[k] = Quat{next(), next(), next(), next()};
+            motion.omega[k] = three();
+        }
+        if (own.joint_forces) bodies.joint_force[k] = {{next(), next(), next(), next(), next(), next()}};
+    });
     return bodies;
 }
 
@@ -120,14 +125,14 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
 
 void ChainSystem::pass_bodies(OwnBodies const& own, std::function<void(Bodies const&)> const& take) const {
     SceneWindows(communicator_, groups_).pass(own.width(), own.rows, [&](std::int64_t first, std::span<double const> values) {
-        take(bodies_of(own, first, values));
+        take(bodies_of(own, first, values, *executor_));
     });
 }
 
 void ChainSystem::pass_own_bodies(OwnBodies const& own, std::function<void(std::vector<Bodies> const&)> const& take) const {
     SceneWindows(communicator_, groups_).pass_own(own.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
         std::vector<Bodies> bodies;
-        for (SceneWindows::Own const& run : round) bodies.push_back(bodies_of(own, run.first, run.values));
+        for (SceneWindows::Own const& run : round) bodies.push_back(bodies_of(own, run.first, run.values, *executor_));
         take(bodies);
     });
 }
@@ -144,6 +149,12 @@ ChainSystem::Snapshot ChainSystem::snapshot() {
     return all;
 }
 
+/// Nothing but OpenMM's forces acts on the beads, and no Fixman potential.
+bool ChainSystem::is_free_of_potentials() const {
+    return norm(scene_.forces.gravity) == 0 && !scene_.dynamics.fixman &&
+           std::all_of(groups_.begin(), groups_.end(), [](auto const& group) { return group->beads; });
+}
+
 std::vector<EnergyTerm> ChainSystem::potential_energy() {
     int const width = scene_.dynamics.fixman ? 3 : 2;
     std::vector<std::vector<double>> own(groups_.size());
@@ -155,13 +166,15 @@ std::vector<EnergyTerm> ChainSystem::potential_energy() {
             if (scene_.dynamics.fixman) rows.push_back(e.fixman[k]);
         }
     };
-    for (auto const& group : absolute_) add(group->group(), group->potential());
-    for (auto const& group : joint_) add(group->group(), group->potential());
     std::vector<EnergyTerm> terms{{"gravity", 0.0}, {"springs", 0.0}};
     if (scene_.dynamics.fixman) terms.push_back({"fixman", 0.0});
-    SceneWindows(communicator_, groups_).pass(width, own, [&](std::int64_t, std::span<double const> values) {
-        for (std::size_t i = 0; i < values.size(); ++i) terms[i % static_cast<std::size_t>(width)].value += values[i];
-    });
+    if (on_device() || !is_free_of_potentials()) {  // there it settles the forces, whose place OpenMM's energies take
+        for (auto const& group : absolute_) add(group->group(), group->potential());
+        for (auto const& group : joint_) add(group->group(), group->potential());
+        SceneWindows(communicator_, groups_).pass(width, own, [&](std::int64_t, std::span<double const> values) {
+            for (std::size_t i = 0; i < values.size(); ++i) terms[i % static_cast<std::size_t>(width)].value += values[i];
+        });
+    }
     if (openmm_)
         for (EnergyTerm const& term : openmm_->energies()) terms.push_back(term);
     return terms;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "io/output_file.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -43,9 +44,7 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
                              "name another with --output" + go_on + ", or replace it with --overwrite");
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name, ignored);
-        std::error_code error;
-        fs::create_directories(folder_, error);
-        if (error) throw InputError("the output folder cannot be made: " + error.message(), folder_, "name another with --output");
+        make_output_folder(folder_);
     });
     appends_ = communicator.sum(appends_ ? 1 : 0) > 0;  // rank 0 alone looked
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
@@ -24,6 +25,8 @@ constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
 /// The constraint error is looked at with every output and checkpoint, at the last step, and this often.
 constexpr std::int64_t check_every = 100;
+/// Bodies whose observables are worth a thread of their own while they are written.
+constexpr std::int64_t worth_a_thread = 100000;
 /// A sweep is added when the error comes this near to the tolerance: it grows and falls with the chain's shape between the looks.
 constexpr double early = 0.1, rounding_of_joints = 1e-13;
 
@@ -78,6 +81,7 @@ class Run {
             double const error = looks || ends ? constraint_error(n) : 0;
             if (looks) adapt(n, error);
             if (writes) output(n, error);
+            at_start_.reset();
             if (saves || ends) checkpoint(n);
             if (ends) {
                 reached_ = n;
@@ -109,40 +113,56 @@ class Run {
     void open(std::int64_t n) {
         first_ = n;
         folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
-        stepper_->observe(scene_.output.joint_forces);
-        observables_ = std::make_unique<Observables>(scene_, sites_.topology(), system_.potential_energy());
+        at_start_ = observed();
+        observables_ = std::make_unique<Observables>(scene_, sites_.topology(), at_start_->terms);
         folder_->open(sites_.topology(), observables_->columns());
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
-        system_.pass_bodies(
-            false, [&](ChainSystem::Bodies const& bodies) { folder_->put_topology(sites_.part(bodies, false), system_.executor()); });
+        at_start_->bodies = own_bodies();
+        system_.pass_bodies(*at_start_->bodies, [&](ChainSystem::Bodies const& bodies) {
+            folder_->put_topology(sites_.part(bodies, false, system_.executor()), system_.executor());
+        });
         folder_->end_topology();
     }
 
-    void output(std::int64_t n, double error) {
+    struct Observed {
+        std::vector<EnergyTerm> terms;
+        std::optional<ChainSystem::OwnBodies> bodies = std::nullopt;  // once somebody asks for them
+    };
+    Observed observed() {
         stepper_->observe(scene_.output.joint_forces);
+        return {system_.potential_energy()};
+    }
+    ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }
+
+    void output(std::int64_t n, double error) {
+        Observed now = at_start_ ? std::move(*at_start_) : observed();
+        if (!now.bodies) now.bodies = own_bodies();
         folder_->begin(n, time(n));
         observables_->begin();
         bool const together = folder_->frames_way().collective;
-        ChainSystem::OwnBodies const own = system_.own_bodies(scene_.output.joint_forces);
-        system_.pass_bodies(own, [&](ChainSystem::Bodies const& bodies) {
-            Frame const part = sites_.part(bodies, scene_.output.velocities && !together);
-            observables_->add(bodies.motion, part.positions);
+        system_.pass_bodies(*now.bodies, [&](ChainSystem::Bodies const& bodies) {
+            Frame const part = sites_.part(bodies, scene_.output.velocities && !together, system_.executor());
+            auto const add = [&] { observables_->add(bodies.motion, part.positions); };
+            bool const beside = !together && std::ssize(bodies.motion.position) >= worth_a_thread;
+            // Where no thread is to be had, it waits for get().
+            auto added = std::async(beside ? std::launch::async | std::launch::deferred : std::launch::deferred, add);
             if (!together) folder_->put(std::span(&part, 1));
+            added.get();
         });
-        if (together) put_own(own);
-        std::vector<EnergyTerm> const terms = system_.potential_energy();
+        if (together) put_own(*now.bodies);
         std::vector<Vector<double, 6>> at_tips;
         if (scene_.output.joint_forces)
             for (TipForce const& tip : system_.tip_forces()) at_tips.push_back(tip.wrench);
-        if (root_) last_row_ = observables_->row(terms, error);
+        if (root_) last_row_ = observables_->row(now.terms, error);
         folder_->end(at_tips, last_row_);
     }
 
     void put_own(ChainSystem::OwnBodies const& own) {
         system_.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
             std::vector<Frame> parts;
-            for (ChainSystem::Bodies const& bodies : runs) parts.push_back(sites_.part(bodies, scene_.output.velocities));
+            for (ChainSystem::Bodies const& bodies : runs)
+                parts.push_back(sites_.part(bodies, scene_.output.velocities, system_.executor()));
             folder_->put(parts);
         });
     }
@@ -314,6 +334,7 @@ class Run {
     std::unique_ptr<Observables> observables_;
     std::vector<StepTimeline> timelines_;
     std::vector<double> last_row_;
+    std::optional<Observed> at_start_;  // what the topology and the first frame show
     std::vector<std::string> notes_;
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0;

@@ -68,23 +68,31 @@ void Sites::add(ChainSpec const& chain, bool with_topology) {
     }
 }
 
-Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities) const {
+Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities, Executor const& executor) const {
     auto const first = static_cast<std::size_t>(bodies.first), end = first + bodies.motion.position.size();
-    auto const begin = std::lower_bound(sites_.begin(), sites_.end(), first, [](Site const& site, std::size_t b) { return site.body < b; });
+    auto const of_body = [&](std::size_t body) {
+        return std::lower_bound(sites_.begin(), sites_.end(), body, [](Site const& site, std::size_t b) { return site.body < b; });
+    };
+    auto const begin = of_body(first);
     auto const turning =
         std::lower_bound(turning_.begin(), turning_.end(), first, [](Turning const& one, std::size_t b) { return one.body < b; });
     Frame part;
     part.first_site = begin != sites_.end() ? begin->site : next_site_;
     part.first_body = turning != turning_.end() ? turning->number : next_turning_;
     ChainSystem::Snapshot const& s = bodies.motion;
-    part.positions.reserve(s.position.size());
-    for (auto site = begin; site != sites_.end() && site->body < end; ++site) {
-        std::size_t const k = site->body - first;
+    auto const count = static_cast<std::size_t>(of_body(end) - begin);
+    part.positions.resize(count);
+    if (velocities) part.velocities.resize(count);
+    if (!bodies.joint_force.empty()) part.joint_forces.resize(count, Vector<double, 6>::zero());
+    executor.for_each(static_cast<std::int64_t>(count), [&](std::int64_t number) {
+        Site const& site = begin[number];
+        auto const i = static_cast<std::size_t>(number);
+        std::size_t const k = site.body - first;
         Mat3 const turn = to_matrix(s.orientation[k]);
-        part.positions.push_back(s.position[k] + turn * site->place);
-        if (velocities) part.velocities.push_back(s.velocity[k] + turn * cross(s.omega[k], site->place));
-        if (!bodies.joint_force.empty()) part.joint_forces.push_back(site->is_first ? bodies.joint_force[k] : Vector<double, 6>::zero());
-    }
+        part.positions[i] = s.position[k] + turn * site.place;
+        if (velocities) part.velocities[i] = s.velocity[k] + turn * cross(s.omega[k], site.place);
+        if (!bodies.joint_force.empty() && site.is_first) part.joint_forces[i] = bodies.joint_force[k];
+    });
     for (auto one = turning; one != turning_.end() && one->body < end; ++one) part.orientations.push_back(s.orientation[one->body - first]);
     return part;
 }

@@ -18,7 +18,7 @@ class Sites {
 
     Topology const& topology() const { return topology_; }
     /// What these bodies show of themselves, without step and time.
-    Frame part(ChainSystem::Bodies const&, bool velocities) const;
+    Frame part(ChainSystem::Bodies const&, bool velocities, Executor const&) const;
 
   private:
     struct Site {

@@ -137,6 +137,12 @@ void write_text_file(std::string const& file, std::string const& text) {
     out.publish();
 }
 
+void make_output_folder(std::string const& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw InputError("the output folder cannot be made: " + error.message(), folder, "name another with --output");
+}
+
 std::string read_text_file(std::string const& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in) throw InputError("cannot be read", file, "check that the file exists and may be read");

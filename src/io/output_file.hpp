@@ -62,6 +62,9 @@ class AtomicFile {
     bool published_ = false;
 };
 
+/// With the folders above it, where they are not there yet; InputError naming it when it cannot be made.
+void make_output_folder(std::string const& folder);
+
 /// The whole of a text file; InputError naming it when it cannot be read.
 std::string read_text_file(std::string const& file);
 
