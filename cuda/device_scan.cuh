@@ -4,8 +4,9 @@
 #include <vector>
 
 #include "cuda/clusters.hpp"
+#include "cuda/launch.cuh"
 #include "cuda/owners.hpp"
-#include "cuda/scan_kernels.cuh"
+#include "cuda/scan_walk.cuh"
 
 namespace catena::cuda {
 
@@ -83,17 +84,9 @@ class DeviceScan {
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
             if (!tree.has_clusters_) return false;
             kernels::DeviceScanStage const& stage = tree.stages_.front().view;
-            cudaLaunchAttribute cluster{};
-            cluster.id = cudaLaunchAttributeClusterDimension;
-            cluster.val.clusterDim = {kernels::blocks_of_turn(count), 1, 1};
-            cudaLaunchConfig_t config{};
-            config.gridDim = {kernels::blocks_of_turn(count)};
-            config.blockDim = {kernels::most_of_scan};
-            config.dynamicSmemBytes = bytes<Scan>(stage);
-            config.stream = stream;
-            config.attrs = &cluster;
-            config.numAttrs = 1;
-            check(cudaLaunchKernelEx(&config, kernels::turn_scan_then<Scan, Action>, stage, scan, count, action), "start a kernel");
+            unsigned const blocks = kernels::blocks_of_turn(count);
+            cuda::launch({blocks, kernels::most_of_scan, bytes<Scan>(stage), blocks}, stream, kernels::turn_scan_then<Scan, Action>, stage,
+                         scan, count, action);
             return true;
         }
 
@@ -105,8 +98,7 @@ class DeviceScan {
         template <class Scan>
         void launch(void (*kernel)(kernels::DeviceScanStage, Scan), std::size_t i, Scan const& scan) const {
             kernels::DeviceScanStage const& stage = tree.stages_[i].view;
-            kernel<<<stage.blocks, kernels::threads_of_scan(stage), bytes<Scan>(stage), stream>>>(stage, scan);
-            check(cudaGetLastError(), "start a kernel");
+            cuda::launch({stage.blocks, kernels::threads_of_scan(stage), bytes<Scan>(stage)}, stream, kernel, stage, scan);
         }
     };
     ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }

@@ -12,6 +12,7 @@
 #include "cuda/device_records.cuh"
 #include "cuda/device_scan.cuh"
 #include "cuda/kernels.cuh"
+#include "cuda/launch.cuh"
 #include "cuda/peer_exchange.cuh"
 #include "cuda/short_launch.cuh"
 #include "cuda/stage_walk.cuh"
@@ -128,15 +129,13 @@ class DeviceSpace {
     template <class Action>
     void for_each(std::int64_t count, Action const& action) const {
         if (count == 0) return;
-        kernels::for_each<<<blocks(gpu_order::padded(count)), kernels::threads, 0, stream()>>>(count, action);
-        started();
+        launch({blocks(gpu_order::padded(count)), kernels::threads}, stream(), kernels::for_each<Action>, count, action);
     }
     template <class T, class Action>
     void over(Buffer<T> const& items, Action const& action) const {
         if (items.size() == 0) return;
         auto const count = static_cast<std::int64_t>(items.size());
-        kernels::over<<<blocks(count), kernels::threads, 0, stream()>>>(items.data(), count, action);
-        started();
+        launch({blocks(count), kernels::threads}, stream(), kernels::over<T, Action>, items.data(), count, action);
     }
     template <class Scan>
     void climb(ScanTree const& tree, Scan const& scan) const {
@@ -175,8 +174,7 @@ class DeviceSpace {
     double largest(std::int64_t count, Value const& value) const {
         if (count == 0) return 0;
         set_answer(0);
-        kernels::largest<<<blocks(count), kernels::threads, 0, stream()>>>(count, answer_->data(), value);
-        started();
+        launch({blocks(count), kernels::threads}, stream(), kernels::largest<Value>, count, answer_->data(), value);
         unsigned long long const bits = get(answer_->data());
         double found;
         std::memcpy(&found, &bits, sizeof(found));
@@ -322,18 +320,8 @@ class DeviceSpace {
             };
             std::size_t const bytes = sizeof(double) * (numbers(lower) + (upper ? numbers(*upper) : 0));
             allow_shared(kernels::turn<Sweep>, bytes);
-            cudaLaunchAttribute cluster{};
-            cluster.id = cudaLaunchAttributeClusterDimension;
-            cluster.val.clusterDim = {lower.blocks, 1, 1};
-            cudaLaunchConfig_t config{};
-            config.gridDim = {lower.blocks};
-            config.blockDim = {static_cast<unsigned>(of_block)};
-            config.dynamicSmemBytes = bytes;
-            config.stream = space.stream();
-            config.attrs = &cluster;
-            config.numAttrs = upper ? 1 : 0;
-            check(cudaLaunchKernelEx(&config, kernels::turn<Sweep>, lower.view, upper ? upper->view : kernels::DeviceStage{}, sweep),
-                  "start a kernel");
+            cuda::launch({lower.blocks, static_cast<unsigned>(of_block), bytes, upper ? lower.blocks : 0}, space.stream(),
+                         kernels::turn<Sweep>, lower.view, upper ? upper->view : kernels::DeviceStage{}, sweep);
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
@@ -352,14 +340,12 @@ class DeviceSpace {
             std::size_t const bytes =
                 sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, stage.threads));
             allow_shared(kernel, bytes);
-            kernel<<<stage.blocks, static_cast<unsigned>(stage.threads), bytes, space.stream()>>>(stage.view, sweep);
-            started();
+            cuda::launch({stage.blocks, static_cast<unsigned>(stage.threads), bytes}, space.stream(), kernel, stage.view, sweep);
         }
         template <class Sweep>
         void launch(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
             allow_shared(kernel, grid.shared_bytes);
-            kernel<<<grid.blocks, grid.threads, grid.shared_bytes, space.stream()>>>(tree.runs_.data(), grid.runs, sweep);
-            started();
+            cuda::launch({grid.blocks, grid.threads, grid.shared_bytes}, space.stream(), kernel, tree.runs_.data(), grid.runs, sweep);
         }
     };
     StageWalk<Launches> walk(Tree const& tree) const { return StageWalk<Launches>({*this, tree}); }

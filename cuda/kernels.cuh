@@ -12,10 +12,12 @@ namespace kernels {
 /// Neighbouring threads at neighbouring places.
 template <class Action>
 __global__ void for_each(std::int64_t count, Action action) {
+    wait_for_launch();
     if (std::int64_t const k = gpu_order::body(thread()); k < count) action(k);
 }
 template <class Item, class Action>
 __global__ void over(Item const* items, std::int64_t count, Action action) {
+    wait_for_launch();
     if (std::int64_t const i = thread(); i < count) action(items[i]);
 }
 
@@ -37,6 +39,7 @@ struct PutBody {
 /// Doubles from 0 on have the order of their bits, and a NaN is above them all.
 template <class Value>
 __global__ void largest(std::int64_t count, unsigned long long* found, Value value) {
+    wait_for_launch();
     unsigned long long mine = 0;
     if (std::int64_t const i = thread(); i < count) mine = static_cast<unsigned long long>(__double_as_longlong(fabs(value(i))));
     for (int lane = 16; lane > 0; lane /= 2) {

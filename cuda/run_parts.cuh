@@ -123,7 +123,8 @@ struct KeptOfPart {
 };
 
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a state a thread, and for what KeptOfPart has of all after these; `part`: as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
+/// those after it. `memory`: for a state a thread, and after these for what KeptOfPart has of all; `part`: as climb_some_runs left it, or
+/// null. `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {

@@ -115,12 +115,14 @@ template <class Scan>
 constexpr int scans_at_once = sizeof(typename Scan::Value) <= 8 * sizeof(double) ? 2 : 1;
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) climb_scan(DeviceScanStage stage, Scan scan) {
+    wait_for_launch();
     BlockOfScan<Scan> const block(stage, scan, shared_numbers, false);
     block.climb();
     block.put();
 }
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage, Scan scan) {
+    wait_for_launch();
     BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
     block.climb();
     block.descend();
@@ -128,6 +130,7 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage,
 /// Of one block, and then action(k) for every body k: by one cluster.
 template <class Scan, class Action>
 __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
+    wait_for_launch();
     if (blockIdx.x == 0) {
         BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
         block.climb();
@@ -140,6 +143,7 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage s
 }
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {
+    wait_for_launch();
     BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
     block.take();
     block.descend();
@@ -152,47 +156,3 @@ inline unsigned blocks_of_turn(std::int64_t count) {
 }
 
 }  // namespace catena::cuda::kernels
-
-namespace catena::cuda {
-
-/// Which launches a scan takes, whoever makes them. `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and
-/// descend(i, scan) of stage i; whether turn_then(scan, count, action) was launched.
-template <class Launches>
-class ScanWalk {
-  public:
-    explicit ScanWalk(Launches const& launches) : launches_(launches) {}
-    template <class Scan>
-    void climb(Scan const& scan) const {
-        climb_below(launches_.stages(), scan);
-    }
-    template <class Scan>
-    void descend(Scan const& scan) const {
-        descend_below(launches_.stages(), scan);
-    }
-    template <class Scan>
-    void climb_and_descend(Scan const& scan) const {
-        if (launches_.stages() == 0) return;
-        std::size_t const last = launches_.stages() - 1;
-        climb_below(last, scan);
-        launches_.turn(last, scan);
-        descend_below(last, scan);
-    }
-    /// And then action(k) for k < count, if one launch does all; else nothing is done.
-    template <class Scan, class Action>
-    bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
-        return launches_.stages() == 1 && launches_.blocks() == 1 && launches_.turn_then(scan, count, action);
-    }
-
-  private:
-    template <class Scan>
-    void climb_below(std::size_t stages, Scan const& scan) const {
-        for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, scan);
-    }
-    template <class Scan>
-    void descend_below(std::size_t stages, Scan const& scan) const {
-        for (std::size_t i = stages; i-- > 0;) launches_.descend(i, scan);
-    }
-    Launches launches_;
-};
-
-}  // namespace catena::cuda

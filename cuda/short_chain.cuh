@@ -355,7 +355,7 @@ ShortGrid grid_of_short(ShortChain const& chain) {
     return {static_cast<unsigned>(blocks), static_cast<unsigned>(lanes_of_warp * joining * Warp::warps_beside(joining)),
             sizeof(double) * Warp::numbers(joining, chain.warps)};
 }
-/// The next such launch may start before this one has ended; what it reads and writes waits.
+/// The next early launch may start before this one has ended; what it reads and writes waits.
 template <class Sweep>
 __global__ void __launch_bounds__(ShortWarp<Sweep>::most_threads) turn_short(ShortChain chain, Sweep sweep) {
     let_next_launch_start();

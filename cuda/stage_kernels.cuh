@@ -187,6 +187,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>) climb(DeviceStage stage, Sw
     BlockOfStage<Sweep> const block(stage, sweep, shared_numbers);
     block.take_lists();
     __syncthreads();
+    wait_for_launch();
     typename Sweep::Part part;
     block.template climb<false>(part);
     block.put_nodes();
@@ -196,6 +197,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>) descend(DeviceStage stage, 
     BlockOfStage<Sweep> const block(stage, sweep, shared_numbers);
     block.take_lists();
     __syncthreads();
+    wait_for_launch();
     block.take_nodes();
     block.template descend<true>(nullptr);
 }
@@ -210,6 +212,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage lower, Dev
         if (blockIdx.x < stage.blocks) BlockOfStage<Sweep>(stage, sweep, up == 0 ? memory[0] : memory[1]).take_lists();
     }
     __syncthreads();
+    wait_for_launch();
     typename Sweep::Part part;  // of the lower stage's
     CATENA_NO_UNROLL
     for (int up = 0; up < 2; ++up) {
@@ -238,6 +241,7 @@ template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+    wait_for_launch();
     if constexpr (whole_runs<Sweep>) {
         if (std::int64_t const i = thread(); i < count) climb_run(sweep, runs[i]);
     } else {
@@ -248,6 +252,7 @@ __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca
 }
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+    wait_for_launch();
     descend_some_runs<true, false>(
         runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
         [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },

@@ -150,10 +150,13 @@ class Block {
         return found;
     }
 
+    static void note_wait_for_launch() { here_->fibers_[threadIdx.x].waited_for_launch = true; }
+
   private:
     struct Fiber {
         ucontext_t context{};
         void* watched = nullptr;
+        bool waited_for_launch = false;
         int line = 0;
         Whole waits_for = Whole::nobody;
         double given = 0;
@@ -183,6 +186,10 @@ class Block {
     static void enter() {
         watch::leave(&here_->left_);
         here_->kernel_();
+        if (!here_->fibers_[threadIdx.x].waited_for_launch) {
+            ADD_FAILURE() << "a thread has not waited for the launch before";  // as cuda/launch.cuh asks of every kernel
+            std::abort();
+        }
         here_->leave_fiber(0, Whole::nobody);
     }
     /// No race with the fibers that read it.
@@ -300,6 +307,6 @@ inline void wait_for_cluster(int line = __builtin_LINE()) {
     cuda_on_host::Block::wait(line, cuda_on_host::Block::Whole::cluster);
 }
 inline void let_next_launch_start() {}
-inline void wait_for_launch() {}
+inline void wait_for_launch() { cuda_on_host::Block::note_wait_for_launch(); }
 
 }  // namespace catena::cuda::kernels

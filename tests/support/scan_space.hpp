@@ -8,7 +8,7 @@
 #include "tests/support/cuda_on_host.hpp"
 
 // After CUDA's words.
-#include "cuda/scan_kernels.cuh"
+#include "cuda/scan_walk.cuh"
 
 namespace catena::test {
 

@@ -1,0 +1,51 @@
+// Which launches a scan takes over its stages, whoever makes them: as stage_walk.cuh for sweeps.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cuda/scan_kernels.cuh"
+
+namespace catena::cuda {
+
+/// `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and descend(i, scan) of stage i; whether
+/// turn_then(scan, count, action) was launched.
+template <class Launches>
+class ScanWalk {
+  public:
+    explicit ScanWalk(Launches const& launches) : launches_(launches) {}
+    template <class Scan>
+    void climb(Scan const& scan) const {
+        climb_below(launches_.stages(), scan);
+    }
+    template <class Scan>
+    void descend(Scan const& scan) const {
+        descend_below(launches_.stages(), scan);
+    }
+    template <class Scan>
+    void climb_and_descend(Scan const& scan) const {
+        if (launches_.stages() == 0) return;
+        std::size_t const last = launches_.stages() - 1;
+        climb_below(last, scan);
+        launches_.turn(last, scan);
+        descend_below(last, scan);
+    }
+    /// And then action(k) for k < count, if one launch does all; else nothing is done.
+    template <class Scan, class Action>
+    bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
+        return launches_.stages() == 1 && launches_.blocks() == 1 && launches_.turn_then(scan, count, action);
+    }
+
+  private:
+    template <class Scan>
+    void climb_below(std::size_t stages, Scan const& scan) const {
+        for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, scan);
+    }
+    template <class Scan>
+    void descend_below(std::size_t stages, Scan const& scan) const {
+        for (std::size_t i = stages; i-- > 0;) launches_.descend(i, scan);
+    }
+    Launches launches_;
+};
+
+}  // namespace catena::cuda
