@@ -25,12 +25,15 @@ Outcome list() {
         "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n"
         "peers       forward dynamics of random chains beside Pinocchio, Simbody and MuJoCo, and where each of them stops\n"
         "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
+        "sampling    what alpha-synuclein, or a scene's chain, samples on rigid links, harmonic bonds and constraints at several steps: "
+        "size,\n"
+        "            configurational temperature, the largest usable step of each and its ns/day\n"
         "overlap     a step with forces through the host, with and without the matrix sweep under way meanwhile\n"
         "figures     the founding chapter's Table 2.1 and Figures 2.3, 2.5, 2.6 and 2.7 on this machine, beside the chapter's numbers\n"
         "            (--figure, --output)\n"
         "network     latency and bandwidth between ranks, and the solver's own gathers; catena plan --network takes what --json writes\n"
         "plan        the planner's predictions of an evaluation beside what is measured, and its choices beside the best of all\n";
-    outcome.json = {{"benchmarks", {"evaluation", "solve", "peers", "openmm", "overlap", "figures", "network", "plan"}}};
+    outcome.json = {{"benchmarks", {"evaluation", "solve", "peers", "openmm", "sampling", "overlap", "figures", "network", "plan"}}};
     return outcome;
 }
 
@@ -252,6 +255,7 @@ Outcome run_bench(Communicator const& communicator, BenchRequest const& request)
     if (request.name == "plan") return bench_plan(communicator, request);
     if (request.name == "peers") return bench_peers(communicator, request);
     if (request.name == "openmm") return bench_openmm(communicator, request);
+    if (request.name == "sampling") return bench_sampling(communicator, request);
     return request.name == "overlap" ? bench_overlap(communicator, request) : solve(communicator, request);
 }
 

@@ -11,12 +11,13 @@
 
 #include "command/commands.hpp"
 #include "command/generated.hpp"
+#include "command/step_makers.hpp"
 #include "command/text.hpp"
 #include "command/version.hpp"
-#include "cuda/solver.hpp"
-#include "error.hpp"
-#include "force/openmm_own.hpp"
-#include "integrate/stepper.hpp"
+#include "integrate/share.hpp"
+#include "io/html.hpp"
+#include "io/output_file.hpp"
+#include "io/timeline_picture.hpp"
 #include "report/hardware.hpp"
 #include "report/timing.hpp"
 
@@ -27,39 +28,8 @@ namespace {
 constexpr std::int64_t most_constraints_unguarded = 200000;
 constexpr std::chrono::seconds patience{30};
 constexpr double block_seconds = 0.1;
-
-/// A scene's integrator, without files.
-class CatenaSteps {
-  public:
-    CatenaSteps(Scene scene, Communicator const& communicator)
-        : scene_(std::move(scene)), system_(scene_, Axes::world, communicator), stepper_(make_stepper(system_, scene_.dynamics)) {}
-    void step(int count) {
-        system_.make_current();
-        for (int i = 0; i < count; ++i) {
-            stepper_->prepare(nullptr);
-            stepper_->step(n_++, nullptr);
-        }
-        error_ = larger(error_, stepper_->constraint_error());  // and waits for the steps
-    }
-    double energy() {
-        system_.make_current();
-        stepper_->prepare(nullptr);
-        double sum = 0;
-        for (EnergyTerm const& term : system_.potential_energy()) sum += term.value;
-        return sum;
-    }
-    Scene const& scene() const { return scene_; }
-    ChainSystem& system() { return system_; }
-    double constraint_error() const { return error_; }
-    double tolerance() const { return scene_.dynamics.constraint_tolerance; }
-
-  private:
-    Scene scene_;
-    ChainSystem system_;
-    std::unique_ptr<Stepper> stepper_;
-    std::int64_t n_ = 0;
-    double error_ = 0;
-};
+constexpr double slow_seconds = 1;  // of a step: two are enough to warm up
+constexpr int timed_steps = 3;      // the median one is drawn
 
 /// Something that takes steps, and the seconds of one, block after block.
 struct Runner {
@@ -68,7 +38,11 @@ struct Runner {
     std::vector<double> seconds = {};
 
     void warm_up() {
-        step(3);  // builds what is built late
+        step(1);  // builds what is built late
+        double const begin = seconds_now();
+        step(1);
+        if (seconds_now() - begin > slow_seconds) return;
+        step(1);
         double const start = seconds_now();
         step(3);
         double const one = (seconds_now() - start) / 3;
@@ -83,7 +57,6 @@ struct Runner {
 };
 
 void take_turns(std::vector<Runner*> const& runners, int blocks) {
-    for (Runner* runner : runners) runner->warm_up();
     for (int b = 0; b < blocks; ++b)
         for (Runner* runner : runners) runner->block();
 }
@@ -92,17 +65,6 @@ Scene scene_for(std::int64_t beads, BenchRequest const& request, Backend backend
     Scene scene = condensate_scene(beads, overrides_of(request));
     scene.solver.backend = backend;
     return scene;
-}
-
-/// The backend of a benchmark that takes one: the GPU's where there is one.
-Backend backend_of(BenchRequest const& request) {
-    if (!request.backends.empty()) return request.backends.front();
-    return cuda::why_not().empty() ? Backend::cuda : Backend::automatic;
-}
-
-OwnRun own_run(Scene const& scene, Backend backend) {
-    DynamicsSpec const& d = scene.dynamics;
-    return {d.step, d.temperature, d.friction, d.seed, backend == Backend::cuda ? 0 : -1};
 }
 
 /// What one of OpenMM's own runs says of itself.
@@ -291,15 +253,16 @@ Json head(char const* name) {
     return {{"bench", name}, {"build", version_json()}, {"hardware", hardware_json()}, {"results", Json::array()}};
 }
 
-void need_one_rank(Communicator const& communicator, char const* name) {
-    if (communicator.size() > 1)
-        throw InputError("this benchmark is for one rank", fmt::format("catena bench {}", name), "run it without mpirun");
-}
-
 std::vector<std::int64_t> sizes_of(BenchRequest const& request, std::vector<std::int64_t> const& usual) {
     std::vector<std::int64_t> sizes;
     for (std::int64_t const size : request.sizes.empty() ? usual : request.sizes) sizes.push_back(beads_of_condensate(size));
     return sizes;
+}
+
+/// A step's phases, in the manner of the founding chapter's Fig. 2.7.
+void write_pictures(std::string const& folder, std::string const& pictures) {
+    std::string const intro = "<h1>What is hidden behind the forces</h1>\n<p>" + escaped(hardware_text()) + "</p>\n";
+    write_text_file(folder + "/overlap.html", html_page("Catena: overlap", intro + pictures));
 }
 
 }  // namespace
@@ -335,9 +298,12 @@ Outcome bench_openmm(Communicator const& communicator, BenchRequest const& reque
 
 Outcome bench_overlap(Communicator const& communicator, BenchRequest const& request) {
     need_one_rank(communicator, "overlap");
-    Table table({"beads", "backend", "platform", "path", "overlap off", "on", "gain", "sweep hidden", "constraint error", ""},
-                {1, 2, 3, 9});
+    if (!request.output.empty()) make_output_folder(request.output);
+    Table table(
+        {"beads", "backend", "platform", "path", "overlap off", "on", "matrix sweep", "hidden", "gain", "at most", "constraint error", ""},
+        {1, 2, 3, 11});
     Outcome outcome;
+    std::string pictures;
     outcome.json = head("overlap");
     for (std::int64_t const beads : sizes_of(request, {9940, 99960, 1000020})) {
         Scene scene = scene_for(beads, request, backend_of(request));
@@ -349,12 +315,21 @@ Outcome bench_overlap(Communicator const& communicator, BenchRequest const& requ
         openmm.overlap = true;
         CatenaSteps on(std::move(scene), communicator);
         Runner without{[&](int count) { off.step(count); }}, with{[&](int count) { on.step(count); }};
+        without.warm_up();
+        with.warm_up();
         Hidden const hidden(on.system());
         take_turns({&without, &with}, request.repeat);
         double const error = larger(off.constraint_error(), on.constraint_error());
         bool const valid = error <= on.tolerance() && std::isfinite(off.energy()) && std::isfinite(on.energy());
         double const a = median(without.seconds), b = median(with.seconds);
         outcome.valid = outcome.valid && valid;
+        double const sweep = hidden.matrix() / (static_cast<double>(with.of_block) * request.repeat);
+        if (!request.output.empty())
+            for (CatenaSteps* steps : {&off, &on}) {
+                Json const timeline(gather_timelines(communicator, steps->timelines(timed_steps)));
+                pictures +=
+                    fmt::format("<h2>{} beads, overlap {}</h2>\n", beads, steps == &off ? "off" : "on") + timeline_picture(timeline);
+            }
         outcome.json["results"].push_back(
             {{"beads", beads},
              {"backend", name_of(on.system().backend())},
@@ -362,16 +337,21 @@ Outcome bench_overlap(Communicator const& communicator, BenchRequest const& requ
              {"path", on.system().openmm()->path()},
              {"seconds_per_step", {{"overlap_off", json_of(without.seconds)}, {"overlap_on", json_of(with.seconds)}}},
              {"gain", 1 - b / a},
+             {"largest_gain", sweep / a},
+             {"matrix_sweep_seconds_per_step", sweep},
              {"matrix_sweep_hidden", hidden.share()},
              {"constraint_error", error},
              {"valid", valid}});
         table.add({std::to_string(beads), name_of(on.system().backend()), on.system().openmm()->platform(), on.system().openmm()->path(),
-                   step_text(a), step_text(b), percent(1 - b / a), percent(hidden.share()), fmt::format("{:.1e}", error),
-                   valid ? "VALID" : "INVALID"});
+                   step_text(a), step_text(b), step_text(sweep), percent(hidden.share()), percent(1 - b / a),
+                   fmt::format("{:.2g} %", 100 * sweep / a), fmt::format("{:.1e}", error), valid ? "VALID" : "INVALID"});
     }
     outcome.json["valid"] = outcome.valid;
-    outcome.text = fmt::format("One step of 10 fs, forces by {}, median of {} blocks in turn. {}\n", openmm_version(), request.repeat,
-                               hardware_text());
+    if (!request.output.empty()) write_pictures(request.output, pictures);
+    outcome.text = fmt::format(
+        "One step of 10 fs, forces by {}, median of {} blocks in turn; a gain above \"at most\", the matrix sweep's share of a step, is "
+        "the noise of the forces' times. {}\n",
+        openmm_version(), request.repeat, hardware_text());
     outcome.text += table.text();
     outcome.complaint = "a constraint error above its tolerance, or an energy that is not finite: see the results";
     return outcome;

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "command/figures.hpp"
+#include "command/sampling_words.hpp"
 #include "command/values.hpp"
 #include "command/version.hpp"
 #include "error.hpp"
@@ -18,7 +19,8 @@ constexpr std::string_view handle_names[] = {"projected", "full", "articulated"}
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
 constexpr std::string_view suite_names[] = {"stability"};
-constexpr std::string_view bench_names[] = {"list", "evaluation", "solve", "peers", "openmm", "overlap", "figures", "network", "plan"};
+constexpr std::string_view bench_names[] = {"list",     "evaluation", "solve",   "peers",   "openmm",
+                                            "sampling", "overlap",    "figures", "network", "plan"};
 
 /// For later versions.
 constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
@@ -29,6 +31,7 @@ struct Words {
     std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite,
         cases;
     std::vector<std::string> scenes;
+    SamplingWords sampling;
     bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
 };
 
@@ -150,6 +153,7 @@ void add_commands(CLI::App& app, Words& words) {
 
     command = app.add_subcommand("bench", "reproducible benchmarks, each figure with its residual");
     command->add_option("NAME", words.name, "`list` names the benchmarks")->type_name("");
+    add_sampling(*command, words.sampling);
     command
         ->add_option("--sizes", words.sizes,
                      "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out above 1e6; peers: 100,200,500,1e3,1e4,1e5; "
@@ -164,17 +168,17 @@ void add_commands(CLI::App& app, Words& words) {
     add_repeat(*command, words, "21");
     command
         ->add_option("--backend", words.backends,
-                     "serial, segments, openmp, cuda, cuda-levels (default: those of the processor in this build; openmm and overlap take "
-                     "one, cuda where "
-                     "there is a GPU)")
+                     "serial, segments, openmp, cuda, cuda-levels (default: those of the processor in this build; openmm, overlap and "
+                     "sampling take one, cuda where there is a GPU)")
         ->type_name("B,...");
     command->add_option("--figure", words.figures, "of figures: table-2.1, 2.3, 2.5, 2.6, 2.7 of the founding chapter (default: all)")
         ->type_name("F,...");
-    command->add_option("--output", words.output, "of figures: folder for figures.json and the pictures (default catena-figures)")
+    command->add_option("--output", words.output, "folder for figures.json and pictures (default catena-figures); of overlap for pictures")
         ->type_name("DIR");
     command->footer(
         "Examples:\n  catena bench list\n  catena bench solve --sizes 1e3,1e6 --joints link --backend segments,openmp --json bench.json\n"
-        "  catena bench figures --figure 2.5,2.6 --output figures");
+        "  catena bench figures --figure 2.5,2.6 --output figures\n"
+        "  catena bench sampling --methods rigid,bonds --steps 0.01,0.02,0.04 --duration 2000 --json sampling.json");
 
     for (CLI::App* each : app.get_subcommands({})) {
         if (each->get_name() != "bench") add_backend(*each, words);
@@ -322,7 +326,9 @@ BenchRequest bench_request(Words const& words) {
     if (words.name.empty()) throw InputError("no benchmark is named", "command line", "write catena bench list");
     if (words.name == later_bench) throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
-    for (auto const& [option, given] : {std::pair{"--figure", words.figures}, {"--output", words.output}, {"--joints", words.joints}})
+    using Given = std::pair<char const*, std::string const&>;
+    for (auto const& [option, given] : {Given{"--figure", words.figures}, Given{"--output", words.output}, Given{"--joints", words.joints},
+                                        Given{"--sizes", words.sizes}, Given{"--repeat", words.repeat}})
         if (!given.empty() && !bench_takes(request.name, option))
             throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name), "command line", "leave it out");
     request.sizes = bench_sizes(request.name);
@@ -339,6 +345,7 @@ BenchRequest bench_request(Words const& words) {
     if (!words.figures.empty()) request.figures = comma_list("--figure", words.figures);
     for (std::string const& figure : request.figures) known_value("--figure", figure, figure_names);
     request.output = words.output;
+    request.sampling = sampling_options(words.sampling, request.name, request.json);
     return request;
 }
 

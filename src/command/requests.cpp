@@ -29,7 +29,8 @@ std::vector<std::int64_t> bench_sizes(std::string const& name) {
 
 bool bench_takes(std::string const& name, std::string const& option) {
     if (option == "--joints") return name == "solve" || name == "evaluation" || name == "peers" || name == "plan";
-    return name == "figures";
+    if (option == "--sizes" || option == "--repeat") return name != "sampling";
+    return name == "figures" || (name == "overlap" && option == "--output");
 }
 
 }  // namespace catena::command

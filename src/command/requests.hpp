@@ -50,18 +50,29 @@ struct ReportRequest : CommonOptions {
     int repeat = 11;
     bool quick = false;
 };
+/// Of `bench sampling`. Times in ps, of each copy.
+struct SamplingOptions {
+    std::string scene;  // empty: alpha-synuclein
+    std::int64_t copies = 71;
+    std::vector<std::string> methods{"rigid", "bonds", "constraints"};
+    std::vector<double> steps{0.01};
+    double duration = 1000, discard = 200, every = 1;
+    double equilibration = 1000;  // before all rows
+    double seconds = 0;           // at most, a row; 0: as many as it takes
+};
 struct BenchRequest : CommonOptions {
     std::string name;
     std::vector<std::int64_t> sizes;  // empty: the benchmark's own
     std::vector<std::string> joints{"link", "spherical", "revolute"};
     std::vector<Backend> backends;  // empty: all of this build
     std::vector<std::string> figures;
-    std::string output;  // folder, of figures
+    std::string output;  // folder, of figures and of overlap's pictures
     int repeat = 21;
+    SamplingOptions sampling;
 };
 /// Bodies that a benchmark takes unless told otherwise; none: its own choice.
 std::vector<std::int64_t> bench_sizes(std::string const& name);
-/// Whether --figure, --output or --joints is anything to it.
+/// Whether --figure, --output, --joints, --sizes or --repeat is anything to it.
 bool bench_takes(std::string const& name, std::string const& option);
 /// --help and --version.
 struct Answer : CommonOptions {

@@ -1,4 +1,7 @@
+#include <sched.h>
+
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 
 #include "tests/command/program.hpp"
@@ -66,6 +69,19 @@ TEST(OpenMm, TheRunSaysItsPathAndWhatWasHidden) {
     EXPECT_EQ(hidden("off"), 0);
 }
 
+TEST(OpenMm, OnOneCoreNothingIsHidden) {
+    cpu_set_t all, one;
+    ASSERT_EQ(sched_getaffinity(0, sizeof(all), &all), 0);
+    CPU_ZERO(&one);
+    for (int cpu = 0; CPU_COUNT(&one) == 0; ++cpu)
+        if (CPU_ISSET(cpu, &all)) CPU_SET(cpu, &one);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(one), &one), 0);  // what is started inherits it
+    Ended const e = catena({"bench", "overlap", "--sizes", "140", "--backend", "segments", "--repeat", "2", "--json", "-"});
+    ASSERT_EQ(sched_setaffinity(0, sizeof(all), &all), 0);
+    EXPECT_EQ(e.status, 0) << e.err;
+    EXPECT_EQ(e.json().at("results").at(0).at("matrix_sweep_hidden"), 0);
+}
+
 TEST(OpenMm, BenchmarksSayWhatTheyCompare) {
     Ended const e = catena({"bench", "openmm", "--sizes", "140", "--backend", "segments", "--repeat", "2", "--json", "-"});
     expect_good(e);
@@ -76,10 +92,18 @@ TEST(OpenMm, BenchmarksSayWhatTheyCompare) {
         EXPECT_GT(row.at(of).at("seconds_per_step").at("median").get<double>(), 0) << of;
     EXPECT_LT(row.at("openmm_constrained").at("link_error").get<double>(), 2e-5);  // OpenMM's own tolerance is 1e-5
     EXPECT_GT(row.at("openmm_harmonic").at("link_error").get<double>(), 1e-4);
-    Ended const overlap = catena({"bench", "overlap", "--sizes", "140", "--backend", "segments", "--repeat", "2", "--json", "-"});
+    TemporaryFolder const folder;
+    Ended const overlap = catena(
+        {"bench", "overlap", "--sizes", "140", "--backend", "segments", "--repeat", "2", "--output", folder / "pictures", "--json", "-"});
     expect_good(overlap);
+    Json const found = overlap.json().at("results").at(0);
+    double const sweep = found.at("matrix_sweep_seconds_per_step");
+    EXPECT_GT(sweep, 0);
     for (char const* const of : {"overlap_off", "overlap_on"})
-        EXPECT_GT(overlap.json().at("results").at(0).at("seconds_per_step").at(of).at("median").get<double>(), 0) << of;
+        EXPECT_GT(found.at("seconds_per_step").at(of).at("median").get<double>(), sweep) << of;
+    EXPECT_GT(std::filesystem::file_size(folder / "pictures/overlap.html"), 1000U);
+    std::ofstream(folder / "file") << "no folder\n";
+    expect_refused(catena({"bench", "overlap", "--output", folder / "file/pictures"}), 2, "the output folder cannot be made");
 }
 
 }  // namespace

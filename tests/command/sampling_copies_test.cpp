@@ -1,0 +1,73 @@
+#include "command/sampling_copies.hpp"
+
+#include <gtest/gtest.h>
+
+#include "integrate/absolute_dynamics.hpp"
+
+namespace catena::command {
+namespace {
+
+std::unique_ptr<Communicator> const alone = serial_communicator();
+
+SamplingCopies copies_of(std::int64_t count, char const* platform) {
+    BenchRequest request;
+    request.sampling.copies = count;
+    request.set = {std::string("forces.openmm.platform=") + platform};
+    return {request, *alone, Backend::segments};
+}
+
+std::vector<Vec3> positions_of(Scene const& scene) {
+    std::vector<Vec3> x;
+    for (ChainSpec const& chain : scene.chains) x.insert(x.end(), chain.beads.position.begin(), chain.beads.position.end());
+    return x;
+}
+
+double largest_difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b, std::size_t from) {
+    double worst = 0;
+    for (std::size_t k = 0; k < a.size(); ++k) worst = larger(worst, norm(a[k] - b[from + k]));
+    return worst;
+}
+
+TEST(SamplingCopies, EachHasTheForcesThatItHasAlone) {
+    double constexpr nanoseconds = 15e3;  // a thousand nanometres from end to end
+    SamplingCopies many = copies_of(9, "CPU"), one = copies_of(1, "CPU"), exact = copies_of(1, "Reference");
+    std::vector<Vec3> const x = positions_of(many.scene(0.01, nanoseconds));
+    EXPECT_GT(many.extent(nanoseconds), 200);
+    std::vector<Vec3> const force = many.forces(x);
+    double largest = 0;
+    for (Vec3 const& each : force) largest = std::max(largest, norm(each));
+    for (std::size_t const copy : {0U, 4U, 8U}) {
+        std::vector<Vec3> const own(x.begin() + 140 * static_cast<std::ptrdiff_t>(copy),
+                                    x.begin() + 140 * static_cast<std::ptrdiff_t>(copy + 1));
+        EXPECT_LT(largest_difference(one.forces(own), force, 140 * copy), 1e-4 * largest);
+        EXPECT_LT(largest_difference(exact.forces(own), force, 140 * copy), 1e-4 * largest);
+    }
+}
+
+TEST(SamplingCopies, TheyStandApartAndAMeetingIsSeen) {
+    SamplingCopies copies = copies_of(5, "Reference");
+    std::vector<Vec3> x = positions_of(copies.scene(0.01, 1000));
+    EXPECT_GT(copies.nearest(x), copies.spacing(1000) - 53);  // none is longer than its contour
+    EXPECT_GT(copies.spacing(4000), copies.spacing(1000) + 10);
+    Vec3 const shift = x[2 * 140] + Vec3{0, 0, 1.5} - x[4 * 140 + 139];
+    for (std::size_t k = 4 * 140; k < 5 * 140; ++k) x[k] = x[k] + shift;
+    EXPECT_LE(copies.nearest(x), 1.5 + 1e-9);
+    x[0][1] = NAN;
+    EXPECT_TRUE(std::isnan(copies.nearest(x)));
+}
+
+TEST(SamplingCopies, TheyStartFromConformationsOfTheirOwn) {
+    SamplingCopies copies = copies_of(3, "Reference");
+    std::vector<ChainSample> const samples = copies.sample(positions_of(copies.scene(0.01, 1)), BondMeasure::rigid);
+    EXPECT_NE(samples[0].radius_of_gyration, samples[1].radius_of_gyration);
+    EXPECT_NE(samples[1].radius_of_gyration, samples[2].radius_of_gyration);
+    std::vector<Vec3> moved = positions_of(copies.scene(0.01, 1));
+    for (Vec3& each : moved) each = 0.9 * each;
+    copies.start_from(moved);
+    EXPECT_NE(copies.scene(0.01, 1).dynamics.seed, copies.scene(0.01, 1).dynamics.seed);
+    EXPECT_NEAR(copies.sample(positions_of(copies.scene(0.01, 1)), BondMeasure::rigid)[2].radius_of_gyration,
+                0.9 * samples[2].radius_of_gyration, 1e-12);
+}
+
+}  // namespace
+}  // namespace catena::command
