@@ -44,7 +44,7 @@ inline std::int64_t bytes_of_columns(std::int64_t end, int columns) {
 
 class CountingSpace : public HostAccess {
   public:
-    static constexpr bool answers_at_once = false, by_launches = true;
+    static constexpr bool answers_at_once = false;
 
     template <class T>
     class Array {
@@ -128,7 +128,7 @@ class CountingSpace : public HostAccess {
         Fixed<1> inverse_mass_;
         Fixed<6> inverse_inertia_;
         Fixed<3> r1_, r2_;
-        Fixed<9> axes1_, axes2_;
+        Fixed<6> axes1_, axes2_;
         Fixed<3> screw_;
         Fixed<1> mass_;
         Fixed<6> inertia_;
@@ -283,7 +283,7 @@ class CountingCrossing {
     FieldOf<3> direction_, tip_direction_;
     FieldOf<4> rotation_;
     FieldOf<3> moving_r2_;
-    FieldOf<9> moving_axes2_;
+    FieldOf<6> moving_axes2_;
     FieldOf<3> torque_, force_, omega_;
     CountingSpace::Directions bias_, tip_bias_;
     FieldOf<3> alpha_, acceleration_;

@@ -87,7 +87,7 @@ class DeviceCrossing {
     DeviceField<3> direction_, tip_direction_;
     DeviceField<4> rotation_;
     DeviceField<3> moving_r2_;
-    DeviceField<9> moving_axes2_;
+    DeviceField<6> moving_axes2_;
     DeviceField<3> torque_, force_, omega_;
     DeviceDirections bias_, tip_bias_;
     DeviceField<3> alpha_, acceleration_;

@@ -65,7 +65,7 @@ class DeviceModel {
     FixedField<1> inverse_mass_;
     FixedField<6> inverse_inertia_;
     FixedField<3> r1_, r2_;
-    FixedField<9> axes1_, axes2_;
+    FixedField<6> axes1_, axes2_;
     FixedField<3> screw_;
     FixedField<1> mass_;
     FixedField<6> inertia_;

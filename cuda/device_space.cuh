@@ -23,7 +23,7 @@ namespace catena::cuda {
 
 class DeviceSpace {
   public:
-    static constexpr bool answers_at_once = false, by_launches = true;
+    static constexpr bool answers_at_once = false;
     /// Copies share the stream and the places for answers: one thread at a time asks largest() or get().
     DeviceSpace()
         : stream_(std::make_shared<Stream>()),

@@ -98,34 +98,38 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
     __syncthreads();
 }
 
-/// Where a thread keeps what a sweep wants of its part's joints on the way down, if it does (ForgetfulSweeps).
+/// A sweep whose parts leave what their joints pass on in memory (Evaluation).
 template <class Sweep>
-struct KeptOfPart {
+concept keeps_passages = requires { requires Sweep::keeps_passages; };
+/// Where a thread leaves that.
+template <class Sweep>
+struct PassagesInMemory {
+    using Passage = typename Sweep::Passage;
     double* memory;
-    static __host__ __device__ std::size_t size(int threads) {
-        if constexpr (requires { Sweep::kept_of_part; })
-            return Sweep::kept_of_part * SharedRecords<typename Sweep::Kept>::size(threads);
-        else
-            return 0;
-    }
-    template <class Kept>
-    __device__ void put(int i, Kept const& kept) const {
-        records<Kept>(i).store(static_cast<int>(threadIdx.x), kept);
-    }
-    __device__ auto get(int i) const { return records<typename Sweep::Kept>(i).load(static_cast<int>(threadIdx.x)); }
+    static __host__ __device__ constexpr std::size_t size(int threads) { return Sweep::most_passages * SharedRecords<Passage>::size(threads); }
+    __device__ void put(int i, Passage const& passage) const { records(i).store(static_cast<int>(threadIdx.x), passage); }
+    __device__ Passage get(int i) const { return records(i).load(static_cast<int>(threadIdx.x)); }
 
   private:
-    template <class Kept>
-    __device__ SharedRecords<Kept> records(int i) const {
+    __device__ SharedRecords<Passage> records(int i) const {
         int const threads = static_cast<int>(blockDim.x);
-        return {memory + i * SharedRecords<Kept>::size(threads), SharedRecords<Kept>::pitch_for(threads)};
+        return {memory + i * SharedRecords<Passage>::size(threads), SharedRecords<Passage>::pitch_for(threads)};
     }
 };
+/// Numbers of a block that descend_some_runs() takes in memory.
+template <class Sweep>
+constexpr std::size_t numbers_of_descent(int threads) {
+    std::size_t const states = SharedRecords<typename Sweep::Sweeps::State>::size(threads);
+    if constexpr (keeps_passages<Sweep>)
+        return states + PassagesInMemory<Sweep>::size(threads);
+    else
+        return states;
+}
 
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a state a thread, and after these for what KeptOfPart has of all; `part`: as climb_some_runs left it, or
-/// null. `nodes_stay`: so does `memory`.
-template <bool unroll, bool nodes_stay, class Sweep, class OfFirst, class OfNext>
+/// those after it. `memory`: for a state a thread, or numbers_of_descent() where it is `roomy`; `part`: as climb_some_runs left it, or null.
+/// `nodes_stay`: so does `memory`.
+template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
     using State = typename Sweep::Sweeps::State;
@@ -162,9 +166,9 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     }
     if (mine.part >= count) return;
     if (mine.part == 0 && count > 1) next = at_part.load(here + lanes);
-    if constexpr (requires { Sweep::kept_of_part; })
-        sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next,
-                                    KeptOfPart<Sweep>{memory + SharedRecords<State>::size(static_cast<int>(blockDim.x))});
+    if constexpr (roomy && keeps_passages<Sweep>)
+        sweep.template down<false>(run, mine.part, part ? *part : read, own, next,
+                                   PassagesInMemory<Sweep>{memory + SharedRecords<State>::size(static_cast<int>(blockDim.x))});
     else
         sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next);
 }

@@ -121,7 +121,7 @@ class ShortWarp {
 
   private:
     using Passed = typename Sweep::Passed;
-    using Factors = QuickFactors<Sweep::K == 1>;
+    using Factors = QuickFactors<Sweep::K == 1 && !one_by_one>;
     using Passage = typename Sweep::Passage;
     /// Of a lane's bodies: in registers where there are few, else in shared memory, in turn in the same place.
     class InRegisters {
@@ -349,7 +349,7 @@ struct ShortGrid {
 template <class Sweep>
 ShortGrid grid_of_short(ShortChain const& chain) {
     using Warp = ShortWarp<Sweep>;
-    constexpr int crowded = Warp::one_by_one ? 2 : most_joining_warps;
+    constexpr int crowded = Sweep::K > 3 ? 1 : Warp::one_by_one ? 2 : most_joining_warps;
     int const most = chain.warps > most_in_cluster * crowded ? most_blocks_of_short : most_in_cluster;
     int const joining = (chain.warps + most - 1) / most, blocks = (chain.warps + joining - 1) / joining;
     return {static_cast<unsigned>(blocks), static_cast<unsigned>(lanes_of_warp * joining * Warp::warps_beside(joining)),

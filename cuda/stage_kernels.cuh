@@ -129,7 +129,7 @@ class BlockOfStage {
         }
         __syncthreads();
         if (stage_.runs)
-            descend_some_runs<alone, !alone>(
+            descend_some_runs<alone, !alone, false>(
                 stage_.runs, here_->item.begin, here_->item.end, sweep_, parts_, part,
                 [&](dca::Run const&, std::int64_t i) { return forces_.load(place_of_item(i)); },
                 [&](dca::Run const&, std::int64_t i) { return forces_.load(static_cast<int>(slot_or_next_[place_of_item(i)])); });
@@ -227,12 +227,9 @@ __global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage lower, Dev
         if (up == 1) meet_cluster();
     }
 }
-/// Of matrices and biases at once: runs that are apart from the stages above them are for another sweep.
-template <class Sweep>
-concept has_apart = requires(Sweep const& sweep) { sweep.apart(); };
 /// Whether stages are for its two sweeps one after the other: larger segments and biases at once find no registers.
 template <class Sweep>
-concept goes_twice = has_apart<Sweep> && !Sweep::keeps_nodes;
+concept goes_twice = !Sweep::keeps_nodes && requires(Sweep const& sweep) { sweep.matrices(), sweep.biases(); };
 /// Blocks of `threads` that share a multiprocessor: links want few registers, and many to hide that memory is far.
 template <class Sweep>
 constexpr int blocks_at_once = Sweep::Sweeps::K == 1 ? 4 : 1;
@@ -253,7 +250,7 @@ __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     wait_for_launch();
-    descend_some_runs<true, false>(
+    descend_some_runs<true, false, true>(
         runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
         [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
         [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
@@ -278,9 +275,7 @@ RunsGrid grid_of_climb(std::int64_t runs) {
 /// Of a GPU whose blocks may share so many bytes.
 template <class Sweep>
 RunsGrid grid_of_descent(std::int64_t runs, std::size_t most_shared_bytes) {
-    auto const bytes = [](int of_block) {
-        return sizeof(double) * (SharedRecords<typename Sweep::Sweeps::State>::size(of_block) + KeptOfPart<Sweep>::size(of_block));
-    };
+    auto const bytes = [](int of_block) { return sizeof(double) * numbers_of_descent<Sweep>(of_block); };
     int of_block = threads;
     while (of_block > 32 && bytes(of_block) > most_shared_bytes) of_block /= 2;
     RunsGrid grid = grid_of_runs(runs, dca::parts_of_run, of_block);

@@ -35,8 +35,8 @@ class StageWalk {
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
         if constexpr (kernels::goes_twice<Sweep>) {
-            climb_stages(launches_.stages(), sweep.matrices);
-            turn_stages(sweep.biases);
+            climb_stages(launches_.stages(), sweep.matrices());
+            turn_stages(sweep.biases());
         } else {
             std::size_t const apart = launches_.stages() - (launches_.together() ? 2 : 1);
             climb_stages(apart, sweep);
@@ -48,8 +48,8 @@ class StageWalk {
     template <class Sweep>
     void climb_stages(std::size_t stages, Sweep const& sweep) const {
         if constexpr (kernels::goes_twice<Sweep>) {
-            climb_stages(stages, sweep.matrices);
-            climb_stages(stages, sweep.biases);
+            climb_stages(stages, sweep.matrices());
+            climb_stages(stages, sweep.biases());
         } else {
             for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, sweep);
         }
@@ -57,23 +57,17 @@ class StageWalk {
     template <class Sweep>
     void descend_stages(std::size_t stages, Sweep const& sweep) const {
         if constexpr (kernels::goes_twice<Sweep>)
-            descend_stages(stages, sweep.biases);
+            descend_stages(stages, sweep.biases());
         else
             for (std::size_t i = stages; i-- > 0;) launches_.descend(i, sweep);
     }
     template <class Sweep>
     void climb_runs(Sweep const& sweep) const {
-        if constexpr (kernels::has_apart<Sweep>)
-            climb_runs(sweep.apart());
-        else if (launches_.runs_apart())
-            launches_.climb_runs(sweep);
+        if (launches_.runs_apart()) launches_.climb_runs(sweep);
     }
     template <class Sweep>
     void descend_runs(Sweep const& sweep) const {
-        if constexpr (kernels::has_apart<Sweep>)
-            descend_runs(sweep.apart());
-        else if (launches_.runs_apart())
-            launches_.descend_runs(sweep);
+        if (launches_.runs_apart()) launches_.descend_runs(sweep);
     }
 
     Launches launches_;

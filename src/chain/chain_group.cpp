@@ -57,12 +57,6 @@ int restricted_directions(JointType type) {
     return 0;
 }
 
-Vector<double, 9> flat(Mat3 const& m) {
-    Vector<double, 9> v;
-    for (int i = 0; i < 9; ++i) v[i] = m.data[i];
-    return v;
-}
-
 Vector<double, 6> inverse(Sym3 const& inertia) {
     Eigen::Matrix3d j;
     for (int a = 0; a < 3; ++a)
@@ -131,13 +125,13 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
         return joint_axes(b.joint[joint], b.axis[joint], universal ? b.first_axis[joint] : Vec3::zero());
     };
     group.r1.set(k, -b.com[body]);
-    group.axes1.set(k, flat(axes(body)));
+    group.axes1.set(k, kept_axes(axes(body)));
     Quat const rotation = to_quaternion(b.rotation[body]);
     group.joint_rotation.set(k, {{rotation.w, rotation.x, rotation.y, rotation.z}});
     group.joint_translation.set(k, b.translation[body]);
     bool const last = body + 1 == static_cast<std::int64_t>(b.size());
     group.r2.set(k, last ? Vec3::zero() : b.translation[body + 1] - b.com[body]);
-    group.axes2.set(k, flat(last ? Mat3::identity() : b.rotation[body + 1] * axes(body + 1)));
+    group.axes2.set(k, kept_axes(last ? Mat3::identity() : b.rotation[body + 1] * axes(body + 1)));
     if (group.has_universal && b.joint[body] == JointType::universal) group.first_axis.set(k, b.first_axis[body]);
     if (!group.has_screws) return;
     bool const closing = body == 0 && spec.is_ring();  // a ring's first body has no other joint
@@ -184,7 +178,7 @@ void add_tip(ChainGroup& group, ChainSpec const& spec, std::int64_t k) {
     group.jointed_tip[k] = static_cast<std::int32_t>(group.tips.size());
     if (!group.beads && !group.linked) {
         group.r2.set(k, tip.translation - spec.bodies.com.back());
-        group.axes2.set(k, flat(tip.rotation * local.axes));
+        group.axes2.set(k, kept_axes(tip.rotation * local.axes));
     }
     group.tips.push_back(local);
     group.tip_screw.push_back(local.screw);
@@ -209,8 +203,8 @@ void allocate(ChainGroup& group) {
     group.r1 = Field<3>(n);
     group.r2 = Field<3>(n);
     if (group.linked) return;
-    group.axes1 = Field<9>(n);
-    group.axes2 = Field<9>(n);
+    group.axes1 = Field<6>(n);
+    group.axes2 = Field<6>(n);
     group.joint_rotation = Field<4>(n);
     group.joint_translation = Field<3>(n);
     if (group.has_universal) group.first_axis = Field<3>(n);

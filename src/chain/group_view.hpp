@@ -15,7 +15,7 @@ struct GroupView {
     ConstView<1> inverse_mass;
     ConstView<6> inverse_inertia;
     ConstView<3> r1, r2;
-    ConstView<9> axes1, axes2;
+    ConstView<6> axes1, axes2;
     ConstView<3> screw;
     ConstView<1> mass;  // with articulated handles
     ConstView<6> inertia;

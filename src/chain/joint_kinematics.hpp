@@ -30,14 +30,14 @@ template <class Space>
 struct MotionFields {
     typename Space::template FieldOf<4> joint_turn, orientation;
     typename Space::template FieldOf<3> omega, origin, velocity, r2;
-    typename Space::template FieldOf<9> axes2;
+    typename Space::template FieldOf<6> axes2;
 
     MotionFields() = default;
     MotionFields(ChainGroup const& group, Space const& space)
         : joint_turn(group.size), orientation(group.size), omega(group.size), origin(group.size), velocity(group.size) {
         if (!group.moving_meeting()) return;
         r2 = typename Space::template FieldOf<3>(group.size);
-        axes2 = typename Space::template FieldOf<9>(group.size);
+        axes2 = typename Space::template FieldOf<6>(group.size);
         fill(space, r2, group.r2);
         fill(space, axes2, group.axes2);
     }
@@ -158,8 +158,8 @@ class JointKinematics {
     void exchange_meeting(JointScan const& s) {
         if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
         space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
-        View<12> const meeting = next_meeting_.view();
-        space_.exchange(communicator_, BodyExchange<12>{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard});
+        View<9> const meeting = next_meeting_.view();
+        space_.exchange(communicator_, BodyExchange<9>{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard});
     }
     void begin_at_ground() {
         MotionRecords const before = before_.view();
@@ -179,7 +179,7 @@ class JointKinematics {
     typename Space::template List<std::int64_t> piece_;
     typename Space::template List<LocalDrive> drive_;
     typename Space::template Fixed<3> r1_;
-    typename Space::template Fixed<9> axes1_;
+    typename Space::template Fixed<6> axes1_;
     typename Space::template Fixed<4> joint_rotation_;
     typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
     std::vector<dca::Run> no_runs_;
@@ -189,7 +189,7 @@ class JointKinematics {
     typename Space::template List<std::int32_t> slot_;
     FieldOf<4> rotation_;
     FieldOf<3> omega_, translation_, velocity_;
-    FieldOf<12> next_meeting_;
+    FieldOf<9> next_meeting_;
     dca::SharedUnits<Space> shared_;
     typename Space::template Records<Motion, dca::Order::plain> whole_, before_;
 };

@@ -68,7 +68,7 @@ struct MotionView {
     View<3> velocity;     // of B's origin, B
     // Where the meeting frames of outboard joints move in their inboard body (else absent): as ConfigurationView.
     View<3> r2;
-    View<9> axes2;
+    View<6> axes2;
 };
 
 /// The inboard side of a joint, seen from the body it is in.
@@ -86,7 +86,7 @@ struct JointsView {
     std::uint8_t const *is_first = nullptr, *is_last = nullptr;
     bool planar = false, has_screws = false;
     ConstView<3> r1;
-    ConstView<9> axes1;
+    ConstView<6> axes1;
     ConstView<4> joint_rotation;
     ConstView<3> joint_translation, first_axis, screw;
     std::int64_t const* piece = nullptr;  // first bodies of the pieces
@@ -112,11 +112,11 @@ struct JointsView {
     }
     template <class Place>
     CATENA_HD Mat3At<Place> axes(Place k) const {
-        return as_matrix(read(axes1, k));
+        return axes_of(read(axes1, k));
     }
     template <class Place>
     CATENA_HD Vec3At<Place> axis(Place k) const {
-        return {{read(axes1, k, 2), read(axes1, k, 5), read(axes1, k, 8)}};
+        return {{read(axes1, k, 3), read(axes1, k, 4), read(axes1, k, 5)}};
     }
     /// {c, s, rate} of ChainGroup::screw: the joint turns by c rate q and slides by s rate q.
     template <class Place>

@@ -53,7 +53,7 @@ struct JointScan {
     std::int32_t const* slot = nullptr;  // of the run of body k
     MotionRecords whole;                  // by slot: against the body before the segment
     MotionRecords before;                 // by slot: of the body before the segment, against the ground
-    View<12> next_meeting;               // {point, axes}: entry 1 of the joint after this rank's last body
+    View<9> next_meeting;                // {point, axes}: entry 1 of the joint after this rank's last body
 
     template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> load(Place k) const {
@@ -132,15 +132,16 @@ struct JointScan {
 
     CATENA_HD void show_first_meeting() const {
         Meeting const m = joints.meeting(state, std::int64_t{0});
-        Vector<double, 12> numbers;
+        auto const axes = kept_axes(m.axes);
+        Vector<double, 9> numbers;
         CATENA_UNROLL
-        for (int i = 0; i < 12; ++i) numbers[i] = i < 3 ? m.point[i] : m.axes.data[i - 3];
+        for (int i = 0; i < 9; ++i) numbers[i] = i < 3 ? m.point[i] : axes[i - 3];
         next_meeting.store(0, numbers);
     }
     CATENA_HD void set_meeting(std::int64_t inboard_body) const {
         if (inboard_body + 1 < joints.size) return put_meeting(inboard_body, joints.meeting(state, inboard_body + 1));
-        Vector<double, 12> const n = next_meeting.load(1);
-        put_meeting(inboard_body, {{{n[0], n[1], n[2]}}, {{n[3], n[4], n[5], n[6], n[7], n[8], n[9], n[10], n[11]}}});
+        Vector<double, 9> const n = next_meeting.load(1);
+        put_meeting(inboard_body, {{{n[0], n[1], n[2]}}, axes_of(Vector<double, 6>{{n[3], n[4], n[5], n[6], n[7], n[8]}})});
     }
     template <class Place>
     CATENA_HD void set_meeting(Place const& inboard_bodies) const {
@@ -149,10 +150,7 @@ struct JointScan {
     template <class Place>
     CATENA_HD void put_meeting(Place inboard_body, MeetingOf<RealAt<Place>> const& m) const {
         write(motion.r2, inboard_body, m.point + read(joints.r1, inboard_body));
-        Vector<RealAt<Place>, 9> axes;
-        CATENA_UNROLL
-        for (int i = 0; i < 9; ++i) axes[i] = m.axes.data[i];
-        write(motion.axes2, inboard_body, axes);
+        write(motion.axes2, inboard_body, kept_axes(m.axes));
     }
 };
 

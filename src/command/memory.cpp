@@ -10,17 +10,18 @@ namespace catena::command {
 namespace {
 
 struct SolverSizes {
-    double segment, joint, node;
+    double segment, joint;
+    double kept = 0, all_kept = 0;  // of a run among those that go side by side: its joints between parts, and its bodies too
 };
 template <int K>
 SolverSizes sizes() {
     return {static_cast<double>(sizeof(dca::SegmentMatrix<double, K>) + sizeof(dca::SegmentBias<double, K>)),
-            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)),
-            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + sizeof(Vector<double, K>))};
+            static_cast<double>(sizeof(dca::JointMatrix<double, K>) + 2 * sizeof(Vector<double, K>)), dca::kept_of_run<K>(false) * 8.0,
+            dca::kept_of_run<K>(true) * 8.0};
 }
-/// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, the joints that are kept and that of
-/// the merge, its bodies' constants. 0 where none do.
-double side_by_side(Scene const& scene, ChainSpec const& chain, double node, int ranks) {
+/// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, what is kept and the merge's joint,
+/// its bodies' constants. 0 where none do.
+double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes const& sizes, int ranks) {
     SimdLevel const level = scene.solver.simd.value_or(best_simd_level());
     if (level == SimdLevel::off || scene.solver.handles != Handles::projected || scene.solver.pairwise()) return 0;
     double const places = static_cast<double>(sizeof(dca::RunsInLanes) + sizeof(dca::MergesInLanes)) / lanes_of(level);
@@ -28,17 +29,16 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, double node, int
     using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
     bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
     int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
-    double const numbers = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks) * node / sizeof(double);
-    bool const all = joints && !chain.is_beads() && dca::keeps_all_joints(static_cast<std::int64_t>(numbers));
-    int const kept = all ? dca::joints_of_run : dca::joints_between_parts;
-    return places + (kept + 1) * node + static_cast<double>(dca::longest_run * constants) * sizeof(double);
+    double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
+    bool const all = !chain.is_beads() && dca::may_keep_all(static_cast<std::int64_t>(runs * sizes.all_kept / sizeof(double)));
+    return places + (all ? sizes.all_kept : sizes.kept) + sizes.kept / (dca::parts_of_run - 1) +
+           static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
 SolverSizes sizes_for(int directions, Handles handles) {
     if (handles == Handles::articulated)
         return {static_cast<double>(sizeof(dca::ArticulatedMatrix<double, 6>) + sizeof(dca::ArticulatedBias<double, 6>)),
                 static_cast<double>(sizeof(dca::ArticulatedJoint<double, 6>) + sizeof(dca::ArticulatedOffset<double, 6>) +
-                                    sizeof(dca::HandleState<double, 6>)),
-                0};
+                                    sizeof(dca::HandleState<double, 6>))};
     switch (directions) {
         case 1:
             return sizes<1>();
@@ -56,7 +56,7 @@ SolverSizes sizes_for(int directions, Handles handles) {
 }
 
 // Doubles a body in the model's and the dynamics' arrays (chain/chain_group.hpp and integrate/), apart from those of the directions.
-constexpr double bead_numbers = 3 + 7 * 3, body_numbers = 45 + 3 * 4 + 16 * 3;
+constexpr double bead_numbers = 3 + 7 * 3, body_numbers = 39 + 3 * 4 + 16 * 3;
 constexpr double embedded_numbers = 6 * 7;            // rates of stages
 constexpr double joint_numbers = 13 + 2 * 7 + 2 * 3;  // the scan; where a step starts and its sum; rates
 constexpr double noise_numbers = 2 * 3;               // a thermostat's forces in joint coordinates; what is at rest
@@ -106,7 +106,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
-        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size.node, ranks) / ranks;
+        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size, ranks) / ranks;
     }
     return m;
 }

@@ -11,7 +11,7 @@ template <bool sliding>
 class ArticulatedLeaf {
   public:
     static constexpr int K = 6;
-    static constexpr bool at_once = false, beads = false, in_joints = false, projected = false;
+    static constexpr bool beads = false, in_joints = false, projected = false;
     using Matrix6 = ArticulatedMatrix<double, K>;
     using Bias6 = ArticulatedBias<double, K>;
     using Vec6 = Vector<double, K>;
@@ -29,7 +29,7 @@ class ArticulatedLeaf {
     CATENA_HD_APART Held held(std::int64_t k) const {
         Held b{frames_.state(k), {}, {}, {}, {}};
         b.handles = frames_.handles(b.state, k, to_matrix(as_quaternion(b.state.rotation)));
-        Mat3 const e = transposed_times(to_matrix(as_quaternion(b.state.rotation)), as_matrix(b.state.axes1));
+        Mat3 const e = transposed_times(to_matrix(as_quaternion(b.state.rotation)), axes_of(b.state.axes1));
         for (int i = 0; i < 3; ++i) {
             b.turning.set_column(i, Vec3::zero());
             b.shifting.set_column(i, e.column(i));

@@ -74,18 +74,75 @@ struct Resting {
     }
 };
 
-/// What joins segments with their biases, whatever they are made of.
-template <class Leaf>
-struct JoinsBoth {
+/// Matrices and biases at once; on the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
+template <class Leaf, class Bodies>
+struct Evaluation {
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
-    using Joint = typename Sweeps::Joint;
     using Directions = typename Sweeps::Directions;
+    using Joint = typename Sweeps::Joint;
     using Node = typename Sweeps::Node;
-    static constexpr bool descends = true, keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
+    using Part = typename Bodies::Part;
+    using Body = typename Bodies::template Body<std::int64_t>;
+    using Passed = OneSided<double, K>;
+    using Passage = Elimination<double, K>;
+    static constexpr bool descends = true, one_by_one = Bodies::one_by_one;
+    static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
+    static constexpr bool goes_short = true;
+    /// Whether what a part's joints pass on is left in memory, which larger handles want: of all bodies but the first and the last.
+    static constexpr bool keeps_passages = K > 3;
+    static constexpr int most_passages = part_length - (keeps_passages ? 2 : 1);
     Sweeps s;
+    Bodies bodies;
+    AccelerationsView out;
 
+    /// One after the other, where both at once find no registers; the way down is this one.
+    struct Biases : BiasSweep<Leaf> {
+        Evaluation whole;
+        template <bool unroll>
+        CATENA_HD_IN_PLACE void down(Run const& run, int p, NothingRead, Directions const& first, Directions const& next) const {
+            whole.template down<unroll>(run, p, whole.read(begin_of(run, p), end_of(run, p)), first, next);
+        }
+    };
+    MatrixSweep<Leaf> matrices() const { return {s}; }
+    Biases biases() const { return {{s, bodies.loads, out}, *this}; }
+
+    template <class InverseLength = dca::InverseLength>
+    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
+        return bodies.part(begin, end, inverse_length);
+    }
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
+        std::int64_t const begin = begin_of(run, p);
+        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, Factors{});
+    }
+    /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
+    /// `factors`: as factorize(), if not always.
+    template <class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, Part const& part, Kept&& kept, Factors const& factors) const {
+        Lost found;
+        Segment segment = first_of(bodies.segment(bodies.body(part, 0)), kept);
+        each_body<unrolled<K>>(1, count, [&](int i) {
+            Body const body = bodies.body(part, i);
+            pass_up(segment, i, bodies.segment(body), {begin + i, body.restricted}, kept, found, factors);
+        });
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return this->part(begin, count, part, kept, dca::Factors{});
+        s.note(found);
+        return segment;
+    }
+    /// The same of `count` bodies whose segments `kept` has. `restricted(i)`: of their joints.
+    template <class Restricted, class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
+                                           Factors const& factors) const {
+        static_assert(!Factors::may_fail);
+        Lost found;
+        Segment segment = first_of(kept.template get<Segment>(0), kept);
+        each_body<unrolled<K>>(
+            1, count, [&](int i) { pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, factors); });
+        s.note(found);
+        return segment;
+    }
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
         Node node;
         Segment const segment = joined(inboard, outboard, at, node);
@@ -102,13 +159,6 @@ struct JoinsBoth {
             if (!found.none()) return joined(inboard, outboard, at, node);
         s.note(found);
         return segment;
-    }
-    template <class Factors>
-    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
-                          Factors const& factors) const {
-        dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
-        s.watch(at, joint.factor, found);
-        dca::append(segment.bias, outboard.bias, joint, offset);
     }
     CATENA_HD void keep(std::int64_t k, Node const& node) const {
         s.joints.store(k, node.joint);
@@ -131,81 +181,39 @@ struct JoinsBoth {
         s.note(found);
         return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
     }
+
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
     CATENA_HD Directions force(Node const& node, Directions const& first, Directions const& next) const {
         return disassemble(node.joint, node.offset, first, next);
     }
-};
-
-/// On the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
-template <class Leaf, class Bodies>
-struct Evaluation : JoinsBoth<Leaf> {
-    static constexpr bool goes_short = true, one_by_one = Bodies::one_by_one;
-    using Base = JoinsBoth<Leaf>;
-    using Base::K, Base::s;
-    using typename Base::Directions, typename Base::Joint, typename Base::Segment;
-    using Part = typename Bodies::Part;
-    using Body = typename Bodies::template Body<std::int64_t>;
-    using Passed = OneSided<double, K>;
-    using Passage = Elimination<double, K>;
-    Bodies bodies;
-    AccelerationsView out;
-
-    template <class InverseLength = dca::InverseLength>
-    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
-        return bodies.part(begin, end, inverse_length);
-    }
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
-        std::int64_t const begin = begin_of(run, p);
-        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, Factors{});
-    }
-    /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
-    /// `factors`: as factorize(), if not always.
-    template <class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, Part const& part, Kept&& kept, Factors const& factors) const {
-        Lost found;
-        Segment segment{};
-        each_body<unrolled<K>>(0, count, [&](int i) {
-            Body const body = bodies.body(part, i);
-            pass_up(segment, i, bodies.segment(body), {begin + i, body.restricted}, kept, found, factors);
-        });
-        if constexpr (Factors::may_fail)
-            if (!found.none()) return this->part(begin, count, part, kept, dca::Factors{});
-        s.note(found);
-        return segment;
-    }
-    /// The same of `count` bodies whose segments `kept` has. `restricted(i)`: of their joints.
-    template <class Restricted, class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
-                                           Factors const& factors) const {
-        static_assert(!Factors::may_fail);
-        Lost found;
-        Segment segment{};
-        each_body<unrolled<K>>(
-            0, count, [&](int i) { pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, factors); });
-        s.note(found);
-        return segment;
-    }
+    CATENA_HD static Directions force(Passage const& passed, Directions const& next) { return passed.gain * next + passed.offset; }
     template <bool unroll>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
+        PassagesHere passages;
+        down<unroll && !keeps_passages>(run, p, part, first, next, passages);
+    }
+    /// `passages`: put(i, Passage) and get(i), i < most_passages.
+    template <bool unroll, class Passages>
+    CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next,
+                                 Passages&& passages) const {
         constexpr bool unrolled_here = unroll || unrolled<K>;
         std::int64_t const k = begin_of(run, p);
-        int const count = static_cast<int>(end_of(run, p) - k);
-        Elimination<double, K> passed[part_length] = {};
-        Symmetric<double, K> z22{};
-        Directions b2{};
-        each_body<unrolled_here>(0, count, [&](int i) {
+        int const last = static_cast<int>(end_of(run, p) - k) - 1;
+        Directions at_last = first;
+        Segment const begins = bodies.segment(bodies.body(part, 0));
+        Symmetric<double, K> z22 = begins.matrix.z22;
+        Directions b2 = begins.bias.b2 + transposed_times(begins.matrix.z12, first);
+        each_body<unrolled_here>(1, last + 1, [&](int i) {
             Body const body = bodies.body(part, i);
             Segment const segment = bodies.segment(body);
-            if (i > 0) {
-                passed[i] = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted);
-            } else {
-                z22 = segment.matrix.z22;
-                b2 = segment.bias.b2 + transposed_times(segment.matrix.z12, first);
-            }
+            Passage const passed = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted);
+            if (keeps_passages && i == last)
+                at_last = force(passed, next);
+            else
+                passages.put(i - 1, passed);
         });
-        each_body_back<unrolled_here>(0, count, [&](int i) {
-            Directions const at_i = i > 0 ? passed[i].gain * next + passed[i].offset : first;
+        each_body_back<unrolled_here>(0, last + 1, [&](int i) {
+            Directions const at_i = i == 0 ? first : keeps_passages && i == last ? at_last : force(passages.get(i - 1), next);
             bodies.accelerate(part, i, at_i, next, out);
             store_forces(s.leaf.group(), out, k + i, at_i, next);
             next = at_i;
@@ -224,11 +232,7 @@ struct Evaluation : JoinsBoth<Leaf> {
                 b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
         });
         each_body_back<unrolled<K>>(0, count, [&](int i) {
-            Directions at_i = first;
-            if (i > 0) {
-                Passage const passed = kept.template get<Passage>(i);
-                at_i = passed.gain * next + passed.offset;
-            }
+            Directions const at_i = i > 0 ? force(kept.template get<Passage>(i), next) : first;
             action(i, at_i, next);
             next = at_i;
         });
@@ -243,149 +247,30 @@ struct Evaluation : JoinsBoth<Leaf> {
     struct Forgotten {
         CATENA_HD static void put(int, Passed const&) {}
     };
+    struct PassagesHere {
+        Passage passage[part_length - 1] = {};  // compilers do not see that the last one is never put
+        CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
+        CATENA_HD Passage const& get(int i) const { return passage[i]; }
+    };
+    template <class Kept>
+    CATENA_HD_IN_PLACE static Segment first_of(Segment const& own, Kept&& kept) {
+        kept.put(0, Passed{{}, own.matrix.z12, own.bias});
+        return own;
+    }
     template <class Kept, class Factors>
     CATENA_HD_IN_PLACE void pass_up(Segment& segment, int i, Segment const& own, JointAt const& at, Kept&& kept, Lost& found,
                                     Factors const& factors) const {
-        if (i == 0) {
-            segment = own;
-            return kept.put(i, Passed{{}, own.matrix.z12, own.bias});
-        }
         Joint joint;
         Directions offset;
-        this->append(segment, own, at, joint, offset, found, factors);
+        append(segment, own, at, joint, offset, found, factors);
         kept.put(i, Passed{joint.factor, joint.outboard, own.bias});
     }
-};
-
-/// MatrixSweep and BiasSweep at once, with the same bits. What joins a part's bodies is found again on the way down, not kept: where bodies
-/// are many, memory takes longer than that.
-template <class Leaf>
-struct ForgetfulSweeps : JoinsBoth<Leaf> {
-    static constexpr bool goes_short = false;
-    using Base = JoinsBoth<Leaf>;
-    using Base::K, Base::s;
-    using typename Base::Directions, typename Base::Segment, typename Base::Node;
-    using Bodies = Resting<Leaf>;
-    using Part = typename Bodies::Part;
-    Bodies bodies;
-    AccelerationsView out;
-
-    /// What the way down keeps of a part's joints, but the first body's and the last one's.
-    using Kept = HalfDisassembled<double, K>;
-    static constexpr int kept_of_part = part_length - 2;
-
-    CATENA_HD Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
-    CATENA_HD Segment part(Run const& run, int p, Part const& part) const {
-        return join_bodies(run, p, part, [](int, Node const&) {});
-    }
-    /// `kept`: put(i, Kept) and get(i), i < kept_of_part.
-    template <bool /*unroll*/, class Memory>
-    CATENA_HD void down(Run const& run, int p, Part const& part, Directions const& first, Directions next, Memory const& kept) const {
-        std::int64_t const begin = begin_of(run, p);
-        int const last = static_cast<int>(end_of(run, p) - begin) - 1;
-        Directions at_last = first;
-        join_bodies(run, p, part, [&](int i, Node const& node) {
-            Kept const half = half_disassemble(node.joint, node.offset, first);
-            if (i == last)
-                at_last = disassemble(half, next);
-            else
-                kept.put(i - 1, half);
-        });
-        each_body_back<unrolled<K>>(0, last + 1, [&](int i) {
-            Directions const at_i = i == last ? at_last : i == 0 ? first : disassemble(kept.get(i - 1), next);
-            bodies.accelerate(part, i, at_i, next, out);
-            store_forces(s.leaf.group(), out, begin + i, at_i, next);
-            next = at_i;
-        });
-    }
-
-  private:
-    /// see(i, node) of all joints but the first body's.
-    template <class See>
-    CATENA_HD Segment join_bodies(Run const& run, int p, Part const& part, See const& see) const {
-        std::int64_t const begin = begin_of(run, p);
-        Segment segment = bodies.segment(bodies.body(part, 0));
-        each_body<unrolled<K>>(1, static_cast<int>(end_of(run, p) - begin), [&](int i) {
-            auto const own = bodies.body(part, i);
-            Node node;
-            segment = this->joined(segment, bodies.segment(own), {begin + i, own.restricted}, node);
-            see(i, node);
-        });
-        return segment;
-    }
-};
-
-/// MatrixSweep and BiasSweep at once.
-template <class Leaf>
-struct BothSweeps : JoinsBoth<Leaf> {
-    static constexpr bool goes_short = false;
-    using Base = JoinsBoth<Leaf>;
-    using typename Base::Directions, typename Base::Segment;
-    using Part = NothingRead;
-    MatrixSweep<Leaf> matrices;
-    BiasSweep<Leaf> biases;
-
-    /// For runs that are apart from the stages above them (StagePlan).
-    ForgetfulSweeps<Leaf> apart() const { return {{this->s}, {this->s.leaf, this->s.restricted, biases.loads}, biases.out}; }
-    CATENA_HD Part read(std::int64_t /*begin*/, std::int64_t /*end*/) const { return {}; }
-    CATENA_HD Segment part(Run const& run, int p, Part read) const {
-        auto const matrix = matrices.part(run, p, read);  // whose joints the biases need
-        return {matrix, biases.part(run, p, read)};
-    }
-    template <bool unroll>
-    CATENA_HD void down(Run const& run, int p, Part read, Directions const& first, Directions const& next) const {
-        biases.template down<unroll>(run, p, read, first, next);
-    }
-};
-
-/// With the same bits for chains that one launch takes: joints within parts are kept as well, and bodies read one by one.
-template <class Leaf>
-struct ShortSweeps : BothSweeps<Leaf> {
-    static constexpr bool goes_short = true, one_by_one = true;
-    using Base = BothSweeps<Leaf>;
-    using Base::s, Base::K;
-    using typename Base::Directions, typename Base::Segment, typename Base::Node;
-    using Bodies = Resting<Leaf>;
-    using Part = typename Bodies::Part;
-    using Body = typename Bodies::template Body<std::int64_t>;
-    using Passed = Node;
-    using Passage = Node;
-    Bodies bodies;
-
-    CATENA_HD Part read(std::int64_t begin, std::int64_t end) const { return bodies.part(begin, end); }
-    CATENA_HD Segment part(Run const& run, int p, Part const&) const { return Base::part(run, p, {}); }
-    template <bool unroll>
-    CATENA_HD void down(Run const& run, int p, Part const&, Directions const& first, Directions const& next) const {
-        Base::template down<unroll>(run, p, {}, first, next);
-    }
-    /// As Evaluation's, but that `kept` gets nodes: of all joints but the first body's.
-    template <class Restricted, class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
-                                           Factors const& factors) const {
-        Segment segment{};
-        each_body<unrolled<K>>(0, count, [&](int i) {
-            Segment const own = kept.template get<Segment>(i);
-            if (i == 0) {
-                segment = own;
-                return;
-            }
-            Node node;
-            segment = this->joined(segment, own, {begin + i, restricted(i)}, node, factors);
-            kept.put(i, node);
-        });
-        return segment;
-    }
-    template <class Kept, class Action>
-    CATENA_HD_IN_PLACE void forces(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
-        each_body_back<unrolled<K>>(0, count, [&](int i) {
-            Directions const at_i = i > 0 ? this->force(kept.template get<Node>(i), first, next) : first;
-            action(i, at_i, next);
-            next = at_i;
-        });
-    }
-    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard) const {
-        bodies.accelerate(body, inboard, outboard, this->biases.out);
-        store_forces(s.leaf.group(), this->biases.out, k, inboard, outboard);
+    template <class Factors>
+    CATENA_HD void append(Segment& segment, Segment const& outboard, JointAt const& at, Joint& joint, Directions& offset, Lost& found,
+                          Factors const& factors) const {
+        dca::append(segment.matrix, outboard.matrix, at.restricted, joint, factors);
+        s.watch(at, joint.factor, found);
+        dca::append(segment.bias, outboard.bias, joint, offset);
     }
 };
 

@@ -39,8 +39,6 @@ template <int K_>
 class BeadLeaf {
   public:
     static constexpr int K = K_;
-    /// Whether matrices and biases in one sweep beat one sweep after the other: with more directions registers run out.
-    static constexpr bool at_once = K == 1;
     static constexpr bool beads = true, in_joints = false, projected = K == 1, reads_neighbours = true;
     using Moving = MovingBeads<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
@@ -120,7 +118,7 @@ CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k, SegmentMa
 template <int K, bool sliding>
 class MeetingFrames {
   public:
-    static constexpr bool any_forces = sliding, at_once = false, in_joints = true, on_links = false;
+    static constexpr bool any_forces = sliding, in_joints = true, on_links = false;
     explicit MeetingFrames(GroupView const& group) : group_(group), axes2_(group.axes2), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
@@ -132,7 +130,7 @@ class MeetingFrames {
     struct State {
         Vector<Real, 3> r1, r2;
         Vector<Real, 4> rotation;
-        Vector<Real, 9> axes1, axes2;
+        Vector<Real, 6> axes1, axes2;
     };
     template <class Place>
     CATENA_HD State<RealAt<Place>> state(Place k) const {
@@ -143,7 +141,7 @@ class MeetingFrames {
                                                                     Mat3At<Place> const& turn) const {
         using Real = RealAt<Place>;
         using Axes = Matrix<Real, 3, 3>;
-        Axes const e1 = transposed_times(turn, as_matrix(state.axes1)), e2 = as_matrix(state.axes2);
+        Axes const e1 = transposed_times(turn, axes_of(state.axes1)), e2 = axes_of(state.axes2);
         HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1), make_handle<K, sliding>(state.r2, e2, e2)};
         if constexpr (sliding) {
             auto const s1 = read(group_.screw, k);
@@ -163,7 +161,7 @@ class MeetingFrames {
   private:
     GroupView group_;
     ConstView<6> compliance_;
-    ConstView<9> axes2_;
+    ConstView<6> axes2_;
     ConstView<3> r2_;
     ConstView<4> rotation_;
 };
@@ -172,7 +170,7 @@ class MeetingFrames {
 template <int K>
 class GroundFrames {
   public:
-    static constexpr bool any_forces = false, at_once = true, in_joints = false, on_links = false;
+    static constexpr bool any_forces = false, in_joints = false, on_links = false;
     explicit GroundFrames(GroupView const& group) : r1_(group.r1), r2_(group.r2) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
@@ -208,7 +206,7 @@ class GroundFrames {
 template <int K>
 class LinkFrames {
   public:
-    static constexpr bool any_forces = false, at_once = false, in_joints = false, on_links = true;
+    static constexpr bool any_forces = false, in_joints = false, on_links = true;
     explicit LinkFrames(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
         rotation_ = c.rotation;
@@ -254,7 +252,6 @@ class BodyLeaf {
   public:
     static constexpr int K = K_;
     using Frames = Frames_;
-    static constexpr bool at_once = K <= 3 && Frames::at_once;
     static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
     static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;  // or whether there are any
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}

@@ -81,6 +81,12 @@ CATENA_HD Symmetric<Real, 3> as_symmetric(Vector<Real, 6> const& v) {
 }
 
 template <class Real, int N>
+CATENA_HD Symmetric<Real, N> operator+(Symmetric<Real, N> a, Symmetric<Real, N> const& b) {
+    CATENA_UNROLL
+    for (int i = 0; i < Symmetric<Real, N>::size; ++i) a.data[i] = a.data[i] + b.data[i];
+    return a;
+}
+template <class Real, int N>
 CATENA_HD Vector<Real, N> operator+(Vector<Real, N> a, Vector<Real, N> const& b) {
     CATENA_UNROLL
     for (int i = 0; i < N; ++i) a[i] = a[i] + b[i];
@@ -126,6 +132,21 @@ CATENA_HD Real norm(Vector<Real, N> const& a) {
 template <class Real>
 CATENA_HD Vector<Real, 3> cross(Vector<Real, 3> const& a, Vector<Real, 3> const& b) {
     return {{fused(a[1], b[2], -(a[2] * b[1])), fused(a[2], b[0], -(a[0] * b[2])), fused(a[0], b[1], -(a[1] * b[0]))}};
+}
+/// Of axes, the columns of a rotation, what is kept: the first and the last.
+template <class Real>
+CATENA_HD Vector<Real, 6> kept_axes(Matrix<Real, 3, 3> const& axes) {
+    Vector<Real, 3> const first = axes.column(0), last = axes.column(2);
+    return {{first[0], first[1], first[2], last[0], last[1], last[2]}};
+}
+template <class Real>
+CATENA_HD Matrix<Real, 3, 3> axes_of(Vector<Real, 6> const& kept) {
+    Vector<Real, 3> const first{{kept[0], kept[1], kept[2]}}, last{{kept[3], kept[4], kept[5]}};
+    Matrix<Real, 3, 3> axes;
+    axes.set_column(0, first);
+    axes.set_column(1, cross(last, first));
+    axes.set_column(2, last);
+    return axes;
 }
 
 template <class Real, int R, int C>

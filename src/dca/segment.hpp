@@ -126,15 +126,12 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
     return s;
 }
 /// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
-/// W = D (D^T Z D)^-1 D^T). Not `with_first`: z11 stays as it was, for those who ask only for the forces at joints to come.
+/// W = D (D^T Z D)^-1 D^T).
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
-template <bool with_first = true, class Real, int K, class Factors = dca::Factors>
+template <class Real, int K, class Factors = dca::Factors>
 CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> const& outboard, int restricted, JointMatrix<Real, K>& joint,
                       Factors const& factors = {}) {
-    Symmetric<Real, K> z;
-    CATENA_UNROLL
-    for (int i = 0; i < Symmetric<Real, K>::size; ++i) z.data[i] = segment.z22.data[i] + outboard.z11.data[i];
-    joint.factor = factors(z, restricted);
+    joint.factor = factors(segment.z22 + outboard.z11, restricted);
     joint.inboard = solve_lower(joint.factor, transpose(segment.z12));
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     CATENA_UNROLL
@@ -150,17 +147,17 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
         }
         segment.z12.set_column(j, transposed_times(joint.inboard, scaled));
     }
-    if constexpr (with_first) segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
+    segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
 }
-/// Their biases; `offset` keeps L^-1 (b2 - b1 of `outboard`) for the disassembly (Y of the chapter). Not `with_first`: b1 stays.
-template <bool with_first = true, class Real, int K>
+/// Their biases; `offset` keeps L^-1 (b2 - b1 of `outboard`) for the disassembly (Y of the chapter).
+template <class Real, int K>
 CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const& outboard, JointMatrix<Real, K> const& joint,
                       Vector<Real, K>& offset) {
     offset = solve_lower(joint.factor, segment.b2 - outboard.b1);
     Vector<Real, K> y;
     CATENA_UNROLL
     for (int i = 0; i < K; ++i) y[i] = joint.factor(i, i) * offset[i];
-    if constexpr (with_first) segment.b1 = segment.b1 - transposed_times(joint.inboard, y);
+    segment.b1 = segment.b1 - transposed_times(joint.inboard, y);
     segment.b2 = outboard.b2 + transposed_times(joint.outboard, y);
 }
 /// The joined segment, and its biases.
@@ -183,23 +180,6 @@ template <class Real, int K>
 CATENA_HD Vector<Real, K> disassemble(JointMatrix<Real, K> const& joint, Vector<Real, K> const& offset, Vector<Real, K> const& first,
                                       Vector<Real, K> const& next) {
     return solve_upper(joint.factor, joint.inboard * first + (joint.outboard * next + offset));
-}
-
-/// The same where the first force is known before the next one: what it needs of the joint's matrices then.
-template <class Real, int K>
-struct HalfDisassembled {
-    Symmetric<Real, K> factor;
-    Matrix<Real, K, K> outboard;
-    Vector<Real, K> offset, of_first;
-};
-template <class Real, int K>
-CATENA_HD HalfDisassembled<Real, K> half_disassemble(JointMatrix<Real, K> const& joint, Vector<Real, K> const& offset,
-                                                     Vector<Real, K> const& first) {
-    return {joint.factor, joint.outboard, offset, joint.inboard * first};
-}
-template <class Real, int K>
-CATENA_HD Vector<Real, K> disassemble(HalfDisassembled<Real, K> const& half, Vector<Real, K> const& next) {
-    return solve_upper(half.factor, half.of_first + (half.outboard * next + half.offset));
 }
 
 /// A joint passed on the way outwards from a known force: its own follows from the next one's, phi = gain phi_next + offset.
@@ -238,10 +218,8 @@ CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const
 template <class Real, int K>
 CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,
                                          SegmentBias<Real, K> const& bias, int restricted) {
-    CATENA_UNROLL
-    for (int i = 0; i < Symmetric<Real, K>::size; ++i) z22.data[i] = z22.data[i] + outboard.z11.data[i];
     OneSided<Real, K> joint;
-    joint.factor = factorize(z22, restricted);
+    joint.factor = factorize(z22 + outboard.z11, restricted);
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     joint.bias = bias;
     CATENA_UNROLL

@@ -78,7 +78,7 @@ struct ConfigurationView {
     /// Where the inboard side of joints moves in the inboard body (ChainGroup::moving_meeting): its handle 2 from the centre of mass and
     /// the meeting frame's axes; B.
     ConstView<3> r2;
-    ConstView<9> axes2;
+    ConstView<6> axes2;
     /// Full handles of bodies without links: compliance of joint k along its three angular directions, the last ones (lower triangle): its
     /// outboard side yields by that to the joint's force. Absent where no joint does.
     ConstView<6> compliance{};
@@ -155,12 +155,8 @@ class ChainSolver {
     virtual void assemble_matrices(ConfigurationView const&) = 0;
     /// The bias sweep and the disassembly with the matrices and the configuration given last; may be repeated. Collective.
     virtual void solve(LoadsView const&, AccelerationsView const&) = 0;
-    /// Both, where nothing is to be hidden: the matrices are not kept for solve(). Collective.
+    /// Both, where nothing is to be hidden: the matrices are not kept for solve(), and the last bits may be others. Collective.
     virtual void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
-        solve_once(configuration, loads, out);
-    }
-    /// The same with the bits of assemble_matrices() and solve() one after the other. The matrices are not kept either. Collective.
-    virtual void solve_once(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         assemble_matrices(configuration);
         solve(loads, out);
     }

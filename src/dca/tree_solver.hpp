@@ -25,8 +25,6 @@ class TreeSolver final : public ChainSolver {
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
     static constexpr bool has_lanes = goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
-    /// Whether both sweeps may be one launch with the bits of two.
-    static constexpr bool goes_short = Leaf::in_joints && K <= 3;
 
   public:
     TreeSolver(ChainGroup const& group, Space const& space, Communicator const& communicator)
@@ -80,17 +78,12 @@ class TreeSolver final : public ChainSolver {
     }
 
     void assemble_and_solve(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
-        if constexpr (Leaf::at_once)
+        if constexpr (Leaf::projected)
             if (at_once()) return evaluate(configuration, loads, out);
-        solve_once(configuration, loads, out);
+        ChainSolver::assemble_and_solve(configuration, loads, out);
     }
-    void solve_once(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) override {
-        if constexpr (may_pay_at_once)
-            if (pays_at_once()) return evaluate(configuration, loads, out);
-        ChainSolver::solve_once(configuration, loads, out);
-    }
-    /// The chapter's tree of pairs stays plain.
-    bool at_once() const override { return Leaf::at_once && group_.partition.trees.front().run_length > 1; }
+    /// The chapter's tree of pairs stays plain, and so do full handles.
+    bool at_once() const override { return Leaf::projected && group_.partition.trees.front().run_length > 1; }
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
         return space_.time_chained(chained, repeat, shown_matrices_.asks_host(), [&] { assemble_and_solve(configuration, loads, out); });
@@ -161,13 +154,6 @@ class TreeSolver final : public ChainSolver {
   private:
     static constexpr unsigned long long none_lost = ~0ULL;
 
-    /// Whether both sweeps in one, with the bits of one after the other, save what is kept between them: what several runs side by side
-    /// compute again, and launches.
-    static constexpr bool may_pay_at_once = !Leaf::at_once && (has_lanes || (Leaf::in_joints && K <= 5 && Space::by_launches));
-    bool pays_at_once() const {
-        if constexpr (has_lanes) return aside_.has_value();
-        return group_.partition.trees.front().run_length > 1;
-    }
     /// What does not go side by side: runs, one level after the other, and the roots.
     void lay_out_rest() {
         auto const add = [&](auto const& runs, auto const& levels, auto const& roots) {
@@ -194,12 +180,7 @@ class TreeSolver final : public ChainSolver {
     void evaluate(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
         Stopwatch const watch(*this, report_.matrix_seconds);
         sweeps_.leaf.set(configuration);
-        if constexpr (goes_short)
-            sweep_at_once(ShortSweeps<Leaf>{{{sweeps_}, {sweeps_}, {sweeps_, loads, out}}, {sweeps_.leaf, model_.restricted(), loads}},
-                          configuration, loads, out);
-        else if constexpr (!Leaf::at_once)
-            sweep_at_once(BothSweeps<Leaf>{{sweeps_}, {sweeps_}, {sweeps_, loads, out}}, configuration, loads, out);
-        else if constexpr (Leaf::beads)
+        if constexpr (Leaf::beads)
             sweep_at_once(
                 Evaluation<Leaf, typename Leaf::Moving>{{sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
                 configuration, loads, out);

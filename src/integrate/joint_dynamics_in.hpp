@@ -124,7 +124,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void solve_once() override {
         set_carried_loads();
-        solver_->solve_once(configuration(), loads(), found());
+        solver_->assemble_and_solve(configuration(), loads(), found());
         has_matrices_ = false;
         exchange_ends();
     }
@@ -373,7 +373,7 @@ class JointDynamicsIn final : public JointDynamics {
     Fixed<1> mass_;
     Fixed<6> inertia_;
     Fixed<3> r2_;
-    Fixed<9> axes2_;
+    Fixed<6> axes2_;
     JointCoordinates<Space> state_, start_, sum_;
     MotionFields<Space> motion_;
     FieldOf<4> joint_load_;

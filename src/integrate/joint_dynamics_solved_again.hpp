@@ -107,7 +107,7 @@ void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found
 template <class Space>
 void JointDynamicsIn<Space>::find_forces() {
     if (has_forces_found_) return;
-    has_matrices_ ? solver_->solve(loads(), with_forces()) : solver_->solve_once(configuration(), loads(), with_forces());
+    has_matrices_ ? solver_->solve(loads(), with_forces()) : solver_->assemble_and_solve(configuration(), loads(), with_forces());
     has_forces_found_ = true;
 }
 

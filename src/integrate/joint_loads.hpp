@@ -36,7 +36,7 @@ struct JointLoads {
     ConstView<1> mass;
     ConstView<6> inertia;
     ConstView<3> fixed_r2;
-    ConstView<9> fixed_axes2;
+    ConstView<6> fixed_axes2;
     CarriedBeadsView beads;
     // What a solution needs and finds.
     View<4> joint_load;  // known load of joint k on body k: torque along the joint's axes and force along its last one
@@ -64,7 +64,7 @@ struct JointLoads {
     }
     template <class Place>
     CATENA_HD Mat3At<Place> axes2(Place k) const {
-        return as_matrix(scan.motion.axes2.origin ? read(scan.motion.axes2, k) : read(fixed_axes2, k));
+        return axes_of(scan.motion.axes2.origin ? read(scan.motion.axes2, k) : read(fixed_axes2, k));
     }
     template <class Place>
     CATENA_HD Vec3At<Place> r2(Place k) const {

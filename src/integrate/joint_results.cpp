@@ -72,7 +72,7 @@ void JointSolution::add_across_plane(Communicator const& communicator, BodyResul
     for (dca::Piece const& piece : group.pieces) {
         if (group.partition.has_jointed_tip(piece.chain)) continue;
         for (std::int64_t k = piece.local; k < piece.local + piece.count; ++k) {
-            Vec3 const axis = orientation(k) * as_matrix(group.axes1[k]).column(2);
+            Vec3 const axis = orientation(k) * axes_of(group.axes1[k]).column(2);
             auto const& [needed_force, needed_torque] = sums[k];
             Vec3 const along = dot(axis, needed_force) * axis, across = plus_scaled(needed_torque, -dot(axis, needed_torque), axis);
             for (int i = 0; i < 3; ++i) {

@@ -11,7 +11,7 @@ struct JointSolution {
     BodyLoads const& given;
     ConstView<4> joint_turn, turn;            // MotionView::joint_turn, orientation
     ConstView<3> omega, velocity, moving_r2;  // MotionView
-    ConstView<9> moving_axes2;
+    ConstView<6> moving_axes2;
     ConstView<3> torque, force, alpha, acceleration;  // force: absent where no body has any
     ConstView<3> bead_force;                          // on carried beads
     ConstDirectionsView bias, joint_force, tip_bias, tip_force;
@@ -33,10 +33,10 @@ struct JointSolution {
   private:
     void add_across_plane(Communicator const&, BodyResults&) const;
     Mat3 orientation(std::int64_t k) const { return to_matrix(as_quaternion(turn.load(k))); }
-    Mat3 axes2(std::int64_t k) const { return as_matrix(group.moving_meeting() ? moving_axes2.load(k) : group.axes2[k]); }
+    Mat3 axes2(std::int64_t k) const { return axes_of(group.moving_meeting() ? moving_axes2.load(k) : group.axes2[k]); }
     Vec3 r2(std::int64_t k) const { return group.moving_meeting() ? moving_r2.load(k) : group.r2[k]; }
     /// The inboard joint's, in the body.
-    Mat3 axes1(std::int64_t k) const { return transposed_times(to_matrix(as_quaternion(joint_turn.load(k))), as_matrix(group.axes1[k])); }
+    Mat3 axes1(std::int64_t k) const { return transposed_times(to_matrix(as_quaternion(joint_turn.load(k))), axes_of(group.axes1[k])); }
     Screw<double> screw(std::int64_t k) const;
     Screw<double> outboard_screw(std::int64_t k) const;
     Vec3 gyroscopic_torque(std::int64_t k) const { return cross(omega.load(k), as_symmetric(group.inertia[k]) * omega.load(k)); }

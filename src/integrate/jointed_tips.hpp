@@ -129,11 +129,8 @@ struct JointedTips {
         if (t.first >= 0)
             motion.joint_turn.store(t.first, as_vector(conjugate(e.last.rotation * to_quaternion(m.axes)) * e.other.rotation));
         if (t.body < 0 || !motion.axes2.origin) return;
-        Vector<double, 9> axes;
-        CATENA_UNROLL
-        for (int j = 0; j < 9; ++j) axes[j] = m.axes.data[j];
         motion.r2.store(t.body, m.point);
-        motion.axes2.store(t.body, axes);
+        motion.axes2.store(t.body, kept_axes(m.axes));
     }
 
     /// Of G against the last body's point that it meets, on their way apart, along the place's axes.

@@ -109,7 +109,7 @@ Traffic StepMessages::joint(int corrections, Cut const& cut, SweepsAStep const& 
     Sum sum(cut);
     sum.gathers(motions, 13);
     sum.from_ring_ends(motions, 13);
-    if (moving_meeting_) sum.from_outboard(motions, 12);
+    if (moving_meeting_) sum.from_outboard(motions, 9);
     if (joint_loads_) sum.from_outboard(biases, 4);
     sum.matrix_sweeps(matrices + more, directions_, articulated_);
     sum.bias_sweeps(motions + refinements, directions_, articulated_);

@@ -31,7 +31,7 @@ TEST(GpuMemory, GrowsWithBodiesAndDirections) {
 /// before.
 TEST(GpuMemory, TransientIsTheWidestField) {
     std::int64_t const columns = 32 + 1024;
-    EXPECT_EQ(needed({scene::RandomJoint::revolute}, 1000, Backend::cuda).transient, 9 * columns * 8);  // axes
+    EXPECT_EQ(needed({scene::RandomJoint::revolute}, 1000, Backend::cuda).transient, 6 * columns * 8);  // axes, inertias
     EXPECT_EQ(needed({scene::RandomJoint::link, false, Axes::world}, 1000, Backend::cuda).transient, 3 * columns * 8);
 }
 

@@ -60,9 +60,6 @@ class ComparedSolver final : public ChainSolver {
     void assemble_and_solve(ConfigurationView const& c, LoadsView const& loads, AccelerationsView const& out) override {
         each_as_reference(out, [&](ChainSolver& solver, AccelerationsView const& own) { solver.assemble_and_solve(c, loads, own); });
     }
-    void solve_once(ConfigurationView const& c, LoadsView const& loads, AccelerationsView const& out) override {
-        each_as_reference(out, [&](ChainSolver& solver, AccelerationsView const& own) { solver.solve_once(c, loads, own); });
-    }
     bool at_once() const override { return reference_->at_once(); }
     SolverReport report() const override { return reference_->report(); }
 

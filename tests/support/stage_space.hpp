@@ -32,7 +32,6 @@ class StageSpace : public HostSpace {
   public:
     using HostSpace::HostSpace;
     SimdLevel simd() const = delete;  // as a GPU
-    static constexpr bool by_launches = true;
 
     /// That trees are made for from now on.
     static inline StagedGpu gpu;

@@ -62,17 +62,17 @@ struct NodeInLanes {
     JointMatrix<Real, K> joint;
     Vector<Real, K> offset;
 
-    template <bool with_first = true>
     void append(BiasedSegment<Real, K>& segment, BiasedSegment<Real, K> const& outboard) {
-        dca::append<with_first>(segment.matrix, outboard.matrix, K, joint);
-        dca::append<with_first>(segment.bias, outboard.bias, joint, offset);
+        dca::append(segment.matrix, outboard.matrix, K, joint);
+        dca::append(segment.bias, outboard.bias, joint, offset);
     }
     Vector<Real, K> force(Vector<Real, K> const& first, Vector<Real, K> const& next) const {
         return disassemble(joint, offset, first, next);
     }
 };
 template <class Real, int K>
-inline constexpr bool fits_nodes = sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real);
+inline constexpr bool fits_nodes =
+    sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real) && sizeof(OneSided<Real, K>) == passed_numbers<K> * sizeof(Real);
 /// Of joints number[j] + further.
 template <class Leaf, class Real, int K>
 void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, Symmetric<Real, K> const& factor) {
@@ -95,9 +95,10 @@ class RunsSideBySide {
     using Segment = BiasedSegment<Real, K>;
     using Directions = Vector<Real, K>;
     using Node = NodeInLanes<Real, K>;
+    using Passed = OneSided<Real, K>;
     static_assert(fits_nodes<Real, K>);
     static constexpr std::int64_t bodies_of_item = lanes * longest_run;
-    static constexpr int numbers_of_node = node_numbers<K> * lanes;
+    static constexpr int numbers_of_node = node_numbers<K> * lanes, numbers_of_passed = passed_numbers<K> * lanes;
 
   public:
     explicit RunsSideBySide(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
@@ -114,7 +115,7 @@ class RunsSideBySide {
             make_part(item, p, p == 0 ? whole : part);
             if (p == 0) continue;
             Node node;
-            double* const kept = place(item, p * part_length);
+            double* const kept = place_of_node(item, p);
             prefetch_to_write<Real>(kept, numbers_of_node, numbers_of_node);
             append(whole, part, node, runs, p * part_length);
             store_vectors<Real>(kept, node);
@@ -132,7 +133,7 @@ class RunsSideBySide {
             Directions at_begin = first;
             if (p > 0) {
                 Node node;
-                double const* const kept = place(item, p * part_length);
+                double const* const kept = place_of_node(item, p);
                 prefetch<Real>(kept, -numbers_of_node, numbers_of_node);
                 load_vectors<Real>(kept, node);
                 at_begin = node.force(first, next);
@@ -143,10 +144,12 @@ class RunsSideBySide {
     }
 
   private:
-    /// Of the joint inboard of the run's body `i`.
-    double* place(std::int64_t item, int i) const {
-        bool const all = work_.keeps_all;
-        return work_.nodes + (item * (all ? joints_of_run : joints_between_parts) + (all ? i : i / part_length) - 1) * numbers_of_node;
+    double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_run<K>(work_.keeps_all) * lanes; }
+    /// Of the joint inboard of part p, which is not the first.
+    double* place_of_node(std::int64_t item, int p) const { return place_of(item) + (p - 1) * numbers_of_node; }
+    /// Of what the run's body i passes on. Precondition: all is kept.
+    double* place_of_passed(std::int64_t item, int i) const {
+        return place_of(item) + (parts_of_run - 1) * numbers_of_node + i * numbers_of_passed;
     }
     /// The next item's bodies usually follow, or come before where the way is back.
     void fill(RunsInLanes const& runs, int p, int way) {
@@ -174,10 +177,14 @@ class RunsSideBySide {
         Node node;
         each_body<unrolled<K>>(0, part_length, [&](int i) {
             ::new (i == 0 ? &segment : &body) Segment(bodies_.segment(bodies.body(i)));
-            if (i == 0) return;
+            if (i == 0) return keep(item, p, 0, {{}, segment.matrix.z12, segment.bias});
             append(segment, body, node, runs, p * part_length + i);
-            if (work_.keeps_all) store_vectors<Real>(place(item, p * part_length + i), node);
+            keep(item, p, i, {node.joint.factor, node.joint.outboard, body.bias});
         });
+    }
+    void keep(std::int64_t item, int p, int i, Passed const& passed) const {
+        if constexpr (!Leaf::beads)
+            if (work_.keeps_all) store_vectors<Real>(place_of_passed(item, p * part_length + i), passed);
     }
     void append(Segment& segment, Segment const& outboard, Node& node, RunsInLanes const& runs, int body) const {
         node.append(segment, outboard);
@@ -186,12 +193,10 @@ class RunsSideBySide {
     void down(std::int64_t item, int p, Directions const& first, Directions next) {
         RunsInLanes const& runs = work_.runs[item];
         fill(runs, p, -1);
-        if constexpr (Leaf::at_once)
-            eliminate_again(first, next);
-        else if (work_.keeps_all)
+        if (!Leaf::beads && work_.keeps_all)
             use_kept(item, p, first, next);
         else
-            assemble_again(first, next);
+            eliminate_again(first, next);
         if (!by_runs)
             tile_.empty(columns(runs, p), -bodies_of_item);
         else if (p == 0)
@@ -215,29 +220,22 @@ class RunsSideBySide {
         });
         back(kept, first, next, [&](int i) { return passed[i].gain * next + passed[i].offset; });
     }
-    /// As BiasSweep::down, the joints found once more.
-    void assemble_again(Directions const& first, Directions next) {
-        Node node[part_length];
-        Kept kept[part_length];
-        auto bodies = bodies_.walk(begin_);
-        Segment segment, outboard;
-        each_body<unrolled<K>>(0, part_length, [&](int i) {
-            ::new (i == 0 ? &segment : &outboard) Segment(take(bodies, i, kept));
-            if (i == 0) return;
-            node[i].template append<false>(segment, outboard);
-        });
-        back(kept, first, next, [&](int i) { return node[i].force(first, next); });
-    }
-    /// As BiasSweep::down.
+    /// As Evaluation::forces.
     void use_kept(std::int64_t item, int p, Directions const& first, Directions next) {
+        Elimination<Real, K> passed[part_length];
         Kept kept[part_length];
         auto bodies = bodies_.walk(begin_);
-        each_body<unrolled<K>>(0, part_length, [&](int i) { kept[i] = bodies_.keep(bodies.body(i)); });
-        back(kept, first, next, [&](int i) {
-            Node node;
-            load_vectors<Real>(place(item, p * part_length + i), node);
-            return node.force(first, next);
+        Directions b2;
+        each_body<unrolled<K>>(0, part_length, [&](int i) {
+            kept[i] = bodies_.keep(bodies.body(i));
+            Passed joint;
+            load_vectors<Real>(place_of_passed(item, p * part_length + i), joint);
+            if (i == 0)
+                b2 = joint.bias.b2 + transposed_times(joint.outboard, first);
+            else
+                passed[i] = pass(b2, joint);
         });
+        back(kept, first, next, [&](int i) { return passed[i].gain * next + passed[i].offset; });
     }
     template <class Bodies>
     Segment take(Bodies& bodies, int i, Kept* kept) const {

@@ -49,12 +49,18 @@ struct RunWork {
     AccelerationsView out;
     RunsInLanes const* runs = nullptr;
     double const* constants = nullptr;  // [part of an item of `runs`][number][body][lane]
-    double* nodes = nullptr;            // node_numbers<K> vectors for every joint that is kept, from climb to descend
-    bool keeps_all = false;             // joints within runs, or those between parts alone, the others being computed again
+    double* nodes = nullptr;            // kept_of_run<K> vectors for every item, from climb to descend
+    bool keeps_all = false;             // of every body too, or joints between parts alone, the others being eliminated again
 };
+/// Vectors of a joint between segments, and of what a body passes on to the way down.
 template <int K>
 inline constexpr int node_numbers = static_cast<int>((sizeof(JointMatrix<double, K>) + sizeof(Vector<double, K>)) / sizeof(double));
-constexpr int joints_of_run = static_cast<int>(longest_run) - 1, joints_between_parts = parts_of_run - 1;
+template <int K>
+inline constexpr int passed_numbers = static_cast<int>(sizeof(OneSided<double, K>) / sizeof(double));
+template <int K>
+constexpr int kept_of_run(bool keeps_all) {
+    return (parts_of_run - 1) * node_numbers<K> + (keeps_all ? static_cast<int>(longest_run) * passed_numbers<K> : 0);
+}
 
 /// Merges of one level of the tree.
 struct MergesInLanes {

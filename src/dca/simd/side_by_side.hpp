@@ -42,8 +42,8 @@ class AlignedNumbers {
     LongArray<double> storage_;
 };
 
-/// Whether RunWork keeps all: as many numbers as a core's second cache holds, and more. `of_one`: for one joint of every run.
-constexpr bool keeps_all_joints(std::int64_t of_one) { return of_one * joints_of_run <= 1 << 17; }
+/// Whether RunWork keeps all: as many numbers as a core's second cache holds, and more.
+constexpr bool may_keep_all(std::int64_t numbers) { return numbers <= 1 << 17; }
 
 /// As RunWork has it, of every body's `numbers` by body(k, place).
 template <class Body>
@@ -79,9 +79,8 @@ class SideBySide {
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
         runs_ = deal_out_runs(group, lanes_, Leaf::reads_neighbours);
-        std::int64_t const node = items() * node_numbers<Leaf::K> * lanes_;
-        keeps_all_ = !Leaf::at_once && keeps_all_joints(node);
-        nodes_ = AlignedNumbers(node * (keeps_all_ ? joints_of_run : joints_between_parts));
+        keeps_all_ = !Leaf::beads && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
+        nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run<Leaf::K>(keeps_all_));
         constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {
             each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
                 auto const numbers = field.load(k);

@@ -9,6 +9,10 @@ template <int N>
 void append(std::vector<double>& list, Vector<double, N> const& v) {
     list.insert(list.end(), v.data, v.data + N);
 }
+void append_axes(std::vector<double>& list, Vector<double, 6> const& kept) {
+    Mat3 const axes = axes_of(kept);
+    list.insert(list.end(), std::begin(axes.data), std::end(axes.data));
+}
 template <int D>
 Vector<double, D> at(ConstView<D> const& view, std::int64_t k) {
     return view.origin ? view.load(k) : Vector<double, D>::zero();
@@ -87,8 +91,8 @@ void ChainInArrays::take(ConfigurationView const& c) {
                 append(*list, group_.r1[k]);
                 append(*list, group_.r2[k]);
                 append(*list, c.rotation.load(k));
-                append(*list, group_.axes1[k]);
-                append(*list, group_.axes2[k]);
+                append_axes(*list, group_.axes1[k]);
+                append_axes(*list, group_.axes2[k]);
             }
         }
         put(state, k, reduced);
