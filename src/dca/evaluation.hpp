@@ -90,7 +90,7 @@ struct Evaluation {
     static constexpr bool descends = true, one_by_one = Bodies::one_by_one;
     static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
     static constexpr bool goes_short = true;
-    /// Whether what a part's joints pass on is left in memory, which larger handles want: of all bodies but the first and the last.
+    /// Whether what a part's joints pass on, but the last one, may be left in memory by who has some: larger handles want that.
     static constexpr bool keeps_passages = K > 3;
     static constexpr int most_passages = part_length - (keeps_passages ? 2 : 1);
     Sweeps s;
@@ -248,7 +248,7 @@ struct Evaluation {
         CATENA_HD static void put(int, Passed const&) {}
     };
     struct PassagesHere {
-        Passage passage[part_length - 1] = {};  // compilers do not see that the last one is never put
+        Passage passage[part_length - 1] = {};  // larger handles leave the last one unused, which compilers do not see
         CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
         CATENA_HD Passage const& get(int i) const { return passage[i]; }
     };

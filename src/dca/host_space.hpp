@@ -24,8 +24,6 @@ class HostSpace : public HostAccess {
   public:
     /// Whether what is asked for is done when the call returns.
     static constexpr bool answers_at_once = true;
-    /// Whether every loop and sweep costs a launch.
-    static constexpr bool by_launches = false;
     /// The executor must outlive the space.
     explicit HostSpace(Executor const& executor) : executor_(&executor) {}
 

@@ -72,10 +72,6 @@ using Vec3 = Vector<double, 3>;
 using Mat3 = Matrix<double, 3, 3>;
 using Sym3 = Symmetric<double, 3>;
 template <class Real>
-CATENA_HD Matrix<Real, 3, 3> as_matrix(Vector<Real, 9> const& v) {
-    return {{v[0], v[1], v[2], v[3], v[4], v[5], v[6], v[7], v[8]}};
-}
-template <class Real>
 CATENA_HD Symmetric<Real, 3> as_symmetric(Vector<Real, 6> const& v) {
     return {{v[0], v[1], v[2], v[3], v[4], v[5]}};
 }

@@ -45,7 +45,8 @@ class JointDynamics : public BeadHost {
     virtual void assemble_matrices() = 0;
     /// Accelerations of bodies with the forces of now, at the configuration updated last. Collective.
     virtual void solve() = 0;
-    /// assemble_matrices() and solve() together, where nothing is to be hidden between them: the matrices are not kept. Collective.
+    /// assemble_matrices() and solve() together, where nothing is to be hidden between them: the matrices are not kept, and the last bits
+    /// may be others. Collective.
     virtual void solve_once() = 0;
     /// solve() at the same coordinates with the velocities of now; matrices and forces on carried beads are those of before. Collective.
     virtual void solve_again() = 0;
