@@ -80,6 +80,30 @@ TEST_P(AtOnce, IsTheSolution) {
     }
 }
 
+/// In joint coordinates: by the residual, and the same on one rank and on all.
+TEST(AtOnceInJoints, IsASolution) {
+    for (char const* const joint : {"planar", "spherical", "universal", "revolute", "helical", "mixed", "weld"})
+        for (int const bodies : {1, 5, 16, 70, 333})
+            for (char const* const tip : {"", ", tip: {joint: {type: spherical}}"}) {
+                if (*tip && (bodies < 5 || joint == std::string("planar") || joint == std::string("weld"))) continue;
+                SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies) + tip);
+                Scene s = parse_scene(std::string("chains: [{base: fixed, generator: {random: {seed: 3, joint: ") + joint +
+                                          ", bodies: " + std::to_string(bodies) + "}}" + tip + "}]\nforces: {gravity: [1, 2, -9.81]}",
+                                      "scene.yaml");
+                s.solver.backend = Backend::segments;
+                ChainSystem system(s, Axes::joint, testing::world());
+                system.evaluate(false);
+                EXPECT_LE(system.residual(), system.residual_bound());
+                ChainSystem::Accelerations const at_once = system.accelerations();
+                if (testing::world().rank() > 0) continue;
+                auto const one_rank = serial_communicator();
+                ChainSystem alone(s, Axes::joint, *one_rank);
+                alone.evaluate(false);
+                EXPECT_TRUE(same_bits(alone.accelerations().joint_acceleration, at_once.joint_acceleration));
+                EXPECT_TRUE(same_bits(alone.accelerations().joint_force, at_once.joint_force));
+            }
+}
+
 /// A drift that goes on by single sweeps is the drift with as many of them.
 TEST_P(AtOnce, DriftsGoOnByASweep) {
     constexpr double h = 0.002;
