@@ -59,7 +59,8 @@ TEST(Sampling, TheTemperaturesAreTheThermostats) {
     Ended const e = catena(sampling(write_scene(folder), {"--copies", "12", "--duration", "60", "--discard", "4", "--every", "0.2",
                                                           "--steps", "0.02", "--methods", "rigid,rigid-fixman,bonds", "--json", "-"}));
     expect_good(e);
-    for (Json const& row : e.json().at("results"))
+    Json const json = e.json();
+    for (Json const& row : json.at("results"))
         for (char const* const kind : {"configurational_temperature", "kinetic_temperature"}) {
             // Five standard deviations of what other seeds give: any seed, and other processors have other trajectories, keeps to them.
             double const largest = std::string(kind) == "kinetic_temperature" ? 25 : 65;
