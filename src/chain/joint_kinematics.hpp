@@ -131,11 +131,16 @@ class JointKinematics {
     }
     template <bool positions>
     void sweep(JointScan const& s) {
+        sweep<positions>(s, tree_);
+    }
+    /// `tree`: the group's, without runs that JointScan::follow was called of.
+    template <bool positions>
+    void sweep(JointScan const& s, typename Space::ScanTree const& tree) {
         MotionScan<positions> const scan{s};
-        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan);
-        space_.climb(tree_, scan);
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
+        space_.climb(tree, scan);
         sweep_shared(scan);
-        space_.descend(tree_, scan);
+        space_.descend(tree, scan);
         if (group_.moving_meeting()) exchange_meeting(s);
     }
 

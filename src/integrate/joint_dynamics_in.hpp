@@ -229,7 +229,12 @@ class JointDynamicsIn final : public JointDynamics {
         if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
         auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); };
         if constexpr (has_lanes) {
-            kinematics_.template sweep<positions>(c.scan);
+            if (lanes_) {
+                lanes_->follow(space_, positions, c.scan);
+                kinematics_.template sweep<positions>(c.scan, lanes_->tree());
+            } else {
+                kinematics_.template sweep<positions>(c.scan);
+            }
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); }, set_motion);
         } else {
             kinematics_.template sweep<positions>(c.scan, set_motion);

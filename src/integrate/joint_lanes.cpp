@@ -29,7 +29,9 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
 
 }  // namespace
 
-JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
+JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level)
+    : runs_(dca::deal_out_runs(group, lanes_of(level), false)),
+      tree_(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots) {
     if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty())
         return;
     for (bool const positions : {false, true})

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dca/host_space.hpp"
+#include "dca/simd/side_by_side.hpp"
 #include "integrate/embedded_steps.hpp"
 
 namespace catena {
@@ -13,6 +14,8 @@ namespace catena {
 /// For the bodies at first[i], first[i] + 1, ... that fill a vector, i in [begin, end). With or without positions, as JointChains says.
 struct JointLoops {
     void (*set_relative)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
+    /// JointScan::follow of the runs of items [begin, end), whose wholes it shows.
+    void (*follow)(JointScan const&, dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end);
     void (*set_motion)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*set_rates)(JointChains const&, RatesView const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
@@ -26,6 +29,8 @@ class JointLanes {
   public:
     /// `springs`: whether joints have any.
     JointLanes(ChainGroup const&, bool springs, SimdLevel);
+    JointLanes(JointLanes&&) = default;
+    JointLanes& operator=(JointLanes&&) = default;
 
     /// Whether any bodies go side by side.
     bool any() const { return !first_.empty(); }
@@ -37,8 +42,19 @@ class JointLanes {
         space.over(typename Space::template List<std::int64_t>(others_), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
 
+    /// JointScan::follow of the runs that go side by side; tree() has the others, and what is above all of them.
+    template <class Space>
+    void follow(Space const& space, bool positions, JointScan const& scan) const {
+        JointLoops const& loops = loops_[positions ? 1 : 0];
+        space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),
+                          [&](std::int64_t begin, std::int64_t end) { loops.follow(scan, runs_.items.data(), begin, end); });
+    }
+    HostSpace::ScanTree const& tree() const { return tree_; }
+
   private:
     JointLoops loops_[2]{};
+    dca::RunsDealtOut runs_;
+    HostSpace::ScanTree tree_;
     std::vector<std::int64_t> first_, others_;
 };
 
