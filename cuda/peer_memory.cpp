@@ -3,24 +3,16 @@
 #include <dlfcn.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 #include <span>
 #include <string>
 #include <utility>
 
+#include "mpi/gpu_exchange.hpp"
+
 namespace catena::cuda {
 namespace {
 
-/// Rank 0's CATENA_GPU_EXCHANGE: launchers bring variables to other hosts only when told to.
-std::string asked_for(Communicator const& communicator) {
-    char text[16] = {};
-    if (char const* const own = std::getenv("CATENA_GPU_EXCHANGE")) std::strncpy(text, own, sizeof(text) - 1);
-    communicator.broadcast(std::as_writable_bytes(std::span(text)));
-    if (text[0] != 0 && std::strcmp(text, "host") != 0 && std::strcmp(text, "direct") != 0)
-        throw InputError("`" + std::string(text) + "` is no way for GPUs to exchange numbers", "CATENA_GPU_EXCHANGE", "use direct or host");
-    return text;
-}
 bool agreed(Communicator const& communicator, bool here) { return communicator.sum(here ? 0 : 1) == 0; }
 
 /// One host, each rank on a GPU of its own, whatever each of them calls it.
@@ -88,7 +80,9 @@ std::vector<double*> mapped(Communicator const& communicator) {
 }  // namespace
 
 bool gpus_may_write_to_each_other(Communicator const& communicator) {
-    return communicator.size() > 1 && asked_for(communicator) != "host" && agreed(communicator, apart_on_one_host(communicator));
+    return communicator.size() > 1 &&
+           gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE")) != GpuExchange::host &&
+           agreed(communicator, apart_on_one_host(communicator));
 }
 
 std::vector<void*> map_each_others(Communicator const& communicator, void* own) {

@@ -1,6 +1,8 @@
 #include "mpi/communicator.hpp"
 
 #include <algorithm>
+#include <cstdlib>
+#include <cstring>
 
 namespace catena {
 
@@ -14,6 +16,13 @@ void Communicator::exchange_all(std::span<Outgoing const> out, std::span<Incomin
         exchange(sends ? sent->bytes : std::span<std::byte const>{}, sends ? after : -1,
                  receives ? received->bytes : std::span<std::byte>{}, receives ? before : -1);
     }
+}
+
+std::string variable_of_first_rank(Communicator const& communicator, char const* name) {
+    char text[64] = {};
+    if (char const* const own = std::getenv(name); communicator.rank() == 0 && own) std::strncpy(text, own, sizeof(text) - 1);
+    communicator.broadcast(std::as_writable_bytes(std::span(text)));
+    return text;
 }
 
 GatherWay const& Communicator::gather_way() const {

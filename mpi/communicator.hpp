@@ -31,6 +31,8 @@ class Communicator {
     virtual int size() const = 0;
     virtual int ranks_on_host() const = 0;
     virtual int rank_on_host() const = 0;
+    /// Ranks of this host that may run on the very cores that this one may: bound to none, all of them.
+    virtual int ranks_on_cores() const = 0;
 
     /// Every rank gets the blocks of all ranks, one after the other in rank order. `bytes_of_rank[r]`: length of rank r's block, known to
     /// all.
@@ -68,8 +70,12 @@ std::unique_ptr<Communicator> serial_communicator();
 /// Throws InputError when started by mpirun in a build without MPI.
 std::unique_ptr<Communicator> world_communicator(int* argc, char*** argv);
 
-/// Cores this rank may use: those it is bound to, else its share of the host's.
+/// Cores this rank may use: those it is bound to (of a job, a container or a launcher's binding), shared by the ranks that are bound to
+/// the same ones.
 int cores_of_rank(Communicator const&);
+
+/// Rank 0's environment variable, empty where there is none: launchers bring variables to other hosts only when told to. Collective.
+std::string variable_of_first_rank(Communicator const&, char const* name);
 
 /// Name and version of the message-passing library, "none" without.
 std::string message_passing_library();

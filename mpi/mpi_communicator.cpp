@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "mpi/cores.hpp"
 #include "mpi/host_gather.hpp"
 #include "mpi/launcher.hpp"
 #include "mpi/mpi_handles.hpp"
@@ -54,11 +55,14 @@ MpiHandle duplicate_of_world() {
 }
 
 struct OnHost {
-    int rank = 0, ranks = 1;
+    int rank = 0, ranks = 1, on_cores = 1;
 };
 OnHost place_on_host(MPI_Comm world) {
     Hosts const hosts(world, 0);
-    return {hosts.ranks.rank(), hosts.ranks.size()};
+    CoreSet const own = cores_bound_to();
+    std::vector<CoreSet> all(static_cast<std::size_t>(hosts.ranks.size()));
+    check_mpi(MPI_Allgather(&own, sizeof(own), MPI_BYTE, all.data(), sizeof(own), MPI_BYTE, hosts.ranks), "MPI_Allgather");
+    return {hosts.ranks.rank(), hosts.ranks.size(), static_cast<int>(std::count(all.begin(), all.end(), own))};
 }
 
 /// Rank 0's CATENA_GATHER: launchers bring variables to other hosts only when told to.
@@ -93,6 +97,7 @@ class MpiCommunicator final : public Communicator {
     int size() const override { return size_; }
     int ranks_on_host() const override { return on_host_.ranks; }
     int rank_on_host() const override { return on_host_.rank; }
+    int ranks_on_cores() const override { return on_host_.on_cores; }
     std::int64_t rounds() const override { return rounds_; }
     Traffic traffic() const override { return traffic_; }
     void tally(Traffic const& messages) const override {

@@ -1,6 +1,3 @@
-#include <sched.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <stdexcept>
@@ -16,6 +13,7 @@ class SerialCommunicator final : public Communicator {
     int size() const override { return 1; }
     int ranks_on_host() const override { return 1; }
     int rank_on_host() const override { return 0; }
+    int ranks_on_cores() const override { return 1; }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all,
                     std::vector<std::int64_t> const& bytes_of_rank) const override {
@@ -40,14 +38,5 @@ class SerialCommunicator final : public Communicator {
 }  // namespace
 
 std::unique_ptr<Communicator> serial_communicator() { return std::make_unique<SerialCommunicator>(); }
-
-int cores_of_rank(Communicator const& communicator) {
-    long const online = std::max(1L, sysconf(_SC_NPROCESSORS_ONLN));
-    cpu_set_t bound;  // std::thread::hardware_concurrency() knows it with some versions of glibc alone
-    bool const known = sched_getaffinity(0, sizeof(bound), &bound) == 0;
-    int const usable = known ? std::max(1, CPU_COUNT(&bound)) : static_cast<int>(online);
-    int const share = std::max(1, static_cast<int>(online) / std::max(1, communicator.ranks_on_host()));
-    return online > usable ? usable : share;
-}
 
 }  // namespace catena

@@ -14,6 +14,8 @@
 #include "command/command_line.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
+#include "mpi/gather_way.hpp"
+#include "mpi/gpu_exchange.hpp"
 #include "mpi/launcher.hpp"
 
 namespace catena::command {
@@ -39,11 +41,19 @@ int fail(Communicator const& communicator, std::string const& line) {
     return 1;
 }
 
+/// Not only where it matters, hours later or never.
+void check_environment(Communicator const& communicator) {
+    gather_choice(variable_of_first_rank(communicator, "CATENA_GATHER"));
+    gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE"));
+}
+
 int run_request(Communicator const& communicator, int argc, char** argv,
                 std::function<int(Communicator const&, Request const&)> const& execute) {
     bool const speaks = communicator.rank() == 0;
     try {
-        return execute(communicator, parse_command_line(argc, argv));
+        Request const request = parse_command_line(argc, argv);
+        check_environment(communicator);
+        return execute(communicator, request);
     } catch (InputError const& error) {
         if (speaks) say_error(error.what());
         return 2;

@@ -31,6 +31,14 @@ TEST(Errors, AGpuThatIsNotThere) {
                            cuda::why_not() + " (solver.backend: " + backend + ")");
 }
 
+/// On one rank and without a GPU too, where they change nothing.
+TEST(Errors, TheEnvironment) {
+    Words const check = {program(), "check", input("arm.yaml")};
+    expect_refused(run_program(check, "", {"CATENA_GATHER=two-stages"}), 2, "`two-stages` is no way to gather (CATENA_GATHER)");
+    expect_refused(run_program(check, "", {"CATENA_GPU_EXCHANGE=hots"}), 2, "`hots` is no way for GPUs to exchange numbers");
+    expect_good(run_program(check, "", {"CATENA_GATHER=two-stage:2", "CATENA_GPU_EXCHANGE=host"}));
+}
+
 TEST(Errors, TheScene) {
     expect_refused(catena({"check", "missing.yaml"}), 2, "missing.yaml");
     expect_refused(catena({"check", "."}), 2, "(.)");

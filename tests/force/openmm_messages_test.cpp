@@ -272,6 +272,7 @@ class Alone final : public Communicator {
     int rank() const override { return 0; }
     int size() const override { return 2; }
     int ranks_on_host() const override { return 2; }
+    int ranks_on_cores() const override { return 2; }
     int rank_on_host() const override { return 0; }
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const& bytes) const override {
         std::fill(all.begin(), all.end(), std::byte{0});

@@ -29,6 +29,7 @@ class ThreadCommunicator final : public Communicator {
     int rank() const override { return rank_; }
     int size() const override { return static_cast<int>(meeting_.blocks.size()); }
     int ranks_on_host() const override { return size(); }
+    int ranks_on_cores() const override { return size(); }
     int rank_on_host() const override { return rank(); }
 
     void all_gather(std::span<std::byte const> own, std::span<std::byte> all, std::vector<std::int64_t> const&) const override {

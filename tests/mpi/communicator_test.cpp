@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <numeric>
 #include <random>
 #include <string>
 
+#include "mpi/cores.hpp"
 #include "mpi/launcher.hpp"
 #include "tests/mpi/connection.hpp"
 #include "tests/mpi/world.hpp"
@@ -224,6 +226,38 @@ TEST_P(CommunicatorTest, SaysHowItGathers) {
     EXPECT_EQ(way.stages, hosts > 0 ? 2 : 1);
     EXPECT_EQ(way.hosts, hosts > 0 ? std::min(hosts, ranks().size()) : 1);
     EXPECT_EQ(way.text().find("in two stages") != std::string::npos && way.text().find("by CATENA_GATHER") != std::string::npos, hosts > 0);
+}
+
+/// Two ranks on every core, in turn, as far as there are any.
+TEST(Cores, RanksBoundToTheSameOnesShareThem) {
+    CoreSet const before = cores_bound_to();
+    if (!before.known) GTEST_SKIP() << "the system does not tell which cores this process may run on";
+    std::vector<int> cores;
+    for (int c = 0; c < CPU_SETSIZE; ++c)
+        if (CPU_ISSET(c, &before.cores)) cores.push_back(c);
+    auto const core_of = [&](int rank) { return cores[static_cast<std::size_t>(rank / 2) % cores.size()]; };
+    cpu_set_t own;
+    CPU_ZERO(&own);
+    CPU_SET(core_of(world().rank()), &own);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(own), &own), 0);
+    std::unique_ptr<Communicator> const bound = connected({"bound"});
+    int sharing = 0;
+    for (int r = 0; r < world().size(); ++r) sharing += core_of(r) == core_of(world().rank()) ? 1 : 0;
+    EXPECT_EQ(bound->ranks_on_cores(), sharing);
+    EXPECT_EQ(cores_of_rank(*bound), 1);
+    ASSERT_EQ(sched_setaffinity(0, sizeof(before.cores), &before.cores), 0);
+    std::unique_ptr<Communicator> const free = connected({"free"});
+    EXPECT_EQ(cores_of_rank(*free), std::max<int>(1, static_cast<int>(cores.size()) / free->ranks_on_cores()));
+    EXPECT_GE(free->ranks_on_cores(), 1);
+    EXPECT_LE(free->ranks_on_cores(), free->ranks_on_host());
+}
+
+/// Of rank 0, whatever the others' are.
+TEST(FirstRank, ItsVariablesAreEverybodys) {
+    ASSERT_EQ(setenv("CATENA_TEST_VARIABLE", world().rank() == 0 ? "first" : "other", 1), 0);
+    EXPECT_EQ(variable_of_first_rank(world(), "CATENA_TEST_VARIABLE"), "first");
+    ASSERT_EQ(unsetenv("CATENA_TEST_VARIABLE"), 0);
+    EXPECT_EQ(variable_of_first_rank(world(), "CATENA_TEST_VARIABLE"), "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Connections, CommunicatorTest,

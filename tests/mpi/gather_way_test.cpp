@@ -1,9 +1,10 @@
-// What CATENA_GATHER may say, and the rule without it.
+// What CATENA_GATHER and CATENA_GPU_EXCHANGE may say, and the rule without the former.
 #include "mpi/gather_way.hpp"
 
 #include <gtest/gtest.h>
 
 #include "error.hpp"
+#include "mpi/gpu_exchange.hpp"
 
 namespace catena {
 namespace {
@@ -20,6 +21,14 @@ TEST(GatherWay, ChoicesByName) {
     EXPECT_EQ(gather_choice("two-stage:3").ranks_a_host, 3);
     for (char const* const wrong : {"two", "two-stage:", "two-stage:0", "two-stage:-1", "two-stage:3x", "one-stage:2"})
         EXPECT_THROW(gather_choice(wrong), InputError) << wrong;
+}
+
+TEST(GpuExchange, ChoicesByName) {
+    EXPECT_EQ(gpu_exchange_choice(""), GpuExchange::automatic);
+    EXPECT_EQ(gpu_exchange_choice("auto"), GpuExchange::automatic);
+    EXPECT_EQ(gpu_exchange_choice("direct"), GpuExchange::direct);
+    EXPECT_EQ(gpu_exchange_choice("host"), GpuExchange::host);
+    EXPECT_THROW(gpu_exchange_choice("hosts"), InputError);
 }
 
 TEST(GatherWay, TwoStagesOnManyRanksOfSeveralHosts) {

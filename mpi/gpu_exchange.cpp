@@ -1,0 +1,14 @@
+#include "mpi/gpu_exchange.hpp"
+
+#include "error.hpp"
+
+namespace catena {
+
+GpuExchange gpu_exchange_choice(std::string const& text) {
+    if (text.empty() || text == "auto") return GpuExchange::automatic;
+    if (text == "direct") return GpuExchange::direct;
+    if (text == "host") return GpuExchange::host;
+    throw InputError("`" + text + "` is no way for GPUs to exchange numbers", "CATENA_GPU_EXCHANGE", "auto, direct or host");
+}
+
+}  // namespace catena

@@ -1,0 +1,12 @@
+// What the environment variable CATENA_GPU_EXCHANGE asks for.
+#pragma once
+
+#include <string>
+
+namespace catena {
+
+enum class GpuExchange { automatic, direct, host };
+/// "auto", "direct", "host"; empty: auto. Throws InputError.
+GpuExchange gpu_exchange_choice(std::string const& text);
+
+}  // namespace catena
