@@ -11,7 +11,7 @@ struct CoreSet {
 
     friend bool operator==(CoreSet const& a, CoreSet const& b) { return a.known == b.known && CPU_EQUAL(&a.cores, &b.cores); }
 };
-/// Of this process.
+/// Of the calling thread.
 CoreSet cores_bound_to();
 
 }  // namespace catena

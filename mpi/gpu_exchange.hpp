@@ -5,8 +5,8 @@
 
 namespace catena {
 
-enum class GpuExchange { automatic, direct, host };
-/// "auto", "direct", "host"; empty: auto. Throws InputError.
+enum class GpuExchange { direct_where_possible, host };
+/// "auto" or "direct" (the same), "host"; empty: auto. Throws InputError.
 GpuExchange gpu_exchange_choice(std::string const& text);
 
 }  // namespace catena

@@ -6,7 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -63,14 +62,6 @@ OnHost place_on_host(MPI_Comm world) {
     std::vector<CoreSet> all(static_cast<std::size_t>(hosts.ranks.size()));
     check_mpi(MPI_Allgather(&own, sizeof(own), MPI_BYTE, all.data(), sizeof(own), MPI_BYTE, hosts.ranks), "MPI_Allgather");
     return {hosts.ranks.rank(), hosts.ranks.size(), static_cast<int>(std::count(all.begin(), all.end(), own))};
-}
-
-/// Rank 0's CATENA_GATHER: launchers bring variables to other hosts only when told to.
-GatherChoice choice_of_first_rank(MPI_Comm world, int rank) {
-    char text[64] = "";
-    if (char const* const own = std::getenv("CATENA_GATHER"); rank == 0 && own != nullptr) std::strncpy(text, own, sizeof(text) - 1);
-    check_mpi(MPI_Bcast(text, sizeof(text), MPI_CHAR, 0, world), "MPI_Bcast");
-    return gather_choice(text);
 }
 
 // A double as an integer of the same order, NaN above all.
@@ -191,7 +182,7 @@ class MpiCommunicator final : public Communicator {
 
   private:
     void choose_way(MpiOptions const& options) {
-        GatherChoice const choice = options.gather ? *options.gather : choice_of_first_rank(world_, rank_);
+        GatherChoice const choice = options.gather ? *options.gather : gather_choice(variable_of_first_rank(*this, "CATENA_GATHER"));
         int colour = choice.ranks_a_host > 0 ? on_host_.rank / choice.ranks_a_host : 0;
         if (!options.host_of_rank.empty()) colour = options.host_of_rank[static_cast<std::size_t>(rank_)];
         hosts_ = std::make_unique<Hosts>(world_, colour);

@@ -52,7 +52,7 @@ int run_request(Communicator const& communicator, int argc, char** argv,
     bool const speaks = communicator.rank() == 0;
     try {
         Request const request = parse_command_line(argc, argv);
-        check_environment(communicator);
+        if (!std::holds_alternative<Answer>(request)) check_environment(communicator);
         return execute(communicator, request);
     } catch (InputError const& error) {
         if (speaks) say_error(error.what());

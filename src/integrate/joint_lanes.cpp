@@ -29,9 +29,7 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
 
 }  // namespace
 
-JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level)
-    : runs_(dca::deal_out_runs(group, lanes_of(level), false)),
-      tree_(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots) {
+JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
     if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty())
         return;
     for (bool const positions : {false, true})
@@ -46,7 +44,12 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level)
             ++k;
         }
     }
-    if (first_.empty()) others_ = {};
+    if (first_.empty()) {
+        others_ = {};
+        return;
+    }
+    runs_ = dca::deal_out_runs(group, lanes, false);
+    tree_.emplace(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots);
 }
 
 }  // namespace catena

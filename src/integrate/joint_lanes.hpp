@@ -1,8 +1,9 @@
-// Loops over the bodies of chains in joint coordinates, as many at a time as a vector has lanes: which bodies, and the loops of an
-// instruction set. What these do is in joint_chains.hpp, joint_steps.hpp and embedded_steps.hpp.
+// Loops over the bodies of chains in joint coordinates, and over their runs, as many at a time as a vector has lanes: which ones, and the
+// loops of an instruction set. What these do is in joint_chains.hpp, joint_steps.hpp and embedded_steps.hpp.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "dca/host_space.hpp"
@@ -27,12 +28,13 @@ JointLoops avx512_joint_loops(bool positions);
 
 class JointLanes {
   public:
-    /// `springs`: whether joints have any.
+    /// `springs`: whether joints have any. The group must outlive it.
     JointLanes(ChainGroup const&, bool springs, SimdLevel);
+    // A copy's tree would be of the original's runs.
     JointLanes(JointLanes&&) = default;
     JointLanes& operator=(JointLanes&&) = default;
 
-    /// Whether any bodies go side by side.
+    /// Whether any bodies go side by side. Precondition of all that follows.
     bool any() const { return !first_.empty(); }
     /// some(loops, first, begin, end) for those, one(k) for the others.
     template <class Space, class Some, class One>
@@ -49,12 +51,12 @@ class JointLanes {
         space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),
                           [&](std::int64_t begin, std::int64_t end) { loops.follow(scan, runs_.items.data(), begin, end); });
     }
-    HostSpace::ScanTree const& tree() const { return tree_; }
+    HostSpace::ScanTree const& tree() const { return *tree_; }
 
   private:
     JointLoops loops_[2]{};
     dca::RunsDealtOut runs_;
-    HostSpace::ScanTree tree_;
+    std::optional<HostSpace::ScanTree> tree_;
     std::vector<std::int64_t> first_, others_;
 };
 

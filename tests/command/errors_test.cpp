@@ -35,7 +35,9 @@ TEST(Errors, AGpuThatIsNotThere) {
 TEST(Errors, TheEnvironment) {
     Words const check = {program(), "check", input("arm.yaml")};
     expect_refused(run_program(check, "", {"CATENA_GATHER=two-stages"}), 2, "`two-stages` is no way to gather (CATENA_GATHER)");
-    expect_refused(run_program(check, "", {"CATENA_GPU_EXCHANGE=hots"}), 2, "`hots` is no way for GPUs to exchange numbers");
+    expect_refused(run_program(check, "", {"CATENA_GPU_EXCHANGE=hots"}), 2,
+                   "`hots` is no way for GPUs to exchange numbers (CATENA_GPU_EXCHANGE): use auto, direct or host");
+    expect_good(run_program({program(), "--version"}, "", {"CATENA_GPU_EXCHANGE=hots"}));
     expect_good(run_program(check, "", {"CATENA_GATHER=two-stage:2", "CATENA_GPU_EXCHANGE=host"}));
 }
 

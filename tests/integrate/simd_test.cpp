@@ -1,6 +1,7 @@
 // Runs side by side in a vector's lanes find what they find one after the other, whatever the ranks and threads.
 #include <gtest/gtest.h>
 
+#include "chain/joint_kinematics.hpp"
 #include "dca/simd/side_by_side.hpp"
 #include "error.hpp"
 #include "integrate/joint_integrators.hpp"
@@ -192,6 +193,54 @@ TEST(SimdOfSteps, DealOutBodiesOfOneType) {
         EXPECT_EQ(seen, std::vector<int>(100, 1));
         EXPECT_EQ(several, 98 / lanes_of(level));
     }
+}
+
+/// The scan along the chains with their runs in lanes leaves the bits of the one without.
+template <bool positions>
+void expect_followed(Scene const& scene, std::string const& what) {
+    Communicator const& ranks = testing::world();
+    for (auto const& group : make_groups(scene, Axes::joint, Handles::projected, false, ranks))
+        for (SimdLevel const level : simd_levels()) {
+            JointLanes const lanes(*group, false, level);
+            if (!lanes.any()) continue;
+            auto const executor = serial_executor(level);
+            HostSpace const space(*executor);
+            JointState state = make_joint_state(*group, scene);
+            BodyMotion one(*group, space), several(*group, space);
+            JointKinematics<HostSpace> kinematics(*group, space, ranks);
+            kinematics.evaluate(state.view(), positions, one.view());
+            JointScan const scan = kinematics.scan(state.view(), several.view());
+            for (std::int64_t k = 0; k < group->size; ++k) scan.set_relative<positions>(k);
+            lanes.follow(space, positions, scan);
+            kinematics.sweep<positions>(scan, lanes.tree());
+            for (std::int64_t k = 0; k < group->size; ++k) scan.set_motion<positions>(k);
+            std::string const name = what + ", " + name_of(level) + (positions ? ", positions" : "");
+            auto const same_field = [](auto& a, auto& b) {
+                auto const x = a.storage(), y = b.storage();
+                return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size_bytes()) == 0;
+            };
+            EXPECT_TRUE(same_field(one.orientation, several.orientation)) << name;
+            EXPECT_TRUE(same_field(one.omega, several.omega)) << name;
+            EXPECT_TRUE(same_field(one.origin, several.origin)) << name;
+            EXPECT_TRUE(same_field(one.velocity, several.velocity)) << name;
+        }
+}
+TEST(SimdOfScans, FollowRunsAsOneByOne) {
+    for (RandomJoints const joints : {RandomJoints::revolute, RandomJoints::spherical, RandomJoints::universal, RandomJoints::helical,
+                                      RandomJoints::planar, RandomJoints::any})
+        for (Base const base : {Base::fixed, Base::free})
+            for (std::size_t const bodies : {96U, 303U}) {
+                RandomChainOptions options;
+                options.bodies = bodies;
+                options.joints = joints;
+                options.base = base;
+                Scene scene;
+                scene.chains = {random_chain(11, options), random_chain(12, options)};
+                scene.chains[0].name = "one", scene.chains[1].name = "two";
+                std::string const what = "joints " + std::to_string(static_cast<int>(joints)) + ", " + std::to_string(bodies) + " bodies";
+                expect_followed<false>(scene, what);
+                expect_followed<true>(scene, what);
+            }
 }
 
 /// On one rank: the oracle of all ranks' is the same.

@@ -24,9 +24,9 @@ TEST(GatherWay, ChoicesByName) {
 }
 
 TEST(GpuExchange, ChoicesByName) {
-    EXPECT_EQ(gpu_exchange_choice(""), GpuExchange::automatic);
-    EXPECT_EQ(gpu_exchange_choice("auto"), GpuExchange::automatic);
-    EXPECT_EQ(gpu_exchange_choice("direct"), GpuExchange::direct);
+    EXPECT_EQ(gpu_exchange_choice(""), GpuExchange::direct_where_possible);
+    EXPECT_EQ(gpu_exchange_choice("auto"), GpuExchange::direct_where_possible);
+    EXPECT_EQ(gpu_exchange_choice("direct"), GpuExchange::direct_where_possible);
     EXPECT_EQ(gpu_exchange_choice("host"), GpuExchange::host);
     EXPECT_THROW(gpu_exchange_choice("hosts"), InputError);
 }

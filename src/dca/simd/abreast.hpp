@@ -43,7 +43,7 @@ template <int K, class Real>
 void write_directions(DirectionsView const& view, Abreast<Real> const& bodies, Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, bodies, value);
 }
-/// Every body's record of N numbers, `index` of it, which only grows along the bodies.
+/// Every body's record of N numbers, `index` of it. Bodies with the same one lie together.
 template <int N, class Real>
 Vector<Real, N> pick(double const* records, std::int32_t const* index, Abreast<Real> const& bodies, Vector<Real, N> v) {
     if (index[bodies.first] == index[bodies.first + Real::lanes - 1]) {

@@ -8,7 +8,7 @@
 
 namespace catena {
 
-/// JointScan::follow of runs side by side, one a lane.
+/// JointScan::follow of runs side by side, one a lane: the same operations on each in the same order.
 template <class Real, bool positions>
 class FollowRuns {
     static constexpr int lanes = Real::lanes, part = dca::part_length;
@@ -31,6 +31,9 @@ class FollowRuns {
         }
         if (joints_.planar) normal_ = tile_.in(ConstView<3>{s.joints.axes1.origin + 3 * s.joints.axes1.pitch, s.joints.axes1.pitch, 0});
     }
+    FollowRuns(FollowRuns const&) = delete;  // its views are of its own tile
+    FollowRuns& operator=(FollowRuns const&) = delete;
+
     void follow(dca::RunsInLanes const& runs) {
         constexpr std::int64_t bodies_of_item = lanes * dca::longest_run;
         Motions m{};
@@ -47,7 +50,7 @@ class FollowRuns {
             tile_.empty(first, bodies_of_item);
         }
         m.rotation = normalized(m.rotation);
-        show(m, runs.slot);
+        dca::scatter<Real>(m, whole_, runs.slot);
     }
 
   private:
@@ -67,12 +70,6 @@ class FollowRuns {
             write(to_translation_, k, m.translation);
             write(to_velocity_, k, m.velocity);
         }
-    }
-    void show(Motions const& m, std::int64_t const* slot) const {
-        alignas(64) double numbers[13 * lanes];
-        dca::store_vectors<Real>(numbers, m);
-        for (int j = 0; j < lanes; ++j)
-            for (int n = 0; n < numbers_of_motion<positions>; ++n) whole_.number(slot[j], n) = numbers[n * lanes + j];
     }
     JointsView joints_;
     MotionRecords whole_;
