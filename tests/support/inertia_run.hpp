@@ -1,11 +1,12 @@
 // A run of bodies on hinges seen from its two handles (dca/segment.hpp) by way of inertias: an oracle that shares nothing with joining
-// bodies by their mobilities. Real = double or wider.
+// bodies by their mobilities. Real = double, wider, or several side by side.
 //
 // Bodies are taken from the first to the last as in the articulated-body algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008,
 // section 7.2), with what a force at the run's first joint does carried along (Lilly and Orin, Int. J. Robotics Research 10, 1991: extended
-// force propagators), so that the run floats. All of it is about the last body's centre of mass and in its axes:
+// force propagators), so that the run floats. All of it is about a body's centre of mass and in its axes, of the last body (RunsEnd) about
+// its joint and in that one's:
 //   {torque, force} = I {alpha, a} + bias - first f1,   a1 = z f1 + first^T {alpha, a} + e,
-// f1 the force at handle 1 along its K = 5 directions (make_handle), a1 the acceleration along them, {torque, force} on the last body's
+// f1 the force at handle 1 along its K = 5 directions (make_handle), a1 the acceleration along them, {torque, force} on the body's
 // outboard side, {alpha, a} its accelerations.
 #pragma once
 
@@ -48,7 +49,9 @@ struct ReleasedHinge {
     Real inverse, bias;
     Vector<Real, 5> first;
 };
-/// The end of a run, I = L S L^T: `factor` as factorize(), the others L^-1 of `first`, of the directions of handle 2, and of the bias.
+/// The end of a run, in the axes of its last joint and about its meeting point, I = L S L^T: `factor` as factorize(), the others L^-1 of
+/// `first`, of the directions of handle 2, and of the bias. Rows force, then torque, that about the hinge last: light bodies on heavy ones
+/// have little more than their own inertia there, which then is added to nothing.
 template <class Real>
 struct RunsEnd {
     Symmetric<Real, 6> factor;
@@ -146,7 +149,20 @@ InertiaRun<Real> begin_run(HingedBody<Real> const& body) {
     add_body(run, body);
     return run;
 }
-/// Goes on to `body`, the one after `before`; what it returns is for the way back.
+/// Accelerations after a joint are those before it and these.
+template <class Real>
+void differ(InertiaRun<Real>& run, Vector<Real, 3> const& angular, Vector<Real, 3> const& linear) {
+    run.torque = run.torque - (run.turning * angular + run.coupling * linear);
+    run.force = run.force - (transposed_times(run.coupling, angular) + run.moving * linear);
+    run.e = run.e - (transposed_times(run.torques, angular) + transposed_times(run.forces, linear));
+}
+/// Handle 2 of a run's last body as RunsEnd has it.
+template <class Real>
+Handle<Real, 5> handle2_of_end(HingedBody<Real> const& last) {
+    Matrix<Real, 3, 3> const axes = transposed_times(last.e1, last.e2);
+    return make_handle<5>(transposed_times(last.e1, last.r2 - last.r1), axes, axes);
+}
+/// Goes on to `body`, the one after `before` and not the last of the run; what it returns is for the way back.
 template <class Real>
 ReleasedHinge<Real> go_on(InertiaRun<Real>& run, HingedBody<Real> const& before, HingedBody<Real> const& body) {
     Matrix<Real, 3, 3> const turn = body.turn_from(before);
@@ -157,39 +173,57 @@ ReleasedHinge<Real> go_on(InertiaRun<Real>& run, HingedBody<Real> const& before,
     Vector<Real, 3> const angular = -(body.bias[3] * body.e1.column(0) + body.bias[4] * body.e1.column(1));
     Vector<Real, 3> const linear =
         turn * before.inward2 - body.inward1 - body.e1 * Vector<Real, 3>{{body.bias[0], body.bias[1], body.bias[2]}};
-    run.torque = run.torque - (run.turning * angular + run.coupling * linear);
-    run.force = run.force - (transposed_times(run.coupling, angular) + run.moving * linear);
-    run.e = run.e - (transposed_times(run.torques, angular) + transposed_times(run.forces, linear));
+    differ(run, angular, linear);
     move_point(run, -body.r1);
     add_body(run, body);
     return hinge;
 }
 
-/// Rows torque, then force.
 template <class Real>
-Vector<Real, 6> six_of(Vector<Real, 3> const& torque, Vector<Real, 3> const& force) {
-    return {{torque[0], torque[1], torque[2], force[0], force[1], force[2]}};
+Vector<Real, 6> six_of(Vector<Real, 3> const& force, Vector<Real, 3> const& torque) {
+    return {{force[0], force[1], force[2], torque[0], torque[1], torque[2]}};
 }
-/// Of a run whose last body is `last`.
+/// Goes on to `last`, the last body, in the joint's axes; `hinge` as go_on(), in these axes too.
 template <class Real>
-RunsEnd<Real> end_of_run(InertiaRun<Real> const& run, HingedBody<Real> const& last) {
-    Symmetric<Real, 6> inertia;
+RunsEnd<Real> end_run(InertiaRun<Real>& run, HingedBody<Real> const& before, HingedBody<Real> const& last, ReleasedHinge<Real>& hinge) {
+    using Vector3 = Vector<Real, 3>;
+    move_point(run, before.r2);
+    turn_axes(run, transpose(before.e2));
+    hinge = release_hinge(run, Vector3{{Real(0), Real(0), Real(1)}});
+    for (int j = 0; j < 3; ++j) run.turning(2, j) = run.coupling(2, j) = Real(0);  // not what rounding left there
+    for (int j = 0; j < 5; ++j) run.torques(2, j) = Real(0);
+    run.torque[2] = Real(0);
+    Matrix<Real, 3, 3> const to_joint = transpose(last.e1);
+    Vector3 const angular{{-last.bias[3], -last.bias[4], Real(0)}};
+    Vector3 const linear =
+        transposed_times(before.e2, before.inward2) - (to_joint * last.inward1 + Vector3{{last.bias[0], last.bias[1], last.bias[2]}});
+    differ(run, angular, linear);
+
+    Vector3 const centre = -(to_joint * last.r1), force = to_joint * last.force;
+    Symmetric<Real, 3> const inertia = turned(to_joint, last.inertia);
+    Real const square = dot(centre, centre);
+    Symmetric<Real, 6> all;
     for (int i = 0; i < 3; ++i) {
+        Vector3 unit = Vector3::zero();
+        unit[i] = last.mass;
+        Vector3 const arm = cross(centre, unit);  // column i of the last body's coupling
         for (int j = 0; j < 3; ++j) {
-            if (j <= i) inertia(i, j) = run.turning(i, j);
-            if (j <= i) inertia(3 + i, 3 + j) = run.moving(i, j);
-            inertia(3 + i, j) = run.coupling(j, i);
+            all(3 + j, i) = run.coupling(j, i) + arm[j];
+            if (j > i) continue;
+            all(i, j) = i == j ? run.moving(i, j) + last.mass : run.moving(i, j);
+            Real const apart = less_product(centre[i], centre[j], i == j ? square : Real(0));
+            all(3 + i, 3 + j) = run.turning(i, j) + fused(last.mass, apart, inertia(i, j));
         }
     }
     RunsEnd<Real> end;
-    end.factor = factorize(inertia, 6);
-    Handle<Real, 5> const h = last.handle2();
+    end.factor = factorize(all, 6);
+    Handle<Real, 5> const h = handle2_of_end(last);
     for (int j = 0; j < 5; ++j) {
-        Vector<Real, 3> const force = j < 3 ? h.force.column(j) : Vector<Real, 3>::zero();
-        end.first.set_column(j, solve_lower(end.factor, six_of(run.torques.column(j), run.forces.column(j))));
-        end.second.set_column(j, solve_lower(end.factor, six_of(h.torque.column(j), force)));
+        Vector3 const along_force = j < 3 ? h.force.column(j) : Vector3::zero();
+        end.first.set_column(j, solve_lower(end.factor, six_of(run.forces.column(j), run.torques.column(j))));
+        end.second.set_column(j, solve_lower(end.factor, six_of(along_force, h.torque.column(j))));
     }
-    end.bias = solve_lower(end.factor, six_of(run.torque, run.force));
+    end.bias = solve_lower(end.factor, six_of(run.force - force, run.torque - (to_joint * last.torque + cross(centre, force))));
     return end;
 }
 /// a^T S^-1 b of columns i and j.
@@ -214,7 +248,7 @@ SegmentMatrix<Real, 5> segment_matrix(InertiaRun<Real> const& run, RunsEnd<Real>
 }
 template <class Real>
 SegmentBias<Real, 5> segment_bias(InertiaRun<Real> const& run, RunsEnd<Real> const& end, HingedBody<Real> const& last) {
-    SegmentBias<Real, 5> b{run.e, along(last.handle2(), Vector<Real, 3>::zero(), last.inward2)};
+    SegmentBias<Real, 5> b{run.e, along(handle2_of_end(last), Vector<Real, 3>::zero(), transposed_times(last.e1, last.inward2))};
     for (int i = 0; i < 5; ++i) {
         b.b1[i] = b.b1[i] - product(end.factor, end.first.column(i), end.bias);
         b.b2[i] = b.b2[i] - product(end.factor, end.second.column(i), end.bias);
@@ -224,12 +258,15 @@ SegmentBias<Real, 5> segment_bias(InertiaRun<Real> const& run, RunsEnd<Real> con
 
 /// Of the last body, from the forces at the run's first joint and at the one after it.
 template <class Real>
-BodyAcceleration<Real> last_acceleration(RunsEnd<Real> const& end, Vector<Real, 5> const& first, Vector<Real, 5> const& next) {
+BodyAcceleration<Real> last_acceleration(RunsEnd<Real> const& end, HingedBody<Real> const& last, Vector<Real, 5> const& first,
+                                         Vector<Real, 5> const& next) {
+    using Vector3 = Vector<Real, 3>;
     Vector<Real, 6> const y = solve_upper(end.factor, end.first * first - (end.second * next + end.bias));
-    return {{{y[0], y[1], y[2]}}, {{y[3], y[4], y[5]}}};
+    Vector3 const alpha = last.e1 * Vector3{{y[3], y[4], y[5]}};
+    return {alpha, last.e1 * Vector3{{y[0], y[1], y[2]}} - cross(alpha, last.r1)};
 }
-/// Of `before`, from that of `body` and the force at the run's first joint.
-template <class Real>
+/// Of `before`, from that of `body` and the force at the run's first joint. `at_end`: `body` is the last of the run.
+template <bool at_end, class Real>
 BodyAcceleration<Real> go_back(ReleasedHinge<Real> const& hinge, HingedBody<Real> const& before, HingedBody<Real> const& body,
                                BodyAcceleration<Real> const& of_body, Vector<Real, 5> const& first) {
     using Vector3 = Vector<Real, 3>;
@@ -239,7 +276,8 @@ BodyAcceleration<Real> go_back(ReleasedHinge<Real> const& hinge, HingedBody<Real
     turning = turning + Vector3{{body.bias[3], body.bias[4], Real(0)}};
     moving = moving + Vector3{{body.bias[0], body.bias[1], body.bias[2]}};
     Vector3 const linear = moving - transposed_times(before.e2, before.inward2);
-    Real const own = dot(hinge.turning, body.e1 * turning) + (dot(hinge.moving, body.e1 * linear) + (hinge.bias - dot(hinge.first, first)));
+    Vector3 const turned = at_end ? turning : body.e1 * turning, moved = at_end ? linear : body.e1 * linear;
+    Real const own = dot(hinge.turning, turned) + (dot(hinge.moving, moved) + (hinge.bias - dot(hinge.first, first)));
     turning[2] = less_product(own, hinge.inverse, turning[2]);
     BodyAcceleration<Real> a{before.e2 * turning, {}};
     a.a = before.e2 * linear - cross(a.alpha, before.r2);
