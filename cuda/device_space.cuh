@@ -11,6 +11,7 @@
 #include "cuda/device_model.cuh"
 #include "cuda/device_records.cuh"
 #include "cuda/device_scan.cuh"
+#include "cuda/hinge_teams.cuh"
 #include "cuda/kernels.cuh"
 #include "cuda/launch.cuh"
 #include "cuda/peer_exchange.cuh"
@@ -325,7 +326,11 @@ class DeviceSpace {
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
-            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(static_cast<std::int64_t>(tree.runs_.size())), sweep);
+            auto const runs = static_cast<std::int64_t>(tree.runs_.size());
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (kernels::go_by_teams<Sweep>(runs))
+                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams(runs), sweep);
+            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs), sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {

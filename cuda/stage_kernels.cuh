@@ -250,10 +250,14 @@ __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     wait_for_launch();
-    descend_some_runs<true, false, true>(
-        runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
-        [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
-        [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
+    if constexpr (dca::takes_whole_runs<Sweep>) {
+        if (std::int64_t const i = thread(); i < count) descend_run(sweep, runs[i]);
+    } else {
+        descend_some_runs<true, false, true>(
+            runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
+            [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
+            [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
+    }
 }
 
 struct RunsGrid {
@@ -266,15 +270,20 @@ inline RunsGrid grid_of_runs(std::int64_t runs, int threads_of_run, int threads_
     std::int64_t const wanted = (runs + 31) / 32 * 32 * threads_of_run;
     return {runs, static_cast<unsigned>((wanted + threads_of_block - 1) / threads_of_block), static_cast<unsigned>(threads_of_block), 0};
 }
+/// Threads of a block of whole runs: a warp, so that few runs spread over a GPU.
+template <class Sweep>
+constexpr int threads_of_whole_runs = dca::takes_whole_runs<Sweep> ? 32 : threads;
 template <class Sweep>
 RunsGrid grid_of_climb(std::int64_t runs) {
-    RunsGrid grid = grid_of_runs(runs, whole_runs<Sweep> ? 1 : dca::parts_of_run, threads);
+    RunsGrid grid =
+        whole_runs<Sweep> ? grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>) : grid_of_runs(runs, dca::parts_of_run, threads);
     if (!whole_runs<Sweep>) grid.shared_bytes = sizeof(double) * SharedRecords<typename Sweep::Segment>::size(threads);
     return grid;
 }
 /// Of a GPU whose blocks may share so many bytes.
 template <class Sweep>
 RunsGrid grid_of_descent(std::int64_t runs, std::size_t most_shared_bytes) {
+    if constexpr (dca::takes_whole_runs<Sweep>) return grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>);
     auto const bytes = [](int of_block) { return sizeof(double) * numbers_of_descent<Sweep>(of_block); };
     int of_block = threads;
     while (of_block > 32 && bytes(of_block) > most_shared_bytes) of_block /= 2;

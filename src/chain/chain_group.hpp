@@ -92,9 +92,10 @@ struct ChainGroup {
 
     int neighbour_inboard = -1, neighbour_outboard = -1;  // ranks that hold the bodies before and after, where a chain goes on there
     GroupView view() const;
-    /// What articulated handles alone read of `mass` and `inertia`: empty with others.
+    /// What sweeps read of `mass` and `inertia`: those of articulated handles and of runs on hinges. Else empty.
     Field<1> const& mass_of_sweeps() const;
     Field<6> const& inertia_of_sweeps() const;
+    bool sweeps_read_inertias() const;
     char const* kind() const;  // smallest handle kind: link | planar | spherical | universal | revolute | full
     /// Restricted directions of joint k of local numbering, the halo's, tips' and those of shared chains' tops included (schedule.joints
     /// entries; `none`: 0).

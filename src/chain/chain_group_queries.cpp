@@ -50,11 +50,14 @@ GroupView ChainGroup::view() const {
 }
 Field<1> const& ChainGroup::mass_of_sweeps() const {
     static Field<1> const none;
-    return handles == Handles::articulated ? mass : none;
+    return sweeps_read_inertias() ? mass : none;
 }
 Field<6> const& ChainGroup::inertia_of_sweeps() const {
     static Field<6> const none;
-    return handles == Handles::articulated ? inertia : none;
+    return sweeps_read_inertias() ? inertia : none;
+}
+bool ChainGroup::sweeps_read_inertias() const {
+    return handles == Handles::articulated || (!beads && !linked && directions == 5 && !has_screws);
 }
 
 int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }

@@ -17,7 +17,7 @@ struct GroupView {
     ConstView<3> r1, r2;
     ConstView<6> axes1, axes2;
     ConstView<3> screw;
-    ConstView<1> mass;  // with articulated handles
+    ConstView<1> mass;  // where sweeps read them (ChainGroup::mass_of_sweeps)
     ConstView<6> inertia;
 
     CATENA_HD bool has_jointed_tip(std::int64_t k) const { return jointed_tip && jointed_tip[k] >= 0; }

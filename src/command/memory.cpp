@@ -21,7 +21,7 @@ SolverSizes sizes() {
 }
 /// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, what is kept and the merge's joint,
 /// its bodies' constants. 0 where none do.
-double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes const& sizes, int ranks) {
+double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes sizes, int directions, int ranks) {
     SimdLevel const level = scene.solver.simd.value_or(best_simd_level());
     if (level == SimdLevel::off || scene.solver.handles != Handles::projected || scene.solver.pairwise()) return 0;
     double const places = static_cast<double>(sizeof(dca::RunsInLanes) + sizeof(dca::MergesInLanes)) / lanes_of(level);
@@ -30,9 +30,13 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes cons
     bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
     int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
     double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
+    double const merge = sizes.kept / (dca::parts_of_run - 1);
+    std::vector<JointType> const& types = chain.bodies.joint;
+    bool const hinges =
+        joints && directions == InJoints::K && std::none_of(types.begin(), types.end(), [](JointType t) { return slides(t); });
+    if (hinges) sizes.kept = sizes.all_kept = dca::kept_of_run_of<InJoints>(true) * 8.0;
     bool const all = !chain.is_beads() && dca::may_keep_all(static_cast<std::int64_t>(runs * sizes.all_kept / sizeof(double)));
-    return places + (all ? sizes.all_kept : sizes.kept) + sizes.kept / (dca::parts_of_run - 1) +
-           static_cast<double>(dca::longest_run * constants) * sizeof(double);
+    return places + (all ? sizes.all_kept : sizes.kept) + merge + static_cast<double>(dca::longest_run * constants) * sizeof(double);
 }
 SolverSizes sizes_for(int directions, Handles handles) {
     if (handles == Handles::articulated)
@@ -106,7 +110,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
-        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size, ranks) / ranks;
+        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size, k, ranks) / ranks;
     }
     return m;
 }

@@ -74,7 +74,62 @@ struct Resting {
     }
 };
 
-/// Matrices and biases at once; on the way down a part is eliminated again from the force at its first joint. `Bodies`: as Resting.
+/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end() and
+/// hinge() are asked for was put.
+template <class Sweeps>
+class HingesInJoints {
+    using Hinge = ReleasedHinge<double>;
+    using End = RunsEnd<double>;
+    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_end = sizeof(End) / sizeof(double);
+    static constexpr int of_joint = sizeof(typename Sweeps::Joint) / sizeof(double);
+    static_assert(of_hinge + of_end <= of_joint + Sweeps::K);
+
+  public:
+    CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run) : sweeps_(sweeps), run_(run) {}
+    CATENA_HD void put(int i, Hinge const& hinge) {
+        auto const numbers = __builtin_bit_cast(Vector<double, of_hinge>, hinge);
+        CATENA_UNROLL
+        for (int n = 0; n < of_hinge; ++n) number(i, n) = numbers[n];
+        watch(i, hinge.inverse);
+    }
+    CATENA_HD void put(End const& end) {
+        int const last = static_cast<int>(run_.count) - 1;
+        auto const numbers = __builtin_bit_cast(Vector<double, of_end>, end);
+        CATENA_UNROLL
+        for (int n = 0; n < of_end; ++n) number(last, of_hinge + n) = numbers[n];
+        CATENA_UNROLL
+        for (int i = 0; i < 6; ++i) watch(last, end.factor(i, i));
+    }
+    CATENA_HD Hinge hinge(int i) const {
+        Vector<double, of_hinge> numbers;
+        CATENA_UNROLL
+        for (int n = 0; n < of_hinge; ++n) numbers[n] = number(i, n);
+        return __builtin_bit_cast(Hinge, numbers);
+    }
+    CATENA_HD End end() const {
+        int const last = static_cast<int>(run_.count) - 1;
+        Vector<double, of_end> numbers;
+        CATENA_UNROLL
+        for (int n = 0; n < of_end; ++n) numbers[n] = number(last, of_hinge + n);
+        return __builtin_bit_cast(End, numbers);
+    }
+    CATENA_HD Lost const& lost() const { return lost_; }
+
+  private:
+    /// Of joint i's record and, after it, its offset.
+    CATENA_HD double& number(int i, int n) const {
+        return n < of_joint ? sweeps_.joints.number(run_.body + i, n) : sweeps_.offsets.number(run_.body + i, n - of_joint);
+    }
+    CATENA_HD void watch(int i, double inverse) {
+        if (!(inverse > 0 && inverse - inverse == 0)) lost_.add(run_.body + i);
+    }
+    Sweeps const& sweeps_;
+    Run const& run_;
+    Lost lost_;
+};
+
+/// Matrices and biases at once; on the way down a part is eliminated again from the force at its first joint, but for runs on hinges, which
+/// go by their inertias. `Bodies`: as Resting.
 template <class Leaf, class Bodies>
 struct Evaluation {
     static constexpr int K = Leaf::K;
@@ -89,7 +144,8 @@ struct Evaluation {
     using Passage = Elimination<double, K>;
     static constexpr bool descends = true, one_by_one = Bodies::one_by_one;
     static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
-    static constexpr bool goes_short = true;
+    static constexpr bool takes_whole_runs = Leaf::by_inertia;
+    static constexpr bool goes_short = !takes_whole_runs;
     /// Whether what a part's joints pass on, but the last one, may be left in memory by who has some: larger handles want that.
     static constexpr bool keeps_passages = K > 3;
     static constexpr int most_passages = part_length - (keeps_passages ? 2 : 1);
@@ -107,6 +163,37 @@ struct Evaluation {
     };
     MatrixSweep<Leaf> matrices() const { return {s}; }
     Biases biases() const { return {{s, bodies.loads, out}, *this}; }
+
+    /// Runs on hinges go by their inertias.
+    CATENA_HD bool takes(Run const& run) const {
+        std::int64_t const end = run.body + run.count;
+        bool hinges = run.count > 1 && !has_jointed_tip(s.leaf.group(), end - 1);
+        for (std::int64_t k = run.body + 1; k < end; ++k) hinges = hinges && s.restricted[k] == K;
+        return hinges;
+    }
+    CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
+        HingesInJoints<Sweeps> kept(s, run);
+        Segment const segment = climb_hinges<double>(
+            static_cast<int>(run.count), [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); }, kept);
+        s.note(kept.lost());
+        return segment;
+    }
+    CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
+        HingesInJoints<Sweeps> const kept(s, run);
+        Directions outboard = next;
+        descend_hinges<double, true>(
+            static_cast<int>(run.count), [&](int i) { return s.leaf.hinged_frame(bodies.loads, run.body + i); }, kept, first, next,
+            [&](int i, BodyAcceleration<double> const& a) {
+                std::int64_t const k = run.body + i;
+                if (out.acceleration.origin) {
+                    write(out.alpha, k, a.alpha);
+                    write(out.acceleration, k, a.a);
+                }
+                if (!out.joint_force) return;
+                outboard = i == 0 ? first : inboard_force(s.leaf.hinged(bodies.loads, k), a, outboard);
+                write_directions<K>(out.joint_force, k, outboard);
+            });
+    }
 
     template <class InverseLength = dca::InverseLength>
     CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {

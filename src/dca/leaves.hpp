@@ -1,8 +1,7 @@
 // How the tree solver reads one body from the arrays: its matrices, its bias, and its acceleration once the joint forces are known.
 #pragma once
 
-#include "dca/leaf.hpp"
-#include "dca/moving_beads.hpp"
+#include "dca/inertia_run.hpp"
 #include "dca/places.hpp"
 
 namespace catena::dca {
@@ -39,7 +38,7 @@ template <int K_>
 class BeadLeaf {
   public:
     static constexpr int K = K_;
-    static constexpr bool beads = true, in_joints = false, projected = K == 1, reads_neighbours = true;
+    static constexpr bool beads = true, in_joints = false, projected = K == 1, reads_neighbours = true, by_inertia = false;
     using Moving = MovingBeads<K>;
     explicit BeadLeaf(GroupView const& group) : group_(group) {}
     void set(ConfigurationView const& c) {
@@ -136,12 +135,16 @@ class MeetingFrames {
     CATENA_HD State<RealAt<Place>> state(Place k) const {
         return {read(group_.r1, k), read(r2_, k), read(rotation_, k), read(group_.axes1, k), read(axes2_, k)};
     }
+    /// In B.
+    template <class Real>
+    CATENA_HD static Matrix<Real, 3, 3> inboard_axes(State<Real> const& state, Matrix<Real, 3, 3> const& turn) {
+        return transposed_times(turn, axes_of(state.axes1));
+    }
     template <class Place>
     CATENA_HD HandlePair<Handle<RealAt<Place>, K, sliding>> handles(State<RealAt<Place>> const& state, Place k,
                                                                     Mat3At<Place> const& turn) const {
         using Real = RealAt<Place>;
-        using Axes = Matrix<Real, 3, 3>;
-        Axes const e1 = transposed_times(turn, axes_of(state.axes1)), e2 = axes_of(state.axes2);
+        auto const e1 = inboard_axes(state, turn), e2 = axes_of(state.axes2);
         HandlePair<Handle<Real, K, sliding>> pair{make_handle<K, sliding>(state.r1, e1, e1), make_handle<K, sliding>(state.r2, e2, e2)};
         if constexpr (sliding) {
             auto const s1 = read(group_.screw, k);
@@ -254,6 +257,8 @@ class BodyLeaf {
     using Frames = Frames_;
     static constexpr bool beads = false, in_joints = Frames::in_joints, projected = Frames::on_links ? K == 1 : K < 6;
     static constexpr bool reads_neighbours = Frames::on_links || Frames::any_forces;  // or whether there are any
+    /// Whether runs of them on hinges alone go by their inertias (inertia_run.hpp).
+    static constexpr bool by_inertia = K == 5 && in_joints && !Frames::any_forces;
     explicit BodyLeaf(GroupView const& group) : group_(group), frames_(group) {}
     void set(ConfigurationView const& c) { frames_.set(c); }
     CATENA_HD GroupView const& group() const { return group_; }
@@ -321,7 +326,38 @@ class BodyLeaf {
         write(out.acceleration, k, at_k.inverse_mass * force);
     }
 
+    /// Precondition of these: by_inertia.
+    template <class Place>
+    CATENA_HD HingedFrame<RealAt<Place>> hinged_frame(LoadsView const& loads, Place k) const {
+        auto const state = frames_.state(k);
+        return hinged_frame(loads, k, state, read_or_zero(loads.omega, k));
+    }
+    template <class Place>
+    CATENA_HD HingedBody<RealAt<Place>> hinged(LoadsView const& loads, Place k) const {
+        using Real = RealAt<Place>;
+        auto const state = frames_.state(k);
+        Vector<Real, 3> const omega = read_or_zero(loads.omega, k);
+        HingedBody<Real> b{hinged_frame(loads, k, state, omega), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)),
+                           read_or_zero(loads.torque, k), read_or_zero(loads.force, k)};
+        if (loads.gyroscopic) b.torque = b.torque - cross(omega, b.inertia * omega);
+        return b;
+    }
+
   private:
+    template <class Place, class State>
+    CATENA_HD HingedFrame<RealAt<Place>> hinged_frame(LoadsView const& loads, Place k, State const& state,
+                                                      Vec3At<Place> const& omega) const {
+        using Real = RealAt<Place>;
+        HingedFrame<Real> f{state.r1,
+                            state.r2,
+                            Frames::inboard_axes(state, to_matrix(as_quaternion(state.rotation))),
+                            axes_of(state.axes2),
+                            cross(omega, cross(omega, state.r1)),
+                            cross(omega, cross(omega, state.r2)),
+                            Vector<Real, 5>::zero()};
+        if (loads.bias) f.bias = read_directions<5>(loads.bias, k);
+        return f;
+    }
     template <class Place, class Handles>
     CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body, Handles const& h) const {
         auto s = leaf_matrix(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);

@@ -239,7 +239,7 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
                       std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes) {
     Planner planner(runs, levels, roots, slots, restricted);
     StagePlan plan;
-    plan.runs_apart = std::ssize(runs) > many_runs;
+    plan.runs_apart = !runs.empty() && (sizes.runs_apart || std::ssize(runs) > many_runs);
     int level = 0;
     if (!runs.empty()) {
         std::int64_t const width = width_of_runs(std::ssize(runs), plan.runs_apart, sizes);
@@ -286,7 +286,7 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
 
 StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t together) {
     std::int64_t const numbers = records.segment + 2 * records.state + 4;  // and of a merge, of an item
-    StageSizes sizes{records.threads, 2, together};
+    StageSizes sizes{records.threads, 2, together, records.whole_runs};
     auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.

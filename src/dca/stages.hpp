@@ -70,15 +70,17 @@ struct StageSizes {
     std::int64_t threads = 0;   // of a block
     std::int64_t most = 0;      // items of a block, 2 or more
     std::int64_t together = 0;  // blocks that one launch takes through two stages
+    bool runs_apart = false;    // also where they are few
 };
 /// What a sweep keeps in a block: numbers of a segment with its biases and of what is known at a joint on the way down; threads that find
-/// registers for merges.
+/// registers for merges; whether a thread takes a whole run.
 struct StageRecords {
     int segment = 0, state = 0, threads = 0;
+    bool whole_runs = false;
 };
 /// Of mobilities along so many directions.
-constexpr StageRecords stage_records(int directions) {
-    return {directions * (2 * directions + 3), directions, directions <= 3 ? 256 : 128};
+constexpr StageRecords stage_records(int directions, bool whole_runs = false) {
+    return {directions * (2 * directions + 3), directions, directions <= 3 ? 256 : 128, whole_runs};
 }
 /// Of a GPU whose blocks may share so many bytes, in clusters of so many.
 StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t together);

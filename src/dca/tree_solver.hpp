@@ -24,6 +24,7 @@ class TreeSolver final : public ChainSolver {
     using OfBiases = typename SweepsOf<Leaf>::OfBiases;
     template <class T, Order order>
     using Records = typename Space::template Records<T, order>;
+    static constexpr bool takes_runs_whole = requires { requires Leaf::by_inertia; };
     static constexpr bool has_lanes = goes_side_by_side<Leaf> && requires(Space const& space) { space.simd(); };
 
   public:
@@ -47,6 +48,10 @@ class TreeSolver final : public ChainSolver {
           sweeps_{Leaf(model_.view()), model_.restricted(), matrices_.view(), biases_.view(),
                   joints_.view(),      offsets_.view(),     forces_.view(),   lost_.data()} {
         space_.put(lost_.data(), none_lost);
+        if constexpr (takes_runs_whole)
+            if (at_once())
+                whole_runs_.emplace(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint,
+                                    Sweeps::in_stage_of_whole_runs);
         if constexpr (has_lanes) {
             aside_.emplace(group, model_.view(), space.simd());
             if (aside_->items() > 0)
@@ -212,7 +217,7 @@ class TreeSolver final : public ChainSolver {
                 space_.descend(rest_.front(), sweep);
                 return aside_->descend(space_, work);
             }
-        up_and_down(tree_, sweep, gather_both, out);
+        up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, gather_both, out);
     }
 
     /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
@@ -277,6 +282,7 @@ class TreeSolver final : public ChainSolver {
     std::vector<std::vector<Merge>> no_levels_;
     std::vector<Root> no_roots_;
     typename Space::Tree tree_, top_;
+    std::optional<typename Space::Tree> whole_runs_;  // that evaluations go by whose runs are taken whole
     typename Space::template List<TopCopy> top_copies_;
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;

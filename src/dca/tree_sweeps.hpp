@@ -44,7 +44,7 @@ struct TreeSweeps {
     using Directions = Vector<double, K>;
     using Offset = Directions;
     using State = Directions;  // what the way down knows of a joint: its force
-    static constexpr StageRecords in_stage = stage_records(K);
+    static constexpr StageRecords in_stage = stage_records(K), in_stage_of_whole_runs = stage_records(K, true);
 
     Leaf leaf;
     std::uint8_t const* restricted = nullptr;      // of every joint (ChainGroup::restricted_of_joint)
@@ -241,9 +241,15 @@ struct BiasSweep {
     }
 };
 
+/// A sweep that takes some runs whole: those that takes(run) says, by climb(run), which returns their segment, and descend(run, first, next).
+template <class Sweep>
+concept takes_whole_runs = requires { requires Sweep::takes_whole_runs; };
+
 /// A run's parts join one after the other.
 template <class Sweep>
 CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
+    if constexpr (takes_whole_runs<Sweep>)
+        if (sweep.takes(run)) return sweep.store(run.slot, sweep.climb(run));
     typename Sweep::Segment segment;
     CATENA_NO_UNROLL
     for (int p = 0; p < parts_of(run); ++p) {
@@ -268,6 +274,8 @@ template <class Sweep>
 CATENA_HD void descend_run(Sweep const& sweep, Run const& run) {
     auto const first = sweep.s.forces.load(run.body);
     auto next = sweep.s.forces.load(run.next);
+    if constexpr (takes_whole_runs<Sweep>)
+        if (sweep.takes(run)) return sweep.descend(run, first, next);
     for (int p = parts_of(run) - 1; p >= 0; --p) {
         auto const at_begin = p == 0 ? first : sweep.force(sweep.node(begin_of(run, p)), first, next);
         sweep.template down<true>(run, p, sweep.read(begin_of(run, p), end_of(run, p)), at_begin, next);

@@ -6,12 +6,27 @@
 #include <random>
 #include <vector>
 
-#include "tests/support/inertia_run.hpp"
+#include "dca/inertia_run.hpp"
 
-namespace catena::dca::test {
+namespace catena::dca {
 namespace {
 
 using Body = HingedBody<double>;
+
+/// In memory of its own.
+struct KeptHinges {
+    std::vector<ReleasedHinge<double>> hinges;
+    RunsEnd<double> at_end;
+
+    void put(int i, ReleasedHinge<double> const& hinge) { hinges[static_cast<std::size_t>(i)] = hinge; }
+    void put(RunsEnd<double> const& end) { at_end = end; }
+    ReleasedHinge<double> const& hinge(int i) const { return hinges[static_cast<std::size_t>(i)]; }
+    RunsEnd<double> const& end() const { return at_end; }
+};
+BiasedSegment<double, 5> climb(std::vector<Body> const& b, KeptHinges& kept) {
+    kept.hinges.resize(b.size());
+    return climb_hinges<double>(static_cast<int>(b.size()), [&](int i) { return b[static_cast<std::size_t>(i)]; }, kept);
+}
 
 struct Draw {
     std::mt19937_64 engine;
@@ -55,15 +70,12 @@ Sym3 inverse_of(Sym3 const& a) {
     return inverse;
 }
 
-struct Segment {
-    SegmentMatrix<double, 5> matrix;
-    SegmentBias<double, 5> bias;
-};
-Segment segment_of(Body const& b) {
+BiasedSegment<double, 5> segment_of_body(Body const& b) {
     Sym3 const inverse = inverse_of(b.inertia);
     auto const h1 = b.handle1(), h2 = b.handle2();
     Vec3 const alpha = inverse * b.torque, a = (1 / b.mass) * b.force;
-    Segment s{leaf_matrix(1 / b.mass, inverse, h1, h2), {along(h1, alpha, a + b.inward1), along(h2, alpha, a + b.inward2)}};
+    BiasedSegment<double, 5> s{leaf_matrix(1 / b.mass, inverse, h1, h2),
+                               {along(h1, alpha, a + b.inward1), along(h2, alpha, a + b.inward2)}};
     s.bias.b1 = s.bias.b1 + b.bias;
     return s;
 }
@@ -90,23 +102,16 @@ TEST_P(InertiaRuns, AreTheSegmentsOfTheirBodies) {
     int const n = GetParam();
     for (unsigned seed = 1; seed <= 20; ++seed) {
         std::vector<Body> const b = bodies(n, seed);
-        InertiaRun<double> run = begin_run(b[0]);
-        Segment joined = segment_of(b[0]);
-        RunsEnd<double> end;
+        BiasedSegment<double, 5> joined = segment_of_body(b[0]);
         for (std::size_t k = 1; k < b.size(); ++k) {
-            ReleasedHinge<double> hinge;
-            if (k + 1 < b.size())
-                go_on(run, b[k - 1], b[k]);
-            else
-                end = end_run(run, b[k - 1], b[k], hinge);
-            Segment const next = segment_of(b[k]);
+            auto const next = segment_of_body(b[k]);
             JointMatrix<double, 5> joint;
             Vector<double, 5> offset;
             append(joined.matrix, next.matrix, 5, joint);
             append(joined.bias, next.bias, joint, offset);
         }
-        auto const matrix = segment_matrix(run, end);
-        auto const bias = segment_bias(run, end, b.back());
+        KeptHinges kept;
+        auto const [matrix, bias] = climb(b, kept);
         Difference z11, z22, z12, biases;
         for (int i = 0; i < 5; ++i) {
             for (int j = 0; j < 5; ++j) {
@@ -134,16 +139,20 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
         Draw draw{std::mt19937_64(seed + 100)};
         Vector<double, 5> first, next;
         for (int i = 0; i < 5; ++i) first[i] = draw(-2, 2), next[i] = draw(-2, 2);
-        InertiaRun<double> run = begin_run(b[0]);
-        std::vector<ReleasedHinge<double>> hinge(b.size());
-        for (std::size_t k = 1; k + 1 < b.size(); ++k) hinge[k] = go_on(run, b[k - 1], b[k]);
-        std::size_t const tip = b.size() - 1;
-        RunsEnd<double> const end = end_run(run, b[tip - 1], b[tip], hinge[tip]);
+        KeptHinges kept;
+        climb(b, kept);
         std::vector<BodyAcceleration<double>> a(b.size());
-        a[tip] = last_acceleration(end, b[tip], first, next);
-        a[tip - 1] = go_back<true>(hinge[tip], b[tip - 1], b[tip], a[tip], first);
-        for (std::size_t k = tip - 1; k > 0; --k) a[k - 1] = go_back<false>(hinge[k], b[k - 1], b[k], a[k], first);
+        Vector<double, 5> inboard = next;
+        descend_hinges<double, false>(
+            n, [&](int i) -> HingedFrame<double> { return b[static_cast<std::size_t>(i)]; }, kept, first, next,
+            [&](int i, BodyAcceleration<double> const& of_body) {
+                a[static_cast<std::size_t>(i)] = of_body;
+                inboard = inboard_force(b[static_cast<std::size_t>(i)], of_body, inboard);
+            });
 
+        Difference begins;
+        for (int i = 0; i < 5; ++i) begins.add(inboard[i], first[i]);
+        EXPECT_LE(begins.value(), tolerance(n)) << seed;
         Vec3 torque = moment(b[0].handle1(), first), force = push(b[0].handle1(), first);  // by the inboard joint, about the body's centre
         Difference joints, last;
         double largest = 0, off = 0;
@@ -173,4 +182,4 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
 INSTANTIATE_TEST_SUITE_P(Bodies, InertiaRuns, ::testing::Values(2, 3, 4, 16, 32));
 
 }  // namespace
-}  // namespace catena::dca::test
+}  // namespace catena::dca

@@ -187,6 +187,22 @@ TEST_F(StageKernels, ShortChains) {
         }
 }
 
+/// By a thread or by several each; whose joints are not all hinges go the other way.
+TEST_F(StageKernels, RunsOnHinges) {
+    if (!alone()) return;
+    for (std::size_t const bodies : {2, 17, 128, 500})
+        for (Base const base : {Base::fixed, Base::free}) {
+            SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
+            auto const chain = [&](RandomJoints joints, std::size_t n) {
+                return random_chain(n, {.bodies = n, .joints = joints, .base = base});
+            };
+            expect_same(scene_of({chain(RandomJoints::revolute, bodies)}));
+            expect_same(
+                scene_of({chain(RandomJoints::revolute, bodies), chain(RandomJoints::universal, 20), chain(RandomJoints::revolute, 64)}));
+        }
+    EXPECT_GT(StageSpace::seen.teams, 0);
+}
+
 /// What quick quotients and roots leave to others.
 TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
     if (!alone()) return;

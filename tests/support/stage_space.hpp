@@ -8,6 +8,7 @@
 #include "tests/support/cuda_on_host.hpp"
 
 // After CUDA's words.
+#include "cuda/hinge_teams.cuh"
 #include "cuda/short_chain.cuh"
 #include "cuda/stage_walk.cuh"
 
@@ -15,7 +16,7 @@ namespace catena::test {
 
 struct StagedGpu {
     dca::StageSizes sizes;
-    bool runs_apart = false;               // also where they are few
+    bool runs_apart = false;               // also where they are few, and a thread each
     std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
     bool short_chains = false;             // by themselves
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart downwards
@@ -25,7 +26,7 @@ struct StagesSeen {
     std::set<unsigned> blocks_of_clusters;
     std::size_t most_stages = 0;
     std::set<unsigned> blocks_of_short_chains;
-    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0;
+    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0;
 };
 
 class StageSpace : public HostSpace {
@@ -43,6 +44,7 @@ class StageSpace : public HostSpace {
              std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
             : runs_(runs), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
+            sizes_.runs_apart = records.whole_runs;
             plan_ = dca::plan_stages(runs, levels, roots, slots, restricted, sizes_);
             if (gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
@@ -142,7 +144,13 @@ class StageSpace : public HostSpace {
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
-            over_runs(cuda::kernels::climb_runs<Sweep>, cuda::kernels::grid_of_climb<Sweep>(std::ssize(tree.runs_)), sweep);
+            std::int64_t const runs = std::ssize(tree.runs_);
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (cuda::kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
+                    ++seen.teams;
+                    return over_runs(cuda::kernels::climb_runs_by_teams<Sweep>, cuda::kernels::grid_of_teams(runs), sweep);
+                }
+            over_runs(cuda::kernels::climb_runs<Sweep>, cuda::kernels::grid_of_climb<Sweep>(runs), sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {

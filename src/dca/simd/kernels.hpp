@@ -2,6 +2,7 @@
 #pragma once
 
 #include <new>
+#include <type_traits>
 #include <utility>
 
 #include "dca/evaluation.hpp"
@@ -73,13 +74,17 @@ struct NodeInLanes {
 template <class Real, int K>
 inline constexpr bool fits_nodes =
     sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real) && sizeof(OneSided<Real, K>) == passed_numbers<K> * sizeof(Real);
-/// Of joints number[j] + further.
+/// Of joints number[j] + further, those whose bit j of `bad` is set.
+template <class Real, class Leaf>
+void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, unsigned bad) {
+    for (int j = 0; bad != 0 && j < Real::lanes; ++j)
+        if ((bad >> j & 1U) != 0) sweeps.note({static_cast<unsigned long long>(number[j] + further)});
+}
 template <class Leaf, class Real, int K>
 void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, Symmetric<Real, K> const& factor) {
     unsigned bad = 0;
     for (int i = 0; i < K; ++i) bad |= factor(i, i).not_positive();
-    for (int j = 0; bad != 0 && j < Real::lanes; ++j)
-        if ((bad >> j & 1U) != 0) sweeps.note({static_cast<unsigned long long>(number[j] + further)});
+    note_lost<Real>(sweeps, number, further, bad);
 }
 
 template <class Real, class Leaf>
@@ -266,14 +271,122 @@ class RunsSideBySide {
     std::int64_t first_[lanes];
 };
 
+/// Runs on hinges, by their inertias: as Evaluation::climb and descend.
+template <class Real, class Leaf>
+class HingedRunsSideBySide {
+    static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
+    static constexpr int numbers_of_hinge = hinge_numbers * lanes;
+    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
+    static_assert(sizeof(ReleasedHinge<Real>) == hinge_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == end_numbers * sizeof(Real));
+
+  public:
+    explicit HingedRunsSideBySide(RunWork<Leaf> const& work)
+        : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
+        out_.acceleration = tile_.out(work.out.acceleration);
+        out_.alpha = tile_.out(work.out.alpha);
+        out_.joint_force = tile_.template out_directions<K>(work.out.joint_force);
+    }
+
+    void climb(std::int64_t item) {
+        RunsInLanes const& runs = work_.runs[item];
+        Kept kept{*this, runs, place_of(item)};
+        auto const segment = climb_hinges<Real>(
+            count,
+            [&](int i) {
+                if (i % part_length == 0) fill(runs, i / part_length, 1);
+                return bodies_.leaf.hinged(bodies_.loads, Column<Real>{i % part_length});
+            },
+            kept);
+        scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
+        scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
+    }
+    void descend(std::int64_t item) {
+        RunsInLanes const& runs = work_.runs[item];
+        Vector<Real, K> first, next;
+        gather<Real>(work_.sweeps.forces, runs.body, first);
+        gather<Real>(work_.sweeps.forces, runs.next, next);
+        Vector<Real, K> outboard = next;
+        descend_hinges<Real, false>(
+            count,
+            [&](int i) {
+                if (i % part_length == part_length - 1) fill(runs, i / part_length, -1);
+                return bodies_.leaf.hinged_frame(bodies_.loads, Column<Real>{i % part_length});
+            },
+            Kept{*this, runs, place_of(item)}, first, next,
+            [&](int i, BodyAcceleration<Real> const& a) {
+                Column<Real> const here{i % part_length};
+                if (out_.acceleration.origin) {
+                    write(out_.alpha, here, a.alpha);
+                    write(out_.acceleration, here, a.a);
+                }
+                if (out_.joint_force) {
+                    outboard = i == 0 ? first : inboard_force(bodies_.leaf.hinged(bodies_.loads, here), a, outboard);
+                    write_directions<K>(out_.joint_force, here, outboard);
+                }
+                if (here.at == 0) tile_.empty(columns(runs, i / part_length), -bodies_of_item);
+            });
+    }
+
+  private:
+    struct Kept {
+        HingedRunsSideBySide const& all;
+        RunsInLanes const& runs;
+        double* place;
+
+        void put(int i, ReleasedHinge<Real> const& hinge) {
+            store_vectors<Real>(of_hinge(i), hinge);
+            watch(i, hinge.inverse.not_positive());
+        }
+        void put(RunsEnd<Real> const& end) {
+            store_vectors<Real>(place, end);
+            for (int i = 0; i < 6; ++i) watch(count - 1, end.factor(i, i).not_positive());
+        }
+        ReleasedHinge<Real> hinge(int i) const {
+            ReleasedHinge<Real> h;
+            load_vectors<Real>(of_hinge(i), h);
+            return h;
+        }
+        RunsEnd<Real> end() const {
+            RunsEnd<Real> e;
+            load_vectors<Real>(place, e);
+            return e;
+        }
+
+      private:
+        double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
+        void watch(int i, unsigned bad) const { note_lost<Real>(all.work_.sweeps, runs.body, i, bad); }
+    };
+    double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
+    void fill(RunsInLanes const& runs, int p, int way) {
+        tile_.fill(columns(runs, p), way * bodies_of_item);
+        constexpr int block = constants_of<Leaf> * part_length * lanes;
+        double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
+        prefetch<Real>(here, 2 * way * block, block);
+        bodies_ = in_tile_.with({here});
+    }
+    std::int64_t const* columns(RunsInLanes const& runs, int p) {
+        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
+        return first_;
+    }
+    RunWork<Leaf> const& work_;
+    Tile<Real, part_length> tile_;
+    BodiesInTile<Real, Leaf> in_tile_;
+    decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{})) bodies_;
+    AccelerationsView out_{};
+    std::int64_t first_[lanes];
+};
+
+template <class Real, class Leaf>
+using Runs = std::conditional_t<Leaf::by_inertia, HingedRunsSideBySide<Real, Leaf>, RunsSideBySide<Real, Leaf>>;
+
 template <class Real, class Leaf>
 [[gnu::flatten]] void climb_runs(RunWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
-    RunsSideBySide<Real, Leaf> runs(work);
+    Runs<Real, Leaf> runs(work);
     for (std::int64_t item = begin; item < end; ++item) runs.climb(item);
 }
 template <class Real, class Leaf>
 [[gnu::flatten]] void descend_runs(RunWork<Leaf> const& work, std::int64_t begin, std::int64_t end) {
-    RunsSideBySide<Real, Leaf> runs(work);
+    Runs<Real, Leaf> runs(work);
     for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>

@@ -19,8 +19,13 @@ struct RunsInLanes {
 template <class Leaf, class Action>
 constexpr void each_constant(GroupView& group, Action const& action) {
     if constexpr (!Leaf::beads) {
-        action(group.inverse_mass);
-        action(group.inverse_inertia);
+        if constexpr (Leaf::by_inertia) {
+            action(group.mass);
+            action(group.inertia);
+        } else {
+            action(group.inverse_mass);
+            action(group.inverse_inertia);
+        }
         action(group.r1);
         action(group.r2);
         if constexpr (Leaf::Frames::in_joints) {
@@ -49,7 +54,7 @@ struct RunWork {
     AccelerationsView out;
     RunsInLanes const* runs = nullptr;
     double const* constants = nullptr;  // [part of an item of `runs`][number][body][lane]
-    double* nodes = nullptr;            // kept_of_run<K> vectors for every item, from climb to descend
+    double* nodes = nullptr;            // kept_of_run_of<Leaf> vectors for every item, from climb to descend
     bool keeps_all = false;             // of every body too, or joints between parts alone, the others being eliminated again
 };
 /// Vectors of a joint between segments, and of what a body passes on to the way down.
@@ -60,6 +65,15 @@ inline constexpr int passed_numbers = static_cast<int>(sizeof(OneSided<double, K
 template <int K>
 constexpr int kept_of_run(bool keeps_all) {
     return (parts_of_run - 1) * node_numbers<K> + (keeps_all ? static_cast<int>(longest_run) * passed_numbers<K> : 0);
+}
+
+/// Of a run that goes by its inertias: its hinges and its end.
+inline constexpr int hinge_numbers = static_cast<int>(sizeof(ReleasedHinge<double>) / sizeof(double));
+inline constexpr int end_numbers = static_cast<int>(sizeof(RunsEnd<double>) / sizeof(double));
+inline constexpr int kept_of_hinged_run = (static_cast<int>(longest_run) - 1) * hinge_numbers + end_numbers;
+template <class Leaf>
+constexpr int kept_of_run_of(bool keeps_all) {
+    return Leaf::by_inertia ? kept_of_hinged_run : kept_of_run<Leaf::K>(keeps_all);
 }
 
 /// Merges of one level of the tree.

@@ -79,8 +79,8 @@ class SideBySide {
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
         runs_ = deal_out_runs(group, lanes_, Leaf::reads_neighbours);
-        keeps_all_ = !Leaf::beads && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
-        nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run<Leaf::K>(keeps_all_));
+        keeps_all_ = !Leaf::beads && !Leaf::by_inertia && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
+        nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run_of<Leaf>(keeps_all_));
         constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {
             each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
                 auto const numbers = field.load(k);
