@@ -87,14 +87,67 @@ void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int furth
     note_lost<Real>(sweeps, number, further, bad);
 }
 
+/// Runs side by side, whose bodies are in a tile a part at a time, with what is done to them there.
 template <class Real, class Leaf>
-class RunsSideBySide {
-    static constexpr int K = Leaf::K, lanes = Real::lanes;
+class RunsInTile {
     // Beads' neighbours are of the same run for the most part.
     static constexpr bool by_runs = Leaf::beads;
-    using InTile = Tile<Real, by_runs ? longest_run : part_length>;
     static_assert(!by_runs || constants_of<Leaf> == 0);
+    static constexpr int lanes = Real::lanes;
+    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
+
+  protected:
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
+
+    explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
+        out_.acceleration = tile_.out(work.out.acceleration);
+        out_.alpha = tile_.out(work.out.alpha);
+        out_.joint_force = tile_.template out_directions<Leaf::K>(work.out.joint_force);
+    }
+    /// The next item's bodies usually follow, or come before where the way is back.
+    void fill(RunsInLanes const& runs, int p, int way) {
+        begin_ = {by_runs ? p * part_length : 0};
+        if (!by_runs)
+            tile_.fill(columns(runs, p), way * bodies_of_item);
+        else if (p == (way > 0 ? 0 : parts_of_run - 1))
+            tile_.fill(runs.body, way * bodies_of_item);
+        if constexpr (constants_of<Leaf> > 0) {
+            constexpr int block = constants_of<Leaf> * part_length * lanes;
+            double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
+            prefetch<Real>(here, 2 * way * block, block);
+            bodies_ = in_tile_.with({here});
+        }
+    }
+    void empty(RunsInLanes const& runs, int p) {
+        if (!by_runs)
+            tile_.empty(columns(runs, p), -bodies_of_item);
+        else if (p == 0)
+            tile_.empty(runs.body, -bodies_of_item);
+    }
+
+    RunWork<Leaf> const& work_;
+
+  private:
+    std::int64_t const* columns(RunsInLanes const& runs, int p) {
+        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
+        return first_;
+    }
+    Tile<Real, by_runs ? longest_run : part_length> tile_;
+    BodiesInTile<Real, Leaf> in_tile_;
+    std::int64_t first_[lanes];
+
+  protected:
+    Bodies bodies_;
+    Column<Real> begin_;  // of the part in the tile
+    AccelerationsView out_{};
+};
+
+template <class Real, class Leaf>
+class RunsSideBySide : RunsInTile<Real, Leaf> {
+    static constexpr int K = Leaf::K, lanes = Real::lanes;
+    using Base = RunsInTile<Real, Leaf>;
+    using Base::work_, Base::begin_, Base::bodies_, Base::out_, Base::fill, Base::empty;
+    using Bodies = typename Base::Bodies;
     using Body = typename Bodies::template Body<Column<Real>>;
     using Kept = decltype(std::declval<Bodies const&>().keep(std::declval<Body const&>()));
     using Segment = BiasedSegment<Real, K>;
@@ -102,15 +155,10 @@ class RunsSideBySide {
     using Node = NodeInLanes<Real, K>;
     using Passed = OneSided<Real, K>;
     static_assert(fits_nodes<Real, K>);
-    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
     static constexpr int numbers_of_node = node_numbers<K> * lanes, numbers_of_passed = passed_numbers<K> * lanes;
 
   public:
-    explicit RunsSideBySide(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
-        out_.acceleration = tile_.out(work.out.acceleration);
-        out_.alpha = tile_.out(work.out.alpha);
-        out_.joint_force = tile_.template out_directions<K>(work.out.joint_force);
-    }
+    explicit RunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
 
     void climb(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
@@ -156,24 +204,6 @@ class RunsSideBySide {
     double* place_of_passed(std::int64_t item, int i) const {
         return place_of(item) + (parts_of_run - 1) * numbers_of_node + i * numbers_of_passed;
     }
-    /// The next item's bodies usually follow, or come before where the way is back.
-    void fill(RunsInLanes const& runs, int p, int way) {
-        begin_ = {by_runs ? p * part_length : 0};
-        if (!by_runs)
-            tile_.fill(columns(runs, p), way * bodies_of_item);
-        else if (p == (way > 0 ? 0 : parts_of_run - 1))
-            tile_.fill(runs.body, way * bodies_of_item);
-        if constexpr (constants_of<Leaf> > 0) {
-            constexpr int block = constants_of<Leaf> * part_length * lanes;
-            double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            prefetch<Real>(here, 2 * way * block, block);
-            bodies_ = in_tile_.with({here});
-        }
-    }
-    std::int64_t const* columns(RunsInLanes const& runs, int p) {
-        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
-        return first_;
-    }
     void make_part(std::int64_t item, int p, Segment& segment) {
         RunsInLanes const& runs = work_.runs[item];
         fill(runs, p, 1);
@@ -202,10 +232,7 @@ class RunsSideBySide {
             use_kept(item, p, first, next);
         else
             eliminate_again(first, next);
-        if (!by_runs)
-            tile_.empty(columns(runs, p), -bodies_of_item);
-        else if (p == 0)
-            tile_.empty(runs.body, -bodies_of_item);
+        empty(runs, p);
     }
     /// As Evaluation::down.
     void eliminate_again(Directions const& first, Directions next) {
@@ -262,30 +289,19 @@ class RunsSideBySide {
         bodies_.accelerate(kept, inboard, outboard, out_);
         store_forces(GroupView{}, out_, begin_ + i, inboard, outboard);
     }
-    RunWork<Leaf> const& work_;
-    InTile tile_;
-    Column<Real> begin_;  // of the part in the tile
-    BodiesInTile<Real, Leaf> in_tile_;
-    Bodies bodies_;
-    AccelerationsView out_{};
-    std::int64_t first_[lanes];
 };
 
 /// Runs on hinges, by their inertias: as Evaluation::climb and descend.
 template <class Real, class Leaf>
-class HingedRunsSideBySide {
+class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
     static constexpr int numbers_of_hinge = hinge_numbers * lanes;
-    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
+    using Base = RunsInTile<Real, Leaf>;
+    using Base::work_, Base::bodies_, Base::out_, Base::fill, Base::empty;
     static_assert(sizeof(ReleasedHinge<Real>) == hinge_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == end_numbers * sizeof(Real));
 
   public:
-    explicit HingedRunsSideBySide(RunWork<Leaf> const& work)
-        : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
-        out_.acceleration = tile_.out(work.out.acceleration);
-        out_.alpha = tile_.out(work.out.alpha);
-        out_.joint_force = tile_.template out_directions<K>(work.out.joint_force);
-    }
+    explicit HingedRunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
 
     void climb(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
@@ -323,7 +339,7 @@ class HingedRunsSideBySide {
                     outboard = i == 0 ? first : inboard_force(bodies_.leaf.hinged(bodies_.loads, here), a, outboard);
                     write_directions<K>(out_.joint_force, here, outboard);
                 }
-                if (here.at == 0) tile_.empty(columns(runs, i / part_length), -bodies_of_item);
+                if (here.at == 0) empty(runs, i / part_length);
             });
     }
 
@@ -357,23 +373,6 @@ class HingedRunsSideBySide {
         void watch(int i, unsigned bad) const { note_lost<Real>(all.work_.sweeps, runs.body, i, bad); }
     };
     double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
-    void fill(RunsInLanes const& runs, int p, int way) {
-        tile_.fill(columns(runs, p), way * bodies_of_item);
-        constexpr int block = constants_of<Leaf> * part_length * lanes;
-        double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-        prefetch<Real>(here, 2 * way * block, block);
-        bodies_ = in_tile_.with({here});
-    }
-    std::int64_t const* columns(RunsInLanes const& runs, int p) {
-        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
-        return first_;
-    }
-    RunWork<Leaf> const& work_;
-    Tile<Real, part_length> tile_;
-    BodiesInTile<Real, Leaf> in_tile_;
-    decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{})) bodies_;
-    AccelerationsView out_{};
-    std::int64_t first_[lanes];
 };
 
 template <class Real, class Leaf>
