@@ -157,6 +157,7 @@ class CountingSpace : public HostAccess {
                 for (auto const* handed : {&stage.segments_up, &stage.forces_down}) count(*handed);
                 count(dca::blocks_of(stage));
                 count(dca::level_ends_of(stage));
+                Count::add(static_cast<std::int64_t>(sizeof(double)) * dca::kept_numbers(stage, records));
             }
         }
     };

@@ -57,7 +57,7 @@ class DeviceSpace {
             dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
-            for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes);
+            for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes, records);
             together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
             if (sizes.together > 0) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
         }
@@ -65,7 +65,7 @@ class DeviceSpace {
       private:
         friend class DeviceSpace;
         struct StageHere {
-            StageHere(dca::Stage const& stage, dca::Run const* runs, dca::StageSizes const& sizes)
+            StageHere(dca::Stage const& stage, dca::Run const* runs, dca::StageSizes const& sizes, dca::StageRecords const& records)
                 : items(stage.items),
                   merges(stage.merges),
                   roots(stage.roots),
@@ -73,6 +73,7 @@ class DeviceSpace {
                   forces_down(stage.forces_down),
                   block(dca::blocks_of(stage)),
                   level_end(dca::level_ends_of(stage)),
+                  kept(static_cast<std::size_t>(dca::kept_numbers(stage, records))),
                   blocks(static_cast<unsigned>(stage.blocks())),
                   threads(dca::threads_for(stage, sizes)),
                   view{static_cast<unsigned>(stage.blocks()),
@@ -86,13 +87,15 @@ class DeviceSpace {
                        segments_up.data(),
                        forces_down.data(),
                        block.data(),
-                       level_end.data()} {}
+                       level_end.data(),
+                       kept.data()} {}
             Buffer<dca::StageItem> items;
             Buffer<dca::StageMerge> merges;
             Buffer<dca::StageRoot> roots;
             Buffer<dca::Handed> segments_up, forces_down;
             Buffer<dca::StageBlock> block;
             Buffer<std::int32_t> level_end;
+            Buffer<double> kept;
             unsigned blocks;
             int threads;
             kernels::DeviceStage view;
@@ -303,6 +306,7 @@ class DeviceSpace {
         std::size_t stages() const { return tree.stages_.size(); }
         bool runs_apart() const { return tree.runs_apart_; }
         bool together() const { return tree.together_; }
+        bool takes_runs(std::size_t i) const { return tree.stages_[i].view.runs != nullptr; }
         template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
             launch(kernels::climb<Sweep>, tree.stages_[i], sweep);
@@ -315,7 +319,8 @@ class DeviceSpace {
         template <class Sweep>
         void turn(std::size_t i, Sweep const& sweep) const {
             Tree::StageHere const &lower = tree.stages_[i], *const upper = together() ? &tree.stages_[i + 1] : nullptr;
-            int const of_block = std::max(lower.threads, upper ? upper->threads : 0);
+            int const of_block =
+                kernels::threads_for<Sweep>(std::max(lower.threads, upper ? upper->threads : 0), kernels::threads_of_turn<Sweep>);
             auto const numbers = [&](Tree::StageHere const& stage) {
                 return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
             };
@@ -329,12 +334,15 @@ class DeviceSpace {
             auto const runs = static_cast<std::int64_t>(tree.runs_.size());
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
-                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams(runs), sweep);
+                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeAhead>(runs), sweep);
             launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs), sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             auto const runs = static_cast<std::int64_t>(tree.runs_.size());
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (kernels::go_by_teams<Sweep>(runs))
+                    return launch(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
             launch(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
                    sweep);
         }
@@ -342,10 +350,10 @@ class DeviceSpace {
       private:
         template <class Sweep>
         void launch(void (*kernel)(kernels::DeviceStage, Sweep), Tree::StageHere const& stage, Sweep const& sweep) const {
-            std::size_t const bytes =
-                sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, stage.threads));
+            int const of_block = kernels::threads_for<Sweep>(stage.threads, kernels::threads_of<Sweep>);
+            std::size_t const bytes = sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
             allow_shared(kernel, bytes);
-            cuda::launch({stage.blocks, static_cast<unsigned>(stage.threads), bytes}, space.stream(), kernel, stage.view, sweep);
+            cuda::launch({stage.blocks, static_cast<unsigned>(of_block), bytes}, space.stream(), kernel, stage.view, sweep);
         }
         template <class Sweep>
         void launch(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {

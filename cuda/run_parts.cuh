@@ -35,6 +35,30 @@ struct SharedRecords {
   private:
     using Numbers = Vector<double, numbers>;
 };
+/// The same record after record, `stride` numbers from one to the next: for lanes that read one together. Numbers stand where a compiler
+/// knows.
+template <class T, int stride_>
+struct PackedRecords {
+    static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double)), stride = stride_ | 1;
+    static_assert(numbers <= stride);
+    static constexpr __host__ __device__ std::size_t size(int count) { return static_cast<std::size_t>(dca::packed_numbers(stride, count)); }
+    double* origin;
+    __device__ double& number(int i, int n) const { return origin[stride * i + i / 16 + n]; }
+    __device__ void store(int i, T const& record) const {
+        auto const values = __builtin_bit_cast(Numbers, record);
+        CATENA_UNROLL
+        for (int n = 0; n < numbers; ++n) number(i, n) = values[n];
+    }
+    __device__ T load(int i) const {
+        Numbers values;
+        CATENA_UNROLL
+        for (int n = 0; n < numbers; ++n) values[n] = number(i, n);
+        return __builtin_bit_cast(T, values);
+    }
+
+  private:
+    using Numbers = Vector<double, numbers>;
+};
 
 /// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
 /// warp's threads walk side by side.

@@ -1,8 +1,7 @@
 // A sweep's stages (dca/stages.hpp) on a GPU. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
-#include "cuda/cluster.cuh"
-#include "cuda/run_parts.cuh"
+#include "cuda/merge_teams.cuh"
 #include "dca/stages.hpp"
 
 namespace catena::cuda::kernels {
@@ -21,10 +20,31 @@ struct DeviceStage {
     dca::Handed const *segments_up = nullptr, *forces_down = nullptr;
     dca::StageBlock const* block = nullptr;
     std::int32_t const* level_end = nullptr;  // of every block and level
+    double* kept = nullptr;                   // of every block, its segments' memory: StageRecords::kept numbers a place
 };
 
+/// Whether lanes of a warp share a merge: larger segments and biases at once find no registers in one.
 template <class Sweep>
-constexpr int threads_of = Sweep::Sweeps::in_stage.threads;
+constexpr bool merges_by_teams = false;
+template <class Sweep>
+    requires requires(Sweep const& sweep) { sweep.matrices(), sweep.biases(); }
+constexpr bool merges_by_teams<Sweep> = (Sweep::K > dca::most_directions_of_a_thread);
+/// Threads of a stage's block at most; of one that turns, where few blocks have a GPU to themselves.
+template <class Sweep>
+constexpr int threads_of = merges_by_teams<Sweep> ? 128 : Sweep::Sweeps::in_stage.threads;
+template <class Sweep>
+constexpr int threads_of_turn = merges_by_teams<Sweep> ? 256 : threads_of<Sweep>;
+/// And blocks that share a multiprocessor where a stage's memory lets them.
+template <class Sweep>
+constexpr int blocks_of_stage = merges_by_teams<Sweep> ? 4 : 1;
+/// Threads where so many are planned for a merge each.
+template <class Sweep>
+constexpr int threads_for(int planned, int most) {
+    if constexpr (merges_by_teams<Sweep>)
+        return planned * MergeTeam<Sweep>::lanes < most ? planned * MergeTeam<Sweep>::lanes : most;
+    else
+        return planned;
+}
 
 /// action(i) for a block's i of a range.
 template <class Action>
@@ -32,16 +52,41 @@ __device__ void each_of(dca::Range const& range, Action const& action) {
     for (std::int64_t i = range.begin + threadIdx.x; i < range.end; i += blockDim.x) action(i);
 }
 
+/// How segments, nodes and forces lie in a stage's shared memory: a node in the place of a segment.
+template <class Sweep>
+struct RecordsOfStage {
+    using Segments = SharedRecords<typename Sweep::Segment>;
+    using Nodes = SharedRecords<typename Sweep::Sweeps::Node>;
+    using Forces = SharedRecords<typename Sweep::Sweeps::State>;
+    static_assert(!Sweep::keeps_nodes || Nodes::numbers <= Segments::numbers);
+    template <class Records>
+    static __device__ Records at(double* memory, int count) {
+        return {memory, Records::pitch_for(count)};
+    }
+};
+template <class Sweep>
+    requires merges_by_teams<Sweep>
+struct RecordsOfStage<Sweep> {
+    using Segments = typename MergeTeam<Sweep>::Segments;
+    using Nodes = typename MergeTeam<Sweep>::Nodes;
+    using Forces = typename MergeTeam<Sweep>::Forces;
+    template <class Records>
+    static __device__ Records at(double* memory, int /*count*/) {
+        return {memory};
+    }
+};
+
 /// A block's part of a stage, in its shared memory: its lists, which are read once, and the segments and forces at its places. A sweep
 /// that keeps nodes has those there as well, each in the place of the outboard segment that it was made of.
 template <class Sweep>
 class BlockOfStage {
     using Segment = typename Sweep::Segment;
-    using State = typename Sweep::Sweeps::State;
     using Node = typename Sweep::Sweeps::Node;
-    using Segments = SharedRecords<Segment>;
-    using Forces = SharedRecords<State>;
-    static_assert(!Sweep::keeps_nodes || sizeof(Node) <= sizeof(Segment));
+    using Records = RecordsOfStage<Sweep>;
+    using Segments = typename Records::Segments;
+    using Nodes = typename Records::Nodes;
+    using Forces = typename Records::Forces;
+    static constexpr bool by_teams = merges_by_teams<Sweep>;
     static_assert(sizeof(dca::StageMerge) == 3 * sizeof(double));
 
   public:
@@ -52,9 +97,9 @@ class BlockOfStage {
     __device__ BlockOfStage(DeviceStage const& stage, Sweep const& sweep, double* memory)
         : stage_(stage),
           sweep_(sweep),
-          segments_{memory, Segments::pitch_for(stage.width)},
-          nodes_{memory, segments_.pitch},
-          forces_{memory + Segments::size(stage.width), Forces::pitch_for(stage.forces)},
+          segments_(Records::template at<Segments>(memory, stage.width)),
+          nodes_(Records::template at<Nodes>(memory, stage.width)),
+          forces_(Records::template at<Forces>(memory + Segments::size(stage.width), stage.forces)),
           merges_(reinterpret_cast<dca::StageMerge*>(forces_.origin + Forces::size(stage.forces))),
           slot_or_next_(reinterpret_cast<std::int64_t*>(merges_ + stage.width)),
           here_(reinterpret_cast<dca::StageBlock*>(slot_or_next_ + stage.width)),
@@ -80,22 +125,20 @@ class BlockOfStage {
         CATENA_NO_UNROLL
         for (int l = 0; l < stage_.levels; ++l) {
             __syncthreads();
-            each_merge(l, [&](dca::StageMerge const& m) {
-                Segment const inboard = segments_.load(m.inboard), outboard = segments_.load(m.outboard);
-                if constexpr (Sweep::keeps_nodes) {
-                    Node node;
-                    segments_.store(m.inboard, sweep_.joined(inboard, outboard, {m.joint, m.restricted}, node));
-                    nodes_.store(m.outboard, node);
-                } else {
-                    segments_.store(m.inboard, sweep_.joined(inboard, outboard, {m.joint, m.restricted}));
-                }
-            });
+            if constexpr (by_teams)
+                each_merge_of_team(
+                    l, [&](auto const& team, dca::StageMerge const& m, bool works) { team.join(sweep_, m, works, segments_, nodes_); });
+            else
+                each_merge(l, [&](dca::StageMerge const& m) { join(m); });
         }
         __syncthreads();
-        each_of(here_->up, [&](std::int64_t i) {
-            dca::Handed const up = stage_.segments_up[i];
-            sweep_.store(up.at, segments_.load(up.place));
-        });
+        if constexpr (by_teams)
+            for (std::int64_t i = here_->up.begin; i < here_->up.end; ++i) give(stage_.segments_up[i]);
+        else
+            each_of(here_->up, [&](std::int64_t i) {
+                dca::Handed const up = stage_.segments_up[i];
+                sweep_.store(up.at, segments_.load(up.place));
+            });
         each_of(here_->root, [&](std::int64_t i) {
             dca::StageRoot const closed = stage_.roots[i];
             sweep_.close(closed.root, segments_.load(closed.place));
@@ -103,10 +146,16 @@ class BlockOfStage {
     }
     /// Between a climb and a descent of their own.
     __device__ void put_nodes() const {
-        if constexpr (Sweep::keeps_nodes) each_merge([&](dca::StageMerge const& m) { sweep_.keep(m.joint, nodes_.load(m.outboard)); });
+        if constexpr (by_teams)
+            copy(segments_.origin, kept());
+        else if constexpr (Sweep::keeps_nodes)
+            each_merge([&](dca::StageMerge const& m) { sweep_.keep(m.joint, nodes_.load(m.outboard)); });
     }
     __device__ void take_nodes() const {
-        if constexpr (Sweep::keeps_nodes) each_merge([&](dca::StageMerge const& m) { nodes_.store(m.outboard, sweep_.node(m.joint)); });
+        if constexpr (by_teams)
+            copy(kept(), segments_.origin);
+        else if constexpr (Sweep::keeps_nodes)
+            each_merge([&](dca::StageMerge const& m) { nodes_.store(m.outboard, sweep_.node(m.joint)); });
     }
     /// After a climb in the same launch, which left `part`, or alone (null); then loops are unrolled, as many blocks use the instructions.
     template <bool alone>
@@ -118,21 +167,15 @@ class BlockOfStage {
         CATENA_NO_UNROLL
         for (int l = stage_.levels - 1; l >= 0; --l) {
             __syncthreads();
-            each_merge(l, [&](dca::StageMerge const& m) {
-                Node node;
-                if constexpr (Sweep::keeps_nodes)
-                    node = nodes_.load(m.outboard);
-                else
-                    node = sweep_.node(m.joint);
-                forces_.store(m.outboard, sweep_.force(node, forces_.load(m.inboard), forces_.load(m.next)));
-            });
+            if constexpr (by_teams)
+                each_merge_of_team(
+                    l, [&](auto const& team, dca::StageMerge const& m, bool works) { team.go_down(m, works, nodes_, forces_); });
+            else
+                each_merge(l, [&](dca::StageMerge const& m) { go_down(m); });
         }
         __syncthreads();
-        if (stage_.runs)
-            descend_some_runs<alone, !alone, false>(
-                stage_.runs, here_->item.begin, here_->item.end, sweep_, parts_, part,
-                [&](dca::Run const&, std::int64_t i) { return forces_.load(place_of_item(i)); },
-                [&](dca::Run const&, std::int64_t i) { return forces_.load(static_cast<int>(slot_or_next_[place_of_item(i)])); });
+        if (!by_teams && stage_.runs)
+            descend_runs<alone>(part);
         else
             each_of(here_->item, [&](std::int64_t i) {
                 if (dca::StageItem const item = stage_.items[i]; !item.given)
@@ -144,6 +187,33 @@ class BlockOfStage {
     static __host__ __device__ int before_parts(DeviceStage const& stage) {
         return static_cast<int>(Segments::size(stage.width) + Forces::size(stage.forces)) + 4 * stage.width +
                static_cast<int>(sizeof(dca::StageBlock) / sizeof(double)) + (stage.levels + 1) / 2;
+    }
+    // Sweeps whose merges go by teams leave stages with runs to others (StageWalk).
+    template <bool alone>
+    __device__ void descend_runs(typename Sweep::Part const* part) const {
+        if constexpr (!by_teams)
+            descend_some_runs<alone, !alone, false>(
+                stage_.runs, here_->item.begin, here_->item.end, sweep_, parts_, part,
+                [&](dca::Run const&, std::int64_t i) { return forces_.load(place_of_item(i)); },
+                [&](dca::Run const&, std::int64_t i) { return forces_.load(static_cast<int>(slot_or_next_[place_of_item(i)])); });
+    }
+    __device__ void join(dca::StageMerge const& m) const {
+        Segment const inboard = segments_.load(m.inboard), outboard = segments_.load(m.outboard);
+        if constexpr (Sweep::keeps_nodes) {
+            Node node;
+            segments_.store(m.inboard, sweep_.joined(inboard, outboard, {m.joint, m.restricted}, node));
+            nodes_.store(m.outboard, node);
+        } else {
+            segments_.store(m.inboard, sweep_.joined(inboard, outboard, {m.joint, m.restricted}));
+        }
+    }
+    __device__ void go_down(dca::StageMerge const& m) const {
+        Node node;
+        if constexpr (Sweep::keeps_nodes)
+            node = nodes_.load(m.outboard);
+        else
+            node = sweep_.node(m.joint);
+        forces_.store(m.outboard, sweep_.force(node, forces_.load(m.inboard), forces_.load(m.next)));
     }
     __device__ int place_of_item(std::int64_t i) const { return static_cast<int>(i - here_->item.begin); }
     template <class Action>
@@ -159,21 +229,68 @@ class BlockOfStage {
         for (auto i = static_cast<int>(threadIdx.x); i < level_end_[stage_.levels - 1]; i += static_cast<int>(blockDim.x))
             action(merges_[i]);
     }
+    /// action(team, merge, works) by the block's teams.
+    template <class Action>
+    __device__ void each_merge_of_team(int level, Action const& action) const {
+        MergeTeam<Sweep> const team;
+        team.each(level == 0 ? 0 : level_end_[level - 1], level_end_[level],
+                  [&](int i, bool works) { action(team, works ? merges_[i] : dca::StageMerge{}, works); });
+    }
+    /// A number a warp, an item a lane.
+    __device__ void take_segments() const {
+        constexpr int at_once = 9;  // memory is far
+        int const warp = static_cast<int>(threadIdx.x) / 32, warps = static_cast<int>(blockDim.x) / 32;
+        auto const items = static_cast<int>(here_->item.end - here_->item.begin);
+        for (int place = static_cast<int>(threadIdx.x) % 32; place < items; place += 32) {
+            std::int64_t const slot = slot_or_next_[place];
+            for (int first = warp; first < Segments::numbers; first += at_once * warps) {
+                double number[at_once] = {};
+        CATENA_UNROLL
+                for (int i = 0; i < at_once; ++i)
+                    if (int const n = first + i * warps; n < Segments::numbers) number[i] = sweep_.s.number_of_segment(slot, n);
+                CATENA_UNROLL
+                for (int i = 0; i < at_once; ++i)
+                    if (int const n = first + i * warps; n < Segments::numbers) segments_.number(place, n) = number[i];
+            }
+        }
+    }
+    __device__ void give(dca::Handed const& up) const {
+        for (auto n = static_cast<int>(threadIdx.x); n < Segments::numbers; n += static_cast<int>(blockDim.x))
+            sweep_.s.number_of_segment(up.at, n) = segments_.number(up.place, n);
+    }
+    __device__ double* kept() const { return stage_.kept + blockIdx.x * Segments::size(stage_.width); }
+    /// Of all segments' memory.
+    __device__ void copy(double const* from, double* to) const {
+        constexpr int at_once = 8;
+        auto const end = static_cast<int>(Segments::size(stage_.width)), step = static_cast<int>(blockDim.x);
+        for (auto first = static_cast<int>(threadIdx.x); first < end; first += at_once * step) {
+            double number[at_once] = {};
+            CATENA_UNROLL
+            for (int i = 0; i < at_once; ++i)
+                if (first + i * step < end) number[i] = from[first + i * step];
+            CATENA_UNROLL
+            for (int i = 0; i < at_once; ++i)
+                if (first + i * step < end) to[first + i * step] = number[i];
+        }
+    }
     template <bool and_down>
     __device__ void take_items(typename Sweep::Part& part) const {
-        if (!stage_.runs)
-            return each_of(here_->item, [&](std::int64_t i) {
+        if constexpr (by_teams)
+            take_segments();
+        else if (!stage_.runs)
+            each_of(here_->item, [&](std::int64_t i) {
                 int const place = place_of_item(i);
                 segments_.store(place, sweep_.load(slot_or_next_[place]));
             });
-        climb_some_runs<and_down>(stage_.runs, here_->item.begin, here_->item.end, sweep_, parts_, part,
+        else
+            climb_some_runs<and_down>(stage_.runs, here_->item.begin, here_->item.end, sweep_, parts_, part,
                                   [&](std::int64_t i, Segment const& segment) { segments_.store(place_of_item(i), segment); });
     }
 
     DeviceStage const& stage_;
     Sweep const& sweep_;
     Segments segments_;
-    SharedRecords<Node> nodes_;
+    Nodes nodes_;
     Forces forces_;
     dca::StageMerge* merges_;
     std::int64_t* slot_or_next_;  // of every item: a run's place of the force after it, another's slot
@@ -183,7 +300,7 @@ class BlockOfStage {
 };
 
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>) climb(DeviceStage stage, Sweep sweep) {
+__global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>) climb(DeviceStage stage, Sweep sweep) {
     BlockOfStage<Sweep> const block(stage, sweep, shared_numbers);
     block.take_lists();
     __syncthreads();
@@ -193,7 +310,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>) climb(DeviceStage stage, Sw
     block.put_nodes();
 }
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>) descend(DeviceStage stage, Sweep sweep) {
+__global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>) descend(DeviceStage stage, Sweep sweep) {
     BlockOfStage<Sweep> const block(stage, sweep, shared_numbers);
     block.take_lists();
     __syncthreads();
@@ -204,7 +321,7 @@ __global__ void __launch_bounds__(threads_of<Sweep>) descend(DeviceStage stage, 
 /// Up and down again: two stages, the upper one of one block, by one cluster of blocks, or the lower one alone. The same instructions do
 /// both.
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage lower, DeviceStage upper, Sweep sweep) {
+__global__ void __launch_bounds__(threads_of_turn<Sweep>) turn(DeviceStage lower, DeviceStage upper, Sweep sweep) {
     double* const memory[] = {shared_numbers, shared_numbers + BlockOfStage<Sweep>::size(lower, static_cast<int>(blockDim.x))};
     CATENA_NO_UNROLL
     for (int up = 0; up < 2; ++up) {
@@ -227,9 +344,6 @@ __global__ void __launch_bounds__(threads_of<Sweep>) turn(DeviceStage lower, Dev
         if (up == 1) meet_cluster();
     }
 }
-/// Whether stages are for its two sweeps one after the other: larger segments and biases at once find no registers.
-template <class Sweep>
-concept goes_twice = !Sweep::keeps_nodes && requires(Sweep const& sweep) { sweep.matrices(), sweep.biases(); };
 /// Blocks of `threads` that share a multiprocessor: links want few registers, and many to hide that memory is far.
 template <class Sweep>
 constexpr int blocks_at_once = Sweep::Sweeps::K == 1 ? 4 : 1;

@@ -7,8 +7,8 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages(), runs_apart() and together() of a tree (StagePlan, StageSizes); climb(i, sweep), descend(i, sweep) and
-/// turn(i, sweep) of stage i, with the next one where together(); climb_runs(sweep) and descend_runs(sweep).
+/// `Launches`: stages(), runs_apart() and together() of a tree (StagePlan, StageSizes), takes_runs(i), whether stage i does; climb(i,
+/// sweep), descend(i, sweep) and turn(i, sweep) of stage i, with the next one where together(); climb_runs(sweep) and descend_runs(sweep).
 template <class Launches>
 class StageWalk {
   public:
@@ -32,34 +32,47 @@ class StageWalk {
     }
 
   private:
+    /// Whether a stage is for the sweep's two sweeps one after the other: a thread finds no registers for runs' segments and biases at
+    /// once where even merges go by teams.
+    template <class Sweep>
+    bool goes_twice(std::size_t stage) const {
+        return kernels::merges_by_teams<Sweep> && launches_.takes_runs(stage);
+    }
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
-        if constexpr (kernels::goes_twice<Sweep>) {
-            climb_stages(launches_.stages(), sweep.matrices());
-            turn_stages(sweep.biases());
-        } else {
-            std::size_t const apart = launches_.stages() - (launches_.together() ? 2 : 1);
-            climb_stages(apart, sweep);
-            launches_.turn(apart, sweep);
-            descend_stages(apart, sweep);
-        }
+        std::size_t const apart = launches_.stages() - (launches_.together() ? 2 : 1);
+        if constexpr (kernels::merges_by_teams<Sweep>)
+            if (goes_twice<Sweep>(apart)) {
+                climb_stages(launches_.stages(), sweep.matrices());
+                return turn_stages(sweep.biases());
+            }
+        climb_stages(apart, sweep);
+        launches_.turn(apart, sweep);
+        descend_stages(apart, sweep);
     }
     /// Of the first `stages` stages.
     template <class Sweep>
     void climb_stages(std::size_t stages, Sweep const& sweep) const {
-        if constexpr (kernels::goes_twice<Sweep>) {
-            climb_stages(stages, sweep.matrices());
-            climb_stages(stages, sweep.biases());
-        } else {
-            for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, sweep);
-        }
+        for (std::size_t i = 0; i < stages; ++i) climb_stage(i, sweep);
+    }
+    template <class Sweep>
+    void climb_stage(std::size_t i, Sweep const& sweep) const {
+        if constexpr (kernels::merges_by_teams<Sweep>)
+            if (goes_twice<Sweep>(i)) {
+                launches_.climb(i, sweep.matrices());
+                return launches_.climb(i, sweep.biases());
+            }
+        launches_.climb(i, sweep);
     }
     template <class Sweep>
     void descend_stages(std::size_t stages, Sweep const& sweep) const {
-        if constexpr (kernels::goes_twice<Sweep>)
-            descend_stages(stages, sweep.biases());
-        else
-            for (std::size_t i = stages; i-- > 0;) launches_.descend(i, sweep);
+        for (std::size_t i = stages; i-- > 0;) descend_stage(i, sweep);
+    }
+    template <class Sweep>
+    void descend_stage(std::size_t i, Sweep const& sweep) const {
+        if constexpr (kernels::merges_by_teams<Sweep>)
+            if (goes_twice<Sweep>(i)) return launches_.descend(i, sweep.biases());
+        launches_.descend(i, sweep);
     }
     template <class Sweep>
     void climb_runs(Sweep const& sweep) const {

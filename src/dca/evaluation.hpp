@@ -81,8 +81,7 @@ class HingesInJoints {
     using Hinge = ReleasedHinge<double>;
     using End = RunsEnd<double>;
     static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_end = sizeof(End) / sizeof(double);
-    static constexpr int of_joint = sizeof(typename Sweeps::Joint) / sizeof(double);
-    static_assert(of_hinge + of_end <= of_joint + Sweeps::K);
+    static_assert(of_hinge + of_end <= sizeof(typename Sweeps::Node) / sizeof(double));
 
   public:
     CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run) : sweeps_(sweeps), run_(run) {}
@@ -116,12 +115,9 @@ class HingesInJoints {
     CATENA_HD Lost const& lost() const { return lost_; }
 
   private:
-    /// Of joint i's record and, after it, its offset.
-    CATENA_HD double& number(int i, int n) const {
-        return n < of_joint ? sweeps_.joints.number(run_.body + i, n) : sweeps_.offsets.number(run_.body + i, n - of_joint);
-    }
+    CATENA_HD double& number(int i, int n) const { return sweeps_.number_of_node(run_.body + i, n); }
     CATENA_HD void watch(int i, double inverse) {
-        if (!(inverse > 0 && inverse - inverse == 0)) lost_.add(run_.body + i);
+        if (!is_good(inverse)) lost_.add(run_.body + i);
     }
     Sweeps const& sweeps_;
     Run const& run_;

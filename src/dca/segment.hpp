@@ -95,11 +95,18 @@ CATENA_HD Matrix<Real, K, K> solve_lower(Symmetric<Real, K> const& f, Matrix<Rea
     return b;
 }
 
+/// S^-1 y
+template <class Real, int K>
+CATENA_HD Vector<Real, K> scaled(Symmetric<Real, K> const& f, Vector<Real, K> y) {
+    CATENA_UNROLL
+    for (int i = 0; i < K; ++i) y[i] = f(i, i) * y[i];
+    return y;
+}
+
 /// L^-T S^-1 y
 template <class Real, int K>
 CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, K> y) {
-    CATENA_UNROLL
-    for (int i = 0; i < K; ++i) y[i] = f(i, i) * y[i];
+    y = scaled(f, y);
     CATENA_UNROLL
     for (int i = K - 1; i > 0; --i)
         CATENA_UNROLL
@@ -107,21 +114,22 @@ CATENA_HD Vector<Real, K> solve_upper(Symmetric<Real, K> const& f, Vector<Real, 
     return y;
 }
 
+/// z - a.b
+template <class Real, int K>
+CATENA_HD Real less_products(Real z, Vector<Real, K> const& a, Vector<Real, K> const& b) {
+    CATENA_UNROLL
+    for (int k = 0; k < K; ++k) z = less_product(a[k], b[k], z);
+    return z;
+}
 /// z - m^T S^-1 m
 template <class Real, int K>
 CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Real, K, K> const& m, Symmetric<Real, K> const& factor) {
     Symmetric<Real, K> s;
     CATENA_UNROLL
     for (int j = 0; j < K; ++j) {  // column by column: what each needs fits a processor's registers
-        Vector<Real, K> scaled;
+        Vector<Real, K> const of_column = scaled(factor, m.column(j));
         CATENA_UNROLL
-        for (int k = 0; k < K; ++k) scaled[k] = factor(k, k) * m(k, j);
-        CATENA_UNROLL
-        for (int i = j; i < K; ++i) {
-            s(i, j) = z(i, j);
-            CATENA_UNROLL
-            for (int k = 0; k < K; ++k) s(i, j) = less_product(m(k, i), scaled[k], s(i, j));
-        }
+        for (int i = j; i < K; ++i) s(i, j) = less_products(z(i, j), m.column(i), of_column);
     }
     return s;
 }
@@ -136,16 +144,10 @@ CATENA_HD void append(SegmentMatrix<Real, K>& segment, SegmentMatrix<Real, K> co
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     CATENA_UNROLL
     for (int j = 0; j < K; ++j) {  // as less_square, of both at once
-        Vector<Real, K> scaled;
+        Vector<Real, K> const of_column = scaled(joint.factor, joint.outboard.column(j));
         CATENA_UNROLL
-        for (int k = 0; k < K; ++k) scaled[k] = joint.factor(k, k) * joint.outboard(k, j);
-        CATENA_UNROLL
-        for (int i = j; i < K; ++i) {
-            segment.z22(i, j) = outboard.z22(i, j);
-            CATENA_UNROLL
-            for (int k = 0; k < K; ++k) segment.z22(i, j) = less_product(joint.outboard(k, i), scaled[k], segment.z22(i, j));
-        }
-        segment.z12.set_column(j, transposed_times(joint.inboard, scaled));
+        for (int i = j; i < K; ++i) segment.z22(i, j) = less_products(outboard.z22(i, j), joint.outboard.column(i), of_column);
+        segment.z12.set_column(j, transposed_times(joint.inboard, of_column));
     }
     segment.z11 = less_square(segment.z11, joint.inboard, joint.factor);
 }
@@ -154,9 +156,7 @@ template <class Real, int K>
 CATENA_HD void append(SegmentBias<Real, K>& segment, SegmentBias<Real, K> const& outboard, JointMatrix<Real, K> const& joint,
                       Vector<Real, K>& offset) {
     offset = solve_lower(joint.factor, segment.b2 - outboard.b1);
-    Vector<Real, K> y;
-    CATENA_UNROLL
-    for (int i = 0; i < K; ++i) y[i] = joint.factor(i, i) * offset[i];
+    Vector<Real, K> const y = scaled(joint.factor, offset);
     segment.b1 = segment.b1 - transposed_times(joint.inboard, y);
     segment.b2 = outboard.b2 + transposed_times(joint.outboard, y);
 }

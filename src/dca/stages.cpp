@@ -202,7 +202,8 @@ class Planner {
 /// Of the first stage's blocks.
 std::int64_t width_of_runs(std::int64_t runs, bool apart, StageSizes const& sizes) {
     if (apart) {
-        std::int64_t width = std::min(sizes.most, 2 * sizes.threads);
+        if (sizes.at_once > 0 && runs <= sizes.most) return std::max<std::int64_t>(2, bit_ceil(runs));
+        std::int64_t width = std::min(sizes.most, 2 * (sizes.at_once > 0 ? sizes.at_once : sizes.threads));
         while (width < sizes.most && runs / width > sizes.most * sizes.together) width *= 2;
         return width;
     }
@@ -286,7 +287,7 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
 
 StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t together) {
     std::int64_t const numbers = records.segment + 2 * records.state + 4;  // and of a merge, of an item
-    StageSizes sizes{records.threads, 2, together, records.whole_runs};
+    StageSizes sizes{records.threads, 2, together, records.whole_runs, records.at_once};
     auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.
@@ -296,6 +297,10 @@ StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, s
     };
     while (sizes.threads > fewest_of_block * parts_of_run && of_runs(sizes.threads) > shared_bytes) sizes.threads /= 2;
     return sizes;
+}
+
+std::int64_t kept_numbers(Stage const& stage, StageRecords const& records) {
+    return records.kept > 0 ? stage.blocks() * packed_numbers(records.kept, stage.width) : 0;
 }
 
 int threads_for(Stage const& stage, StageSizes const& sizes) {

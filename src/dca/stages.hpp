@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dca/host_device.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::dca {
@@ -71,17 +72,30 @@ struct StageSizes {
     std::int64_t most = 0;      // items of a block, 2 or more
     std::int64_t together = 0;  // blocks that one launch takes through two stages
     bool runs_apart = false;    // also where they are few
+    std::int64_t at_once = 0;   // merges that keep a block busy; 0: one for each of its threads
 };
-/// What a sweep keeps in a block: numbers of a segment with its biases and of what is known at a joint on the way down; threads that find
-/// registers for merges; whether a thread takes a whole run.
+/// What a sweep keeps in a block: numbers of a segment with its biases, or of a joint's node in its place, and of what is known at a joint
+/// on the way down; threads that find registers for merges; whether a thread takes a whole run; where several threads share a merge,
+/// merges that keep a block busy, and numbers of a place that a stage keeps for its way down.
 struct StageRecords {
     int segment = 0, state = 0, threads = 0;
     bool whole_runs = false;
+    int at_once = 0, kept = 0;
 };
+/// Directions of the handles that a thread merges alone, matrices and biases at once.
+constexpr int most_directions_of_a_thread = 3;
 /// Of mobilities along so many directions.
 constexpr StageRecords stage_records(int directions, bool whole_runs = false) {
-    return {directions * (2 * directions + 3), directions, directions <= 3 ? 256 : 128, whole_runs};
+    int const segment = directions * (2 * directions + 3), node = directions * (5 * directions + 3) / 2;
+    int const place = segment > node ? segment : node;
+    if (directions <= most_directions_of_a_thread) return {place, directions, 256, whole_runs};
+    return {place, directions, 128, whole_runs, 32, place};
 }
+/// What `count` records of so many numbers take one after the other where neighbours, and those a power of two apart, are not to meet in a
+/// bank of a GPU's shared memory.
+CATENA_HD constexpr std::int64_t packed_numbers(int numbers, std::int64_t count) { return (numbers | 1) * count + count / 16 + 1; }
+/// That a stage keeps for its way down.
+std::int64_t kept_numbers(Stage const&, StageRecords const&);
 /// Of a GPU whose blocks may share so many bytes, in clusters of so many.
 StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t together);
 /// That a stage needs.

@@ -7,7 +7,7 @@
 // states at the ends of part p. One that `keeps_nodes` has joined(..., node) and keep(joint, node) as well. One that `goes_short`
 // (cuda/short_chain.cuh) also has first_force(JointAt, segment), forces() and accelerate(k, ...) from what part(..., kept, factors) or, of
 // bodies read `one_by_one`, join_bodies() kept, and nobody reads its joints, forces or slots afterwards: they are not written then. One
-// that has matrices() and biases() and keeps no nodes may leave stages to these, one after the other (cuda/stage_walk.cuh); one that
+// that has matrices() and biases() may leave stages with runs to these, one after the other (cuda/stage_walk.cuh); one that
 // `keeps_passages` has down(..., passages), too, for `most_passages` of its Passage (cuda/run_parts.cuh).
 #pragma once
 
@@ -33,6 +33,8 @@ struct Lost {
     }
     CATENA_HD bool none() const { return joint == ~0ULL; }
 };
+/// Whether it is the inverse of a pivot of a positive definite matrix.
+CATENA_HD bool is_good(double inverse) { return inverse > 0 && inverse - inverse == 0; }
 
 template <class Leaf_>
 struct TreeSweeps {
@@ -63,7 +65,7 @@ struct TreeSweeps {
     CATENA_HD static void watch(JointAt const& joint, Symmetric<double, K> const& factor, Lost& found) {
         bool good = true;
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) good = good && (i >= joint.restricted || (factor(i, i) > 0 && factor(i, i) - factor(i, i) == 0));
+        for (int i = 0; i < K; ++i) good = good && (i >= joint.restricted || is_good(factor(i, i)));
         auto const bad = static_cast<unsigned long long>(joint.k);
         found.joint = good || bad > found.joint ? found.joint : bad;
     }
@@ -71,12 +73,22 @@ struct TreeSweeps {
     CATENA_HD void note(Lost const& found) const {
         if (!found.none()) lower_to(lost, found.joint);
     }
+    /// Number n of a slot's matrices and, after them, biases.
+    CATENA_HD double& number_of_segment(std::int64_t slot, int n) const {
+        constexpr int of_matrices = sizeof(Matrices) / sizeof(double);
+        return n < of_matrices ? matrices.number(slot, n) : biases.number(slot, n - of_matrices);
+    }
     /// What the way down needs of a joint.
     struct Node {
         Joint joint;
         Directions offset;
     };
     CATENA_HD Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
+    /// Number n of that.
+    CATENA_HD double& number_of_node(std::int64_t k, int n) const {
+        constexpr int of_joint = sizeof(Joint) / sizeof(double);
+        return n < of_joint ? joints.number(k, n) : offsets.number(k, n - of_joint);
+    }
     /// The forces at a chain's ends, from its bias as it is held. `first`: what fasten() returned.
     CATENA_HD void close(Root const& root, Joint const& first, Biases const& held) const {
         if (root.tip == TipTo::nothing)

@@ -226,6 +226,18 @@ TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
     expect_short(tiny);
 }
 
+/// Joints are found whose matrices are not positive definite, wherever they meet and whoever merges them.
+TEST_F(StageKernels, MatricesThatAreNotPositiveDefinite) {
+    if (!alone()) return;
+    for (RandomJoints const joints : {RandomJoints::spherical, RandomJoints::universal, RandomJoints::revolute, RandomJoints::any})
+        for (std::size_t const body : {31, 32, 100, 128}) {
+            SCOPED_TRACE("body " + std::to_string(body));
+            ChainSpec chain = random_chain(9, {.bodies = 300, .joints = joints, .base = Base::fixed});
+            chain.bodies.mass[body] = -1e-3;
+            expect_same(scene_of({chain}));
+        }
+}
+
 /// So many that launches of their own do them.
 TEST_F(StageKernels, VeryManyRuns) {
     if (!alone()) return;

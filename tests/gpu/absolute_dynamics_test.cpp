@@ -139,7 +139,9 @@ TEST_P(GpuAbsolute, EachOperationLeavesTheBitsOfTheHost) {
             d.assemble_matrices();
             d.set_simple_forces();
         });
-        if (step == 0) both("drawn velocities", [](AbsoluteDynamics& d) { d.draw_velocities(2.5, 7, std::vector<bool>(d.group().chain.size(), true)); });
+        if (step == 0)
+            both("drawn velocities",
+                 [](AbsoluteDynamics& d) { d.draw_velocities(2.5, 7, std::vector<bool>(d.group().chain.size(), true)); });
         both("forces from outside", [](AbsoluteDynamics& d) {
             ConstView<3> const position = d.bead_positions();
             View<3> const force = d.bead_forces();

@@ -54,6 +54,7 @@ class StageSpace : public HostSpace {
             for (dca::Stage const& stage : plan_.stages) {
                 blocks_.push_back(dca::blocks_of(stage));
                 level_ends_.push_back(dca::level_ends_of(stage));
+                kept_.emplace_back(dca::kept_numbers(stage, records));
             }
         }
 
@@ -67,6 +68,7 @@ class StageSpace : public HostSpace {
         cuda::kernels::ShortChain short_;
         std::vector<std::vector<dca::StageBlock>> blocks_;  // of every stage
         std::vector<std::vector<std::int32_t>> level_ends_;
+        mutable std::vector<std::vector<double>> kept_;
     };
 
     template <class Sweep>
@@ -99,7 +101,8 @@ class StageSpace : public HostSpace {
                 stage.segments_up.data(),
                 stage.forces_down.data(),
                 tree.blocks_[which].data(),
-                tree.level_ends_[which].data()};
+                tree.level_ends_[which].data(),
+                tree.kept_[which].data()};
     }
     template <class Sweep>
     static bool turn_short(cuda::kernels::ShortChain const& chain, Sweep const& sweep) {
@@ -120,6 +123,7 @@ class StageSpace : public HostSpace {
             auto const& stages = tree.plan_.stages;
             return stages.size() > 1 && stages[stages.size() - 2].blocks() <= tree.sizes_.together && stages.back().blocks() == 1;
         }
+        bool takes_runs(std::size_t i) const { return stage(i).of_runs; }
         template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
             launch(cuda::kernels::climb<Sweep>, stage(i), sweep);
@@ -132,7 +136,8 @@ class StageSpace : public HostSpace {
         void turn(std::size_t i, Sweep const& sweep) const {
             see_stages();
             bool const two = together();
-            int const threads = std::max(threads_for(stage(i)), two ? threads_for(stage(i + 1)) : 0);
+            int const threads = cuda::kernels::threads_for<Sweep>(std::max(threads_for(stage(i)), two ? threads_for(stage(i + 1)) : 0),
+                                                                  cuda::kernels::threads_of_turn<Sweep>);
             auto const here = view(tree, stage(i)), above = two ? view(tree, stage(i + 1)) : cuda::kernels::DeviceStage{};
             if (two)
                 seen.blocks_of_clusters.insert(here.blocks);
@@ -148,14 +153,19 @@ class StageSpace : public HostSpace {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (cuda::kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
                     ++seen.teams;
-                    return over_runs(cuda::kernels::climb_runs_by_teams<Sweep>, cuda::kernels::grid_of_teams(runs), sweep);
+                    return over_runs(cuda::kernels::climb_runs_by_teams<Sweep>,
+                                     cuda::kernels::grid_of_teams<cuda::kernels::HingeAhead>(runs), sweep);
                 }
             over_runs(cuda::kernels::climb_runs<Sweep>, cuda::kernels::grid_of_climb<Sweep>(runs), sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
-            over_runs(cuda::kernels::descend_runs<Sweep>, cuda::kernels::grid_of_descent<Sweep>(std::ssize(tree.runs_), tree.shared_bytes_),
-                      sweep);
+            std::int64_t const runs = std::ssize(tree.runs_);
+            if constexpr (dca::takes_whole_runs<Sweep>)
+                if (cuda::kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
+                    return over_runs(cuda::kernels::descend_runs_by_teams<Sweep>,
+                                     cuda::kernels::grid_of_teams<cuda::kernels::HingeBehind>(runs), sweep);
+            over_runs(cuda::kernels::descend_runs<Sweep>, cuda::kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_), sweep);
         }
 
       private:
@@ -175,7 +185,7 @@ class StageSpace : public HostSpace {
         template <class Sweep>
         void launch(void (*kernel)(cuda::kernels::DeviceStage, Sweep), dca::Stage const& stage, Sweep const& sweep) const {
             see_stages();
-            int const threads = threads_for(stage);
+            int const threads = cuda::kernels::threads_for<Sweep>(threads_for(stage), cuda::kernels::threads_of<Sweep>);
             auto const here = view(tree, stage);
             cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
         }
