@@ -22,7 +22,7 @@ class MergeTeam {
     using Triangle = Symmetric<double, K>;
 
   public:
-    static constexpr int lanes = K < 4 ? 4 : 8;
+    static constexpr int lanes = 8;
     static constexpr int of_place = numbers_of<Node> > numbers_of<Segment> ? numbers_of<Node> : numbers_of<Segment>;
     using Segments = PackedRecords<Segment, of_place>;
     using Nodes = PackedRecords<Node, of_place>;

@@ -35,8 +35,8 @@ struct SharedRecords {
   private:
     using Numbers = Vector<double, numbers>;
 };
-/// The same record after record, `stride` numbers from one to the next: for lanes that read one together. Numbers stand where a compiler
-/// knows.
+/// The same record after record, `stride` numbers from one to the next, for lanes that read one together: how far a number is from the
+/// record's first one a compiler knows.
 template <class T, int stride_>
 struct PackedRecords {
     static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double)), stride = stride_ | 1;
@@ -59,6 +59,20 @@ struct PackedRecords {
   private:
     using Numbers = Vector<double, numbers>;
 };
+
+/// put(i, get(i)) for i from `begin` in steps to the end, so many of them read before any is put: memory may be far.
+template <int at_once, class Get, class Put>
+__device__ void move_numbers(int begin, int end, int step, Get const& get, Put const& put) {
+    for (int first = begin; first < end; first += at_once * step) {
+        double number[at_once] = {};
+        CATENA_UNROLL
+        for (int i = 0; i < at_once; ++i)
+            if (first + i * step < end) number[i] = get(first + i * step);
+        CATENA_UNROLL
+        for (int i = 0; i < at_once; ++i)
+            if (first + i * step < end) put(first + i * step, number[i]);
+    }
+}
 
 /// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
 /// warp's threads walk side by side.

@@ -37,13 +37,10 @@ constexpr int threads_of_turn = merges_by_teams<Sweep> ? 256 : threads_of<Sweep>
 /// And blocks that share a multiprocessor where a stage's memory lets them.
 template <class Sweep>
 constexpr int blocks_of_stage = merges_by_teams<Sweep> ? 4 : 1;
-/// Threads where so many are planned for a merge each.
+/// Threads where so many are planned for a merge each, and there may be so many. Teams always take all.
 template <class Sweep>
 constexpr int threads_for(int planned, int most) {
-    if constexpr (merges_by_teams<Sweep>)
-        return planned * MergeTeam<Sweep>::lanes < most ? planned * MergeTeam<Sweep>::lanes : most;
-    else
-        return planned;
+    return merges_by_teams<Sweep> ? most : planned;
 }
 
 /// action(i) for a block's i of a range.
@@ -77,7 +74,7 @@ struct RecordsOfStage<Sweep> {
 };
 
 /// A block's part of a stage, in its shared memory: its lists, which are read once, and the segments and forces at its places. A sweep
-/// that keeps nodes has those there as well, each in the place of the outboard segment that it was made of.
+/// that keeps nodes, or whose merges go by teams, has those there as well, each in the place of the outboard segment that it was made of.
 template <class Sweep>
 class BlockOfStage {
     using Segment = typename Sweep::Segment;
@@ -243,15 +240,9 @@ class BlockOfStage {
         auto const items = static_cast<int>(here_->item.end - here_->item.begin);
         for (int place = static_cast<int>(threadIdx.x) % 32; place < items; place += 32) {
             std::int64_t const slot = slot_or_next_[place];
-            for (int first = warp; first < Segments::numbers; first += at_once * warps) {
-                double number[at_once] = {};
-        CATENA_UNROLL
-                for (int i = 0; i < at_once; ++i)
-                    if (int const n = first + i * warps; n < Segments::numbers) number[i] = sweep_.s.number_of_segment(slot, n);
-                CATENA_UNROLL
-                for (int i = 0; i < at_once; ++i)
-                    if (int const n = first + i * warps; n < Segments::numbers) segments_.number(place, n) = number[i];
-            }
+            move_numbers<at_once>(
+                warp, Segments::numbers, warps, [&](int n) { return sweep_.s.number_of_segment(slot, n); },
+                [&](int n, double number) { segments_.number(place, n) = number; });
         }
     }
     __device__ void give(dca::Handed const& up) const {
@@ -261,17 +252,9 @@ class BlockOfStage {
     __device__ double* kept() const { return stage_.kept + blockIdx.x * Segments::size(stage_.width); }
     /// Of all segments' memory.
     __device__ void copy(double const* from, double* to) const {
-        constexpr int at_once = 8;
-        auto const end = static_cast<int>(Segments::size(stage_.width)), step = static_cast<int>(blockDim.x);
-        for (auto first = static_cast<int>(threadIdx.x); first < end; first += at_once * step) {
-            double number[at_once] = {};
-            CATENA_UNROLL
-            for (int i = 0; i < at_once; ++i)
-                if (first + i * step < end) number[i] = from[first + i * step];
-            CATENA_UNROLL
-            for (int i = 0; i < at_once; ++i)
-                if (first + i * step < end) to[first + i * step] = number[i];
-        }
+        move_numbers<8>(
+            static_cast<int>(threadIdx.x), static_cast<int>(Segments::size(stage_.width)), static_cast<int>(blockDim.x),
+            [&](int i) { return from[i]; }, [&](int i, double number) { to[i] = number; });
     }
     template <bool and_down>
     __device__ void take_items(typename Sweep::Part& part) const {
@@ -284,7 +267,7 @@ class BlockOfStage {
             });
         else
             climb_some_runs<and_down>(stage_.runs, here_->item.begin, here_->item.end, sweep_, parts_, part,
-                                  [&](std::int64_t i, Segment const& segment) { segments_.store(place_of_item(i), segment); });
+                                      [&](std::int64_t i, Segment const& segment) { segments_.store(place_of_item(i), segment); });
     }
 
     DeviceStage const& stage_;

@@ -32,17 +32,13 @@ class StageWalk {
     }
 
   private:
-    /// Whether a stage is for the sweep's two sweeps one after the other: a thread finds no registers for runs' segments and biases at
-    /// once where even merges go by teams.
-    template <class Sweep>
-    bool goes_twice(std::size_t stage) const {
-        return kernels::merges_by_teams<Sweep> && launches_.takes_runs(stage);
-    }
+    // Where merges go by teams, a stage with runs is for the sweep's two sweeps one after the other: a thread finds no registers for runs'
+    // segments and biases at once.
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
         std::size_t const apart = launches_.stages() - (launches_.together() ? 2 : 1);
         if constexpr (kernels::merges_by_teams<Sweep>)
-            if (goes_twice<Sweep>(apart)) {
+            if (launches_.takes_runs(apart)) {
                 climb_stages(launches_.stages(), sweep.matrices());
                 return turn_stages(sweep.biases());
             }
@@ -58,7 +54,7 @@ class StageWalk {
     template <class Sweep>
     void climb_stage(std::size_t i, Sweep const& sweep) const {
         if constexpr (kernels::merges_by_teams<Sweep>)
-            if (goes_twice<Sweep>(i)) {
+            if (launches_.takes_runs(i)) {
                 launches_.climb(i, sweep.matrices());
                 return launches_.climb(i, sweep.biases());
             }
@@ -71,7 +67,7 @@ class StageWalk {
     template <class Sweep>
     void descend_stage(std::size_t i, Sweep const& sweep) const {
         if constexpr (kernels::merges_by_teams<Sweep>)
-            if (goes_twice<Sweep>(i)) return launches_.descend(i, sweep.biases());
+            if (launches_.takes_runs(i)) return launches_.descend(i, sweep.biases());
         launches_.descend(i, sweep);
     }
     template <class Sweep>
