@@ -78,9 +78,9 @@ class HingeTeam {
         return segment_of(run, end, last);
     }
     /// As dca::descend_hinges(), by every lane.
-    template <class Frame, class Kept, class Action>
+    template <class Frame, class Kept, class Accelerate, class Turn>
     __device__ void descend(Frame const& frame, BodiesOfTeam<HingeBehind> const& bodies, Kept const& kept, Vector<double, 5> const& first,
-                            Vector<double, 5> const& next, Action const& accelerate) const {
+                            Vector<double, 5> const& next, Accelerate const& accelerate, Turn const& turn) const {
         auto const frame_here = [&](int i) {
             if (i % at_once == at_once - 1) {
                 __syncwarp();  // the others are read
@@ -97,7 +97,7 @@ class HingeTeam {
             __device__ dca::ReleasedHinge<double> hinge(int i) const { return bodies.get(i - 1).outboard; }
             __device__ dca::RunsEnd<double> end() const { return kept.end(); }
         } const kept_here{bodies, kept};
-        dca::descend_hinges<double, false>(count, frame_here, kept_here, first, next, accelerate);
+        dca::descend_hinges<double, false>(count, frame_here, kept_here, first, next, accelerate, turn);
     }
 
   private:
@@ -230,12 +230,14 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(dca::Run const* runs
     if (all_lanes(lane, whole)) {
         dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run);
         auto const frame = [&](int i) { return sweep.s.leaf.hinged_frame(sweep.bodies.loads, run.body + i); };
-        team.descend(frame, BodiesOfTeam<HingeBehind>(shared_numbers, lane), kept, sweep.s.forces.load(run.body),
-                     sweep.s.forces.load(run.next), [&](int i, dca::BodyAcceleration<double> const& a) {
-                         if (!team.leads() || !sweep.out.acceleration.origin) return;
-                         dca::write(sweep.out.alpha, run.body + i, a.alpha);
-                         dca::write(sweep.out.acceleration, run.body + i, a.a);
-                     });
+        team.descend(
+            frame, BodiesOfTeam<HingeBehind>(shared_numbers, lane), kept, sweep.s.forces.load(run.body), sweep.s.forces.load(run.next),
+            [&](int i, dca::HingedFrame<double> const& of_body, dca::BodyAcceleration<double> const& a) {
+                if (team.leads()) sweep.accelerate(run, i, of_body, a);
+            },
+            [&](int i, double of_hinge) {
+                if (team.leads()) sweep.turn(run, i, of_hinge);
+            });
     } else if (team.leads()) {
         descend_run(sweep, run);
     }

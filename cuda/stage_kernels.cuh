@@ -64,6 +64,7 @@ struct RecordsOfStage {
 template <class Sweep>
     requires merges_by_teams<Sweep>
 struct RecordsOfStage<Sweep> {
+    static_assert(MergeTeam<Sweep>::of_place == Sweep::Sweeps::in_stage.kept);
     using Segments = typename MergeTeam<Sweep>::Segments;
     using Nodes = typename MergeTeam<Sweep>::Nodes;
     using Forces = typename MergeTeam<Sweep>::Forces;

@@ -296,6 +296,13 @@ void look_at_joints(ChainGroup& group, ChainSpec const& spec) {
     group.smallest_directions = std::max(group.smallest_directions, smallest_directions(spec));
 }
 
+/// Whether it has nothing but hinges beyond its first joint.
+bool is_hinged(ChainSpec const& spec) {
+    std::vector<JointType> const& joint = spec.bodies.joint;
+    return spec.tip == Tip::free &&
+           std::all_of(joint.begin() + (joint.empty() ? 0 : 1), joint.end(), [](JointType type) { return type == JointType::revolute; });
+}
+
 ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes, Handles handles, bool pairwise,
                       Communicator const& communicator, bool implicit) {
     ChainGroup group;
@@ -325,6 +332,8 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
+    group.hinged = !group.beads && !group.linked && group.directions == 5 && !group.has_screws &&
+                   std::all_of(chains.begin(), chains.end(), [&](int chain) { return is_hinged(scene.chains[chain]); });
     group.tips_in_scene = std::any_of(tips.begin(), tips.end(), [](dca::TipTo t) { return t != dca::TipTo::nothing; });
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);

@@ -53,6 +53,7 @@ struct ChainGroup {
     int directions = 6;           // K: what a handle carries
     int smallest_directions = 6;  // what would be enough
     bool has_universal = false, has_screws = false;
+    bool hinged = false;  // bodies on projected handles whose joints, but those of chains' first ones, are revolute; tips are free
     std::vector<std::uint8_t> implicit_joint;  // of local body k: its springs and dampers stand in the matrices; empty where none does
     std::vector<int> chain;                    // index in the scene of each chain of the group
     std::vector<std::string> name;

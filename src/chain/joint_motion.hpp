@@ -33,15 +33,19 @@ template <class Real>
 CATENA_HD MotionOf<Real> as_motion(Vector<Real, 13> const& n) {
     return {{n[0], n[1], n[2], n[3]}, {{n[4], n[5], n[6]}}, {{n[7], n[8], n[9]}}, {{n[10], n[11], n[12]}}};
 }
+/// Angular velocity of C against A, C, from that of B against A and the motion of C against B.
+template <class Real>
+CATENA_HD Vector<Real, 3> compose(Vector<Real, 3> const& omega, MotionOf<Real> const& bc) {
+    return transposed_times(to_matrix(bc.rotation), omega) + bc.omega;
+}
 /// Motion of C against A from those of B against A and C against B. Without `positions` translation and velocity stay zero.
 template <bool positions, class Real>
 CATENA_HD MotionOf<Real> compose(MotionOf<Real> const& ab, MotionOf<Real> const& bc) {
     using Vector3 = Vector<Real, 3>;
-    Matrix<Real, 3, 3> const turn = to_matrix(bc.rotation);
-    MotionOf<Real> ac{ab.rotation * bc.rotation, transposed_times(turn, ab.omega) + bc.omega, Vector3::zero(), Vector3::zero()};
+    MotionOf<Real> ac{ab.rotation * bc.rotation, compose(ab.omega, bc), Vector3::zero(), Vector3::zero()};
     if constexpr (positions) {
         ac.translation = ab.translation + to_matrix(ab.rotation) * bc.translation;
-        ac.velocity = transposed_times(turn, ab.velocity + cross(ab.omega, bc.translation)) + bc.velocity;
+        ac.velocity = transposed_times(to_matrix(bc.rotation), ab.velocity + cross(ab.omega, bc.translation)) + bc.velocity;
     }
     return ac;
 }
@@ -62,13 +66,14 @@ struct StateView {
 /// What a pass over the chain finds. Without poses where nobody asks for them.
 struct MotionView {
     View<4> joint_turn;   // quaternion of B in the meeting frame M of its inboard joint
-    View<4> orientation;  // of B in W
+    View<4> orientation;  // of B in W; of chains' first bodies alone where `orients_first_alone`
     View<3> omega;        // of B, B
     View<3> origin;       // of B, W
     View<3> velocity;     // of B's origin, B
     // Where the meeting frames of outboard joints move in their inboard body (else absent): as ConfigurationView.
     View<3> r2;
     View<6> axes2;
+    bool orients_first_alone = false;
 };
 
 /// The inboard side of a joint, seen from the body it is in.

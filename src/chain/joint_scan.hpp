@@ -11,6 +11,7 @@
 namespace catena {
 
 using MotionRecords = dca::RecordsView<Motion, dca::Order::plain>;
+constexpr int first_of_omega = 4;  // among a motion's numbers
 /// Of a motion what is not zero.
 template <bool positions>
 constexpr int numbers_of_motion = positions ? 13 : 7;
@@ -116,16 +117,31 @@ struct JointScan {
     }
     template <bool positions, class Place>
     CATENA_HD MotionOf<RealAt<Place>> before_run(Place const& several) const {
-        return as_motion(pick(before.origin, slot, several, Vector<RealAt<Place>, 13>{}));
+        return as_motion(pick<MotionRecords::numbers>(before.origin, slot, several, Vector<RealAt<Place>, MotionRecords::numbers>{}));
+    }
+    /// Its angular velocity.
+    CATENA_HD Vec3 omega_before_run(std::int64_t k) const {
+        std::int64_t const s = slot[k];
+        return {{before.number(s, first_of_omega), before.number(s, first_of_omega + 1), before.number(s, first_of_omega + 2)}};
+    }
+    template <class Place>
+    CATENA_HD Vec3At<Place> omega_before_run(Place const& several) const {
+        return pick<MotionRecords::numbers>(before.origin + first_of_omega, slot, several, Vec3At<Place>{});
     }
     template <bool positions, class Place>
     CATENA_HD void set_motion(Place k) const {
-        auto const m = compose<positions>(before_run<positions>(k), load<positions>(k));
-        write(motion.orientation, k, as_vector(normalized(m.rotation)));
-        write(motion.omega, k, joints.kept_in_plane(joints.normal(k), m.omega));
-        if constexpr (positions) {
-            write(motion.origin, k, m.translation);
-            write(motion.velocity, k, m.velocity);
+        auto const own = load<positions>(k);
+        auto const omega_before = omega_before_run(k);  // a GPU reads it while it waits for what decides
+        if (positions || !motion.orients_first_alone || joints.starts_chain(k)) {
+            auto const m = compose<positions>(before_run<positions>(k), own);
+            write(motion.orientation, k, as_vector(normalized(m.rotation)));
+            write(motion.omega, k, joints.kept_in_plane(joints.normal(k), m.omega));
+            if constexpr (positions) {
+                write(motion.origin, k, m.translation);
+                write(motion.velocity, k, m.velocity);
+            }
+        } else {
+            write(motion.omega, k, joints.kept_in_plane(joints.normal(k), compose(omega_before, own)));
         }
         if (motion.axes2.origin && !joints.ends_chain(k)) set_meeting(k);
     }

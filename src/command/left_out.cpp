@@ -95,9 +95,16 @@ class List {
     }
     void add_bodies(ChainGroup const& group, Family const& family, std::size_t share) {
         if (group.axes == Axes::joint) {
-            if (!group.has_tips() && !group.carried_in_scene && found_.drag == 0)
+            if (!group.has_tips() && !group.carried_in_scene && found_.drag == 0) {
                 add("positions and linear velocities of bodies: nothing in the scene acts by them; computed for output and energies alone",
                     share, change_of(family, [](Scene& scene, std::size_t) { scene.forces.linear_drag = 1e-6; }));
+                if (found_.wrenches == 0)
+                    add("orientations of bodies but chains' first ones: nothing in the scene acts along ground axes; for output alone");
+            }
+            if (group.hinged && group.partition.trees.front().run_length > 1)
+                add("velocity terms and bodies' accelerations of chains on hinges where a step solves once: the solver goes from rates to "
+                    "rates",
+                    share);
             add("rotations at merges: both sides of a joint share its axes", share, seconds_of_turning);
         } else {
             add("kinematics along the chain: orientations and positions are the coordinates", share,

@@ -179,16 +179,31 @@ struct Evaluation {
         Directions outboard = next;
         descend_hinges<double, true>(
             static_cast<int>(run.count), [&](int i) { return s.leaf.hinged_frame(bodies.loads, run.body + i); }, kept, first, next,
-            [&](int i, BodyAcceleration<double> const& a) {
+            [&](int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) {
                 std::int64_t const k = run.body + i;
-                if (out.acceleration.origin) {
-                    write(out.alpha, k, a.alpha);
-                    write(out.acceleration, k, a.a);
-                }
+                accelerate(run, i, frame, a);
                 if (!out.joint_force) return;
                 outboard = i == 0 ? first : inboard_force(s.leaf.hinged(bodies.loads, k), a, outboard);
                 write_directions<K>(out.joint_force, k, outboard);
-            });
+            },
+            [&](int i, double of_hinge) { turn(run, i, of_hinge); });
+    }
+    /// What is wanted of body i of a run on hinges.
+    CATENA_HD void accelerate(Run const& run, int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) const {
+        std::int64_t const k = run.body + i;
+        if (out.hinge_acceleration.origin) {
+            bool const begins = i == 0, ends = i == static_cast<int>(run.count) - 1;
+            if (begins) out.hinge_acceleration.at(k, 0) = about_inboard_hinge(frame, a);
+            if (ends) out.hinge_acceleration.at(k + 1, 1) = about_outboard_hinge(frame, a);
+            if (!(begins && begins_chain(s.leaf.group(), k)) && !(ends && comes_before_one(s.leaf.group(), k))) return;
+        }
+        if (!out.acceleration.origin) return;
+        write(out.alpha, k, a.alpha);
+        write(out.acceleration, k, a.a);
+    }
+    /// And of its hinge.
+    CATENA_HD void turn(Run const& run, int i, double of_hinge) const {
+        if (out.hinge_acceleration.origin) out.hinge_acceleration.at(run.body + i, 0) = of_hinge;
     }
 
     template <class InverseLength = dca::InverseLength>

@@ -390,10 +390,11 @@ CATENA_HD BodyAcceleration<Real> last_acceleration(RunsEnd<Real> const& end, Hin
     Vector3 const alpha = last.e1 * Vector3{{y[3], y[4], y[5]}};
     return {alpha, last.e1 * Vector3{{y[0], y[1], y[2]}} - cross(alpha, last.r1)};
 }
-/// Of `before`, from that of `body` and the force at the run's first joint. `at_end`: `body` is the last of the run.
+/// Of `before`, from that of `body` and the force at the run's first joint; `of_hinge`: of `body` against it, about the hinge between them.
+/// `at_end`: `body` is the last of the run.
 template <bool at_end, class Real>
 CATENA_HD BodyAcceleration<Real> go_back(ReleasedHinge<Real> const& hinge, HingedFrame<Real> const& before, HingedFrame<Real> const& body,
-                                         BodyAcceleration<Real> const& of_body, Vector<Real, 5> const& first) {
+                                         BodyAcceleration<Real> const& of_body, Vector<Real, 5> const& first, Real& of_hinge) {
     using Vector3 = Vector<Real, 3>;
     // Along the joint's axes: what the inboard side has, and the hinge's own.
     Vector3 turning = transposed_times(body.e1, of_body.alpha);
@@ -403,10 +404,26 @@ CATENA_HD BodyAcceleration<Real> go_back(ReleasedHinge<Real> const& hinge, Hinge
     Vector3 const linear = moving - transposed_times(before.e2, before.inward2);
     Vector3 const turned = at_end ? turning : body.e1 * turning, moved = at_end ? linear : body.e1 * linear;
     Real const own = dot(hinge.turning, turned) + (dot(hinge.moving, moved) + (hinge.bias - dot(hinge.first, first)));
+    of_hinge = own * hinge.inverse;
     turning[2] = less_product(own, hinge.inverse, turning[2]);
     BodyAcceleration<Real> a{before.e2 * turning, {}};
     a.a = before.e2 * linear - cross(a.alpha, before.r2);
     return a;
+}
+/// Of a body about the hinges inboard and outboard of it.
+template <class Real>
+CATENA_HD Real about_inboard_hinge(HingedFrame<Real> const& body, BodyAcceleration<Real> const& a) {
+    return transposed_times(body.e1, a.alpha)[2];
+}
+template <class Real>
+CATENA_HD Real about_outboard_hinge(HingedFrame<Real> const& body, BodyAcceleration<Real> const& a) {
+    return transposed_times(body.e2, a.alpha)[2];
+}
+/// The velocity terms of a hinge along its directions: its axes `e1` and `omega` of the body outboard of it, in that body's axes.
+template <class Real>
+CATENA_HD Vector<Real, 5> hinge_bias(Matrix<Real, 3, 3> const& e1, Vector<Real, 3> const& omega, Real const& rate) {
+    Vector<Real, 3> const w = transposed_times(e1, omega);
+    return {{Real(0), Real(0), Real(0), -(rate * w[1]), rate * w[0]}};
 }
 /// The force at a body's inboard joint, from that at its outboard one.
 template <class Real>
@@ -438,26 +455,29 @@ CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Body const& bo
     kept.put(end);
     return segment_of(run, end, last);
 }
-/// And back from the forces at the run's first joint and at the one after it: frame(i) is asked for from the last body to the first, and
-/// accelerate(i, BodyAcceleration) of each follows it. `kept`: hinge(i) and end(). `ahead`: a frame is asked for one body earlier, so that
-/// reading it stands in nobody's way.
-template <class Real, bool ahead, class Frame, class Kept, class Action>
+/// And back from the forces at the run's first joint and at the one after it: frame(i) is asked for from the last body to the first,
+/// accelerate(i, frame(i), BodyAcceleration) of each follows it, and turn(i, its relative acceleration) of the hinge inboard of it when the next frame
+/// is known. `kept`: hinge(i) and end(). `ahead`: a frame is asked for one body earlier, so that reading it stands in nobody's way.
+template <class Real, bool ahead, class Frame, class Kept, class Accelerate, class Turn>
 CATENA_HD_IN_PLACE void descend_hinges(int count, Frame const& frame, Kept const& kept, Vector<Real, 5> const& first,
-                                       Vector<Real, 5> const& next, Action&& accelerate) {
+                                       Vector<Real, 5> const& next, Accelerate&& accelerate, Turn&& turn) {
     HingedFrame<Real> body = frame(count - 1), before, after;
     BodyAcceleration<Real> a = last_acceleration(kept.end(), body, first, next);
-    accelerate(count - 1, a);
+    accelerate(count - 1, body, a);
     before = frame(count - 2);
     if (ahead && count > 2) after = frame(count - 3);
-    a = go_back<true>(kept.hinge(count - 1), before, body, a, first);
-    accelerate(count - 2, a);
+    Real of_hinge;
+    a = go_back<true>(kept.hinge(count - 1), before, body, a, first, of_hinge);
+    turn(count - 1, of_hinge);
+    accelerate(count - 2, before, a);
     CATENA_NO_UNROLL
     for (int i = count - 2; i > 0; --i) {
         body = before;
         before = ahead ? after : frame(i - 1);
         if (ahead && i > 1) after = frame(i - 2);
-        a = go_back<false>(kept.hinge(i), before, body, a, first);
-        accelerate(i - 1, a);
+        a = go_back<false>(kept.hinge(i), before, body, a, first, of_hinge);
+        turn(i, of_hinge);
+        accelerate(i - 1, before, a);
     }
 }
 

@@ -290,7 +290,7 @@ class BodyLeaf {
         Vec3At<Place> torque;  // the gyroscopic one included
     };
     template <class Place>
-    CATENA_HD static Turned<Place> turned(LoadsView const& loads, Body<Place> const& body) {
+    CATENA_HD Turned<Place> turned(LoadsView const& loads, Body<Place> const& body) const {
         return {to_matrix(as_quaternion(body.state.rotation)), applied_torque(loads, body)};
     }
     template <class Place>
@@ -355,6 +355,10 @@ class BodyLeaf {
                             cross(omega, cross(omega, state.r1)),
                             cross(omega, cross(omega, state.r2)),
                             Vector<Real, 5>::zero()};
+        if (loads.hinge_rate.origin) {
+            f.bias = hinge_bias(f.e1, omega, read(loads.hinge_rate, k)[0]);
+            if (!begins_chain(group_, k)) return f;
+        }
         if (loads.bias) f.bias = read_directions<5>(loads.bias, k);
         return f;
     }
@@ -369,7 +373,8 @@ class BodyLeaf {
                                                  Handles const& h) const {
         using Real = RealAt<Place>;
         Vector<Real, 3> a1 = body.inverse_mass * body.force, a2 = a1;
-        Vector<Real, 3> const alpha = loads.torque.origin ? body.inverse_inertia * t.torque : Vector<Real, 3>::zero();
+        Vector<Real, 3> const alpha =
+            loads.torque.origin || loads.gyroscopic ? body.inverse_inertia * t.torque : Vector<Real, 3>::zero();
         if (loads.omega.origin) {
             Vector<Real, 3> const& w = body.omega;
             a1 = a1 + h.in_force_axes(cross(w, cross(w, body.state.r1)));
@@ -380,8 +385,9 @@ class BodyLeaf {
         return b;
     }
     template <class Place>
-    CATENA_HD static Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body) {
+    CATENA_HD Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body) const {
         if (!loads.gyroscopic) return body.torque;
+        if constexpr (by_inertia) return body.torque - cross(body.omega, as_symmetric(read(group_.inertia, body.k)) * body.omega);
         return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega));
     }
 

@@ -54,6 +54,9 @@ CATENA_HD void write_directions(DirectionsView const& view, std::int64_t k, Vect
 
 // Bodies side by side whose neighbours are read have both.
 CATENA_HD bool ends_chain(GroupView const& group, std::int64_t k) { return group.is_last[k]; }
+CATENA_HD bool begins_chain(GroupView const& group, std::int64_t k) { return group.is_first[k]; }
+/// Whether a run's last body comes before one that makes a run by itself, or may: the body after it is another rank's, or the next chain.
+CATENA_HD bool comes_before_one(GroupView const& group, std::int64_t k) { return k + 1 >= group.size || group.is_last[k + 1]; }
 CATENA_HD bool has_jointed_tip(GroupView const& group, std::int64_t k) { return group.has_jointed_tip(k); }
 CATENA_HD Vec3 outboard_screw(GroupView const& group, std::int64_t k) { return group.outboard_screw(k); }
 

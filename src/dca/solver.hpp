@@ -97,6 +97,9 @@ struct LoadsView {
     ConstDirectionsView tip_bias;  // the same of the joint between last body k and the ground
     ConstView<3> velocity{};       // with positions given instead of directions: of beads, with their halo, W; instead of `bias`
     bool gyroscopic = false;       // `torque` lacks -omega x J omega: the solver adds it
+    /// For assemble_and_solve() that goes_by_hinges(): rates of the hinges, of which it makes their biases. `bias` then is asked for of
+    /// bodies alone that begin a chain or make a run by themselves.
+    ConstView<1> hinge_rate{};
 };
 
 /// Of links: what the inverse of their matrix T (formulas, "Link chains") says beyond solutions.
@@ -111,6 +114,12 @@ struct AccelerationsView {
     View<3> acceleration;        // of the centre of mass (bead), axes of LoadsView::force; may be absent
     DirectionsView joint_force;  // constraint force on body k along the directions of its inboard joint; [0, size]; may be absent
     DirectionsView tip_force;    // on the ground at the jointed tip of last body k; may be absent
+    /// Of assemble_and_solve() that goes_by_hinges(), in the place of most bodies' alpha and acceleration, which then are those of bodies
+    /// that begin a chain, make a run by themselves, come before such a one, or are this rank's last. In runs of two bodies or more
+    /// component 0 is the angular acceleration of body k about its hinge, against the body before or, of a run's first body, against the
+    /// ground; component 1, of the joint after such a run, that of the run's last body against the ground about that joint's axis:
+    /// [0, size].
+    View<2> hinge_acceleration{};
 };
 
 /// Of a tree whose lowest levels are computed in one place and the others in another one (cuda-levels: GPU and CPU).
@@ -162,6 +171,9 @@ class ChainSolver {
     }
     /// Whether assemble_and_solve() is one sweep, which reads beads by their positions and velocities.
     virtual bool at_once() const { return false; }
+    /// Whether it takes runs on hinges by their inertias, and so can do with less: LoadsView::hinge_rate,
+    /// AccelerationsView::hinge_acceleration.
+    virtual bool goes_by_hinges() const { return false; }
     /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
     /// Collective.
     virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,

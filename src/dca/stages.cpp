@@ -300,7 +300,7 @@ StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, s
 }
 
 std::int64_t kept_numbers(Stage const& stage, StageRecords const& records) {
-    return records.kept > 0 ? stage.blocks() * packed_numbers(records.kept, stage.width) : 0;
+    return records.kept > 0 && !stage.of_runs ? stage.blocks() * packed_numbers(records.kept, stage.width) : 0;
 }
 
 int threads_for(Stage const& stage, StageSizes const& sizes) {

@@ -84,17 +84,18 @@ struct StageRecords {
 };
 /// Directions of the handles that a thread merges alone, matrices and biases at once.
 constexpr int most_directions_of_a_thread = 3;
-/// Of mobilities along so many directions.
-constexpr StageRecords stage_records(int directions, bool whole_runs = false) {
+/// Of mobilities along so many directions. `evaluates`: sweeps may take matrices and biases together.
+constexpr StageRecords stage_records(int directions, bool evaluates, bool whole_runs = false) {
     int const segment = directions * (2 * directions + 3), node = directions * (5 * directions + 3) / 2;
+    if (directions <= most_directions_of_a_thread) return {segment, directions, 256, whole_runs};
+    if (!evaluates) return {segment, directions, 128, whole_runs};
     int const place = segment > node ? segment : node;
-    if (directions <= most_directions_of_a_thread) return {place, directions, 256, whole_runs};
     return {place, directions, 128, whole_runs, 32, place};
 }
 /// What `count` records of so many numbers take one after the other where neighbours, and those a power of two apart, are not to meet in a
 /// bank of a GPU's shared memory.
 CATENA_HD constexpr std::int64_t packed_numbers(int numbers, std::int64_t count) { return (numbers | 1) * count + count / 16 + 1; }
-/// That a stage keeps for its way down.
+/// That a stage keeps for its way down: none where its items are runs, which no threads share.
 std::int64_t kept_numbers(Stage const&, StageRecords const&);
 /// Of a GPU whose blocks may share so many bytes, in clusters of so many.
 StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t together);

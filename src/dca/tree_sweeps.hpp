@@ -46,7 +46,8 @@ struct TreeSweeps {
     using Directions = Vector<double, K>;
     using Offset = Directions;
     using State = Directions;  // what the way down knows of a joint: its force
-    static constexpr StageRecords in_stage = stage_records(K), in_stage_of_whole_runs = stage_records(K, true);
+    static constexpr StageRecords in_stage = stage_records(K, Leaf::projected),
+                                  in_stage_of_whole_runs = stage_records(K, Leaf::projected, true);
 
     Leaf leaf;
     std::uint8_t const* restricted = nullptr;      // of every joint (ChainGroup::restricted_of_joint)

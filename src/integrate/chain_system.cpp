@@ -35,6 +35,8 @@ void refuse_cuda(Communicator const& communicator, std::string const& backend, s
     throw Error(text, "solver.backend: " + backend, remedy);
 }
 
+void update(JointDynamics& group, bool to_solve_once) { to_solve_once ? group.update_to_solve_once() : group.update_configuration(); }
+
 /// Whose chains have links or closed tips the scene's validation has refused.
 void refuse_articulated(ChainGroup const& group, bool implicit) {
     if (!group.beads && !group.linked && !group.has_tips() && group.axes == Axes::joint && !implicit) return;
@@ -180,7 +182,7 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
 
 void ChainSystem::solve_joint_groups() {
     double const start = seconds_now();
-    for (auto const& group : joint_) group->update_configuration();
+    for (auto const& group : joint_) update(*group, solves_once());
     double const moved = seconds_now();
     if (openmm_) begin_openmm(false);
     double const begun = seconds_now();
@@ -236,8 +238,8 @@ void ChainSystem::note_overlap(double start, double begun, double assembled, dou
 
 void ChainSystem::evaluate(bool project) {
     for (auto const& group : absolute_) group->update_configuration();
-    for (auto const& group : joint_) group->update_configuration();
     bool const at_once = !project && solves_once() && !scene_.dynamics.fixman;  // whose forces need the matrices
+    for (auto const& group : joint_) update(*group, at_once);
     if (at_once)
         for (auto const& group : absolute_) group->set_simple_forces();
     else

@@ -41,6 +41,8 @@ class JointDynamics : public BeadHost {
 
     /// What the state alone decides, and where carried beads are. Clears their forces. Collective.
     virtual void update_configuration() = 0;
+    /// The same where solve_once() follows, which leaves out what its solver needs not be told.
+    virtual void update_to_solve_once() = 0;
     /// At the configuration updated last. Needs no forces. Collective.
     virtual void assemble_matrices() = 0;
     /// Accelerations of bodies with the forces of now, at the configuration updated last. Collective.

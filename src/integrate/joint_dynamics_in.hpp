@@ -50,6 +50,10 @@ class JointDynamicsIn final : public JointDynamics {
           has_wrenches_(given_.wrenches || group.carried_beads() > 0),
           has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
           needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
+          needs_orientations_(given_.wrenches || needs_positions_),
+          goes_by_hinges_(solver_->goes_by_hinges()),
+          in_run_(goes_by_hinges_ ? hinges_in_runs(group) : std::vector<std::uint8_t>{}),
+          in_run_list_(in_run_),
           kinematics_(group, space, communicator),
           loads_(given_),
           tips_(tip_),
@@ -65,6 +69,7 @@ class JointDynamicsIn final : public JointDynamics {
           joint_load_(given_.joint_loads ? group.size : 0),
           compliance_(group.implicit_joint.empty() ? 0 : group.size),
           yielding_(group.implicit_joint.empty() ? 0 : group.size),
+          hinge_acceleration_(goes_by_hinges_ ? group.size + 1 : 0),
           torque_(group.size),
           force_(has_forces_ ? group.size : 0),
           alpha_(group.size),
@@ -110,6 +115,12 @@ class JointDynamicsIn final : public JointDynamics {
     }
 
     void update_configuration() override {
+        leaves_loads_ = false;
+        has_matrices_ = false;
+        update(false);
+    }
+    void update_to_solve_once() override {
+        leaves_loads_ = goes_by_hinges_;
         has_matrices_ = false;
         update(false);
     }
@@ -118,19 +129,21 @@ class JointDynamicsIn final : public JointDynamics {
         has_matrices_ = true;
     }
     void solve() override {
+        if (std::exchange(leaves_loads_, false)) set_loads();
         set_carried_loads();
-        solver_->solve(loads(), found());
+        solver_->solve(loads(), found(false));
         exchange_ends();
     }
     void solve_once() override {
         set_carried_loads();
-        solver_->assemble_and_solve(configuration(), loads(), found());
+        solver_->assemble_and_solve(configuration(), loads(), found(leaves_loads_));
         has_matrices_ = false;
         exchange_ends();
     }
     void solve_again() override {
+        leaves_loads_ = false;
         update(true);
-        solver_->solve(loads(), found());
+        solver_->solve(loads(), found(false));
         exchange_ends();
     }
     /// What is lacking is looked for on the host.
@@ -216,13 +229,18 @@ class JointDynamicsIn final : public JointDynamics {
 
     // Not private: nvcc takes lambdas for kernels from public members alone.
     void set_carried_loads() {
-        if (group_.carried_in_scene) space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
+        if (group_.carried_in_scene) set_loads();
+    }
+    void set_loads() {
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
     }
     void update(bool again) { needs_positions_ ? update<true>(again) : update<false>(again); }
     /// `again`: the forces on carried beads stay.
     template <bool positions>
     void update(bool again) {
-        JointChains const c = chains();
+        JointChains c = chains();
+        c.scan.motion.orients_first_alone = !needs_orientations_;
+        has_orientations_ = needs_orientations_;
         if (!std::exchange(relative_, false))
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
                                  [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
@@ -279,6 +297,7 @@ class JointDynamicsIn final : public JointDynamics {
     /// The kinematics alone, positions included.
     void move() {
         relative_ = false;
+        has_orientations_ = true;
         kinematics_.evaluate(state_.view(), true, motion_.view());
         if (group_.has_tips()) set_ends();
     }
@@ -304,15 +323,37 @@ class JointDynamicsIn final : public JointDynamics {
         if (!group_.has_tips()) zero_ = FieldOf<3>(group_.size);
     }
     LoadsView loads() {
-        return {torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(), of_tips(group_, tip_bias_)};
+        LoadsView all{torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(),
+                      of_tips(group_, tip_bias_)};
+        if (!leaves_loads_) return all;
+        if (leaves_torques()) all.torque = {};
+        all.gyroscopic = leaves_torques();
+        View<3> const qd = state_.qd.view();
+        all.hinge_rate = {qd.origin, qd.pitch, qd.size};
+        return all;
     }
-    AccelerationsView with_forces() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
-    /// Of the next solution: the joints' forces, which no step needs, where it is to be refined.
-    AccelerationsView found() {
-        has_forces_found_ = refinement_.has_value();
-        return has_forces_found_ ? with_forces() : AccelerationsView{alpha_.view(), acceleration_.view(), {}, {}};
+    /// Nothing but gyration turns bodies, on whatever rank.
+    bool leaves_torques() const {
+        return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged && !group_.carried_in_scene;
     }
-    void find_forces();
+    AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
+    /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
+    /// accelerations instead, where that is enough.
+    AccelerationsView found(bool hinges) {
+        has_all_ = refinement_.has_value();
+        has_hinges_ = hinges && !has_all_;
+        if (has_all_) return all();
+        return {alpha_.view(), acceleration_.view(), {}, {}, has_hinges_ ? hinge_acceleration_.view() : View<2>{}};
+    }
+    void find_all();
+    /// Of every joint whether its hinge is within a run of several bodies, or joins one to the run before.
+    static std::vector<std::uint8_t> hinges_in_runs(ChainGroup const& group) {
+        std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
+        for (dca::Run const& run : group.schedule.runs)
+            for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
+                in_run[static_cast<std::size_t>(k)] = group.is_first[static_cast<std::size_t>(k)] == 0 ? 1 : 0;
+        return in_run;
+    }
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
     std::int64_t tips() const { return std::ssize(tip_); }
     JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }
@@ -339,6 +380,8 @@ class JointDynamicsIn final : public JointDynamics {
         c.acceleration = acceleration_.view();
         c.bias = bias_.view();
         c.outboard_end = outboard_end_.view();
+        if (leaves_loads_) c.left = {leaves_torques(), in_run_list_.data()};
+        if (has_hinges_) c.hinges = {hinge_acceleration_.view(), in_run_list_.data()};
         return c;
     }
     /// With nothing but what was solved for last.
@@ -365,9 +408,14 @@ class JointDynamicsIn final : public JointDynamics {
     List<LocalPiece> pieces_in_scene_;
     std::vector<JointedTip> tip_;
     double reach_;
-    bool has_wrenches_, has_forces_, needs_positions_;
+    bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_hinges_;
+    std::vector<std::uint8_t> in_run_;  // as FoundHinges::joint
+    List<std::uint8_t> in_run_list_;
+    bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
+    bool leaves_loads_ = false;     // some of those of the configuration updated last are the solver's to find
     bool has_matrices_ = false;     // of the configuration updated last
-    bool has_forces_found_ = true;  // the joints', with the accelerations found last
+    bool has_all_ = true;           // bodies' accelerations and joints' forces of the solution found last
+    bool has_hinges_ = false;       // hinge_acceleration_ of that
     bool has_noise_ = false;
     bool relative_ = false;  // the state's motions joint by joint are known
     double start_time_ = 0;
@@ -384,6 +432,7 @@ class JointDynamicsIn final : public JointDynamics {
     FieldOf<4> joint_load_;
     FieldOf<6> compliance_;
     FieldOf<3> yielding_, noise_force_;
+    FieldOf<2> hinge_acceleration_;
     FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
     FieldOf<4> outboard_end_;
     FieldOf<3> zero_;

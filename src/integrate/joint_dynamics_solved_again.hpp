@@ -43,6 +43,7 @@ BodyMotion JointDynamicsIn<Space>::motion() {
 
 template <class Space>
 void JointDynamicsIn<Space>::thermalise(Thermostat const& thermostat, std::uint64_t step) {
+    leaves_loads_ = false;
     update(false);
     assemble_matrices();
     need_for_noise();
@@ -54,6 +55,7 @@ void JointDynamicsIn<Space>::thermalise(Thermostat const& thermostat, std::uint6
         space_.for_each(tips(), [t = jointed_tips(), out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) { t.set_no_bias(i, out); });
     solver_->solve({torque_.view(), noise_force_.view(), {}, bias_.view(), of_tips(group_, tip_bias_)},
                    {alpha_.view(), acceleration_.view(), {}, {}});
+    has_hinges_ = false;
     JointSteps const still = at_rest();
     exchange_ends(still.chains);
     space_.for_each(group_.size, [still, state = state_.view(), keep = thermostat.keep,
@@ -82,6 +84,7 @@ void JointDynamicsIn<Space>::correct(bool velocities) {
         t.set_opening(i, velocities, out);
     });
     solver_->solve({{}, {}, {}, {}, tip_bias_.view()}, {alpha_.view(), acceleration_.view(), {}, {}});
+    has_hinges_ = false;
     JointSteps const still = at_rest();
     exchange_ends(still.chains);
     space_.for_each(group_.size,
@@ -103,18 +106,22 @@ void JointDynamicsIn<Space>::add(std::int64_t count, DirectionsView const& found
     });
 }
 
-/// Where no step has asked for them: what was solved for last once more. Precondition: nothing has changed since.
+/// What no step has asked for: orientations, loads, and what was solved for last once more. Precondition: nothing has changed since.
 template <class Space>
-void JointDynamicsIn<Space>::find_forces() {
-    if (has_forces_found_) return;
-    has_matrices_ ? solver_->solve(loads(), with_forces()) : solver_->assemble_and_solve(configuration(), loads(), with_forces());
-    has_forces_found_ = true;
+void JointDynamicsIn<Space>::find_all() {
+    if (!std::exchange(has_orientations_, true)) {
+        relative_ = false;
+        kinematics_.evaluate(state_.view(), false, motion_.view());
+    }
+    if (!std::exchange(has_all_, true))
+        has_matrices_ ? solver_->solve(loads(), all()) : solver_->assemble_and_solve(configuration(), loads(), all());
+    if (std::exchange(leaves_loads_, false)) set_loads();
 }
 
 template <class Space>
 template <class Use>
 auto JointDynamicsIn<Space>::with_solution(Use const& use) {
-    find_forces();
+    find_all();
     auto const &joint_turn = space_.read(motion_.joint_turn), &orientation = space_.read(motion_.orientation);
     auto const &omega = space_.read(motion_.omega), &velocity = space_.read(motion_.velocity), &r2 = space_.read(motion_.r2);
     auto const& axes2 = space_.read(motion_.axes2);
@@ -131,7 +138,8 @@ auto JointDynamicsIn<Space>::with_solution(Use const& use) {
 
 template <class Space>
 void JointDynamicsIn<Space>::refine(Executor const& executor) {
-    find_forces();  // by what the accelerations were found by
+    find_all();  // by what the accelerations were found by
+    has_hinges_ = false;
     if (!has_matrices_) assemble_matrices();
     auto const lacking = with_solution([&](JointSolution const& found) { return found.defect(communicator_, executor); });
     std::int64_t const size = group_.size, of_tip = group_.has_tips() ? size : 0;

@@ -4,7 +4,8 @@ namespace catena {
 namespace {
 
 /// Whether bodies k to k + lanes - 1 go side by side: what they are asked for is the same of each, and found without a decision that
-/// depends on numbers. Their neighbours are of the same chain on this rank.
+/// depends on numbers. Their neighbours are of the same chain on this rank: none is the chain's first or last body, so none makes a run
+/// by itself.
 bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int lanes) {
     if (k == 0 || k + lanes >= group.size) return false;
     JointType const type = group.joint[static_cast<std::size_t>(k)];

@@ -26,8 +26,20 @@ struct ImplicitJoints {
     }
 };
 
+/// What the solver makes by itself of a scene's velocities: LoadsView::gyroscopic, hinge_rate.
+struct LeftToSolver {
+    bool gyroscopic = false;              // nothing else is in the torques
+    std::uint8_t const* joint = nullptr;  // whether it makes joint k's bias, as it does of bodies side by side; null: none
+    CATENA_HD bool has_bias(std::int64_t k) const { return joint && joint[k] != 0; }
+    template <dca::SeveralBodies Place>
+    CATENA_HD bool has_bias(Place const&) const {
+        return joint;
+    }
+};
+
 struct JointLoads {
     JointScan scan;
+    LeftToSolver left;
     ImplicitJoints implicit;
     BodyLoadsView given;
     double time = 0;
@@ -267,12 +279,16 @@ struct JointLoads {
 
     template <class Place>
     CATENA_HD void set_loads(Place k) const {
+        if (!left.gyroscopic) set_wrench(k);
+        if (!left.has_bias(k)) set_bias(k, turn(k), joints().axes(k));
+    }
+    template <class Place>
+    CATENA_HD void set_wrench(Place k) const {
         using Vector3 = Vec3At<Place>;
         Vector3 const w = omega(k);
-        auto const to_meeting = turn(k), axes1 = joints().axes(k);
         // In a plane the gyroscopic torque is across it, and large: only its rounding would count.
         Vector3 moment = joints().planar ? Vector3::zero() : -gyroscopic_torque(k), push = Vector3::zero();
-        if (given.joint_loads) add_joint_loads(k, to_meeting, moment, push);
+        if (given.joint_loads) add_joint_loads(k, turn(k), moment, push);
         if (has_wrenches) {
             auto const outside = wrench(k);
             auto const axes = orientation(k);
@@ -286,11 +302,10 @@ struct JointLoads {
         }
         write(torque, k, moment);
         if (joints().planar && has_forces) {  // nothing moves across the plane
-            Vector3 const axis = axes1.column(2);
+            Vector3 const axis = joints().axes(k).column(2);
             push = plus_scaled(push, -dot(axis, push), axis);
         }
         if (has_forces) write(force, k, push);
-        set_bias(k, to_meeting, axes1);
     }
     template <class Place>
     CATENA_HD void set_bias(Place k, Mat3At<Place> const& to_meeting, Mat3At<Place> const& axes1) const {

@@ -142,19 +142,21 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
         KeptHinges kept;
         climb(b, kept);
         std::vector<BodyAcceleration<double>> a(b.size());
+        std::vector<double> about_hinge(b.size());
         Vector<double, 5> inboard = next;
         descend_hinges<double, false>(
             n, [&](int i) -> HingedFrame<double> { return b[static_cast<std::size_t>(i)]; }, kept, first, next,
-            [&](int i, BodyAcceleration<double> const& of_body) {
+            [&](int i, HingedFrame<double> const&, BodyAcceleration<double> const& of_body) {
                 a[static_cast<std::size_t>(i)] = of_body;
                 inboard = inboard_force(b[static_cast<std::size_t>(i)], of_body, inboard);
-            });
+            },
+            [&](int i, double of_hinge) { about_hinge[static_cast<std::size_t>(i)] = of_hinge; });
 
         Difference begins;
         for (int i = 0; i < 5; ++i) begins.add(inboard[i], first[i]);
         EXPECT_LE(begins.value(), tolerance(n)) << seed;
         Vec3 torque = moment(b[0].handle1(), first), force = push(b[0].handle1(), first);  // by the inboard joint, about the body's centre
-        Difference joints, last;
+        Difference joints, hinges, last;
         double largest = 0, off = 0;
         for (std::size_t k = 0; k < b.size(); ++k) {
             largest = std::max({largest, norm(torque), norm(force), norm(b[k].torque), norm(b[k].force)});
@@ -171,9 +173,12 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
                 auto const in = along(b[k].handle2(), a[k].alpha, a[k].a + b[k].inward2);
                 auto const out = along(b[k + 1].handle1(), a[k + 1].alpha, a[k + 1].a + b[k + 1].inward1) + b[k + 1].bias;
                 for (int i = 0; i < 5; ++i) joints.add(in[i], out[i]);
+                double const before = dot(b[k].e2.column(2), a[k].alpha), after = dot(b[k + 1].e1.column(2), a[k + 1].alpha);
+                hinges.add(before + about_hinge[k + 1], after);
             }
         }
         EXPECT_LE(joints.value(), tolerance(n)) << seed;
+        EXPECT_LE(hinges.value(), tolerance(n)) << seed;
         EXPECT_LE(off / largest, tolerance(n)) << seed;  // no torque about a hinge
         EXPECT_LE(last.value(), tolerance(n) * std::max(1.0, largest)) << seed;
     }

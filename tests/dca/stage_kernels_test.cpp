@@ -25,7 +25,7 @@ std::unique_ptr<ChainSolver> make_stage_solver(ChainGroup const& group, Executor
 
 dca::StageRecords records_of(ChainGroup const& group) {
     return group.handles == Handles::articulated ? dca::ArticulatedSweeps<dca::ArticulatedLeaf<false>>::in_stage
-                                                 : dca::stage_records(group.directions);
+                                                 : dca::stage_records(group.directions, group.handles == Handles::projected);
 }
 
 struct NamedGpu {
@@ -201,6 +201,13 @@ TEST_F(StageKernels, RunsOnHinges) {
                 scene_of({chain(RandomJoints::revolute, bodies), chain(RandomJoints::universal, 20), chain(RandomJoints::revolute, 64)}));
         }
     EXPECT_GT(StageSpace::seen.teams, 0);
+}
+/// More than a block of stages that lanes of a warp climb together has: the first one is narrow then, and keeps its nodes for the way down.
+TEST_F(StageKernels, ManyRunsOnHinges) {
+    if (!alone()) return;
+    h100_alone_ = true;
+    expect_same(scene_of({random_chain(5, {.bodies = 9000, .joints = RandomJoints::revolute, .base = Base::fixed})}));
+    EXPECT_GT(StageSpace::seen.most_stages, 1U);
 }
 
 /// What quick quotients and roots leave to others.

@@ -151,9 +151,9 @@ class Walk {
 TEST_P(Stages, EveryItemIsDoneOnceAndAfterWhatItNeeds) {
     std::vector<StageSizes> const all_sizes = {{1, 2, 0},
                                                {4, 8, 2},
-                                               stage_sizes(stage_records(1), 232448, 8),
-                                               stage_sizes(stage_records(3), 101376, 0),
-                                               stage_sizes(stage_records(6), 232448, 8)};
+                                               stage_sizes(stage_records(1, true), 232448, 8),
+                                               stage_sizes(stage_records(3, true), 101376, 0),
+                                               stage_sizes(stage_records(6, false), 232448, 8)};
     bool const large = *std::max_element(GetParam().begin(), GetParam().end()) > 100000;
     for (int const ranks : large ? std::vector<int>{1, 3} : std::vector<int>{1, 2, 3, 5})
         for (bool const pairwise : large ? std::vector<bool>{false} : std::vector<bool>{false, true})
@@ -216,8 +216,9 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Stages,
 /// With a segment a thread for the parts of runs.
 TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
     for (std::int64_t const shared_bytes : {65536, 101376, 166912, 232448})
-        for (StageRecords const& records : {stage_records(1), stage_records(2), stage_records(3), stage_records(4), stage_records(5),
-                                            stage_records(6), ArticulatedSweeps<ArticulatedLeaf<false>>::in_stage}) {
+        for (StageRecords const& records :
+             {stage_records(1, true), stage_records(2, true), stage_records(3, true), stage_records(4, true), stage_records(5, true),
+              stage_records(6, false), ArticulatedSweeps<ArticulatedLeaf<false>>::in_stage}) {
             StageSizes const sizes = stage_sizes(records, shared_bytes, 8);
             Schedule const s = make_schedule(Partition({100000}, false, 1), 0);
             Stage const stage = plan_stages(s.runs, s.levels, s.roots, s.slots, restricted(s), sizes).stages.front();
@@ -232,7 +233,7 @@ TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
 TEST(Stages, OneLaunchForSmallChainsAndFiveForAny) {
     /// Launches of a sweep up and down, on a GPU with clusters.
     auto const launches = [](std::vector<std::int64_t> const& lengths, int directions) {
-        StageSizes const sizes = stage_sizes(stage_records(directions), 232448, 8);
+        StageSizes const sizes = stage_sizes(stage_records(directions, directions < 6), 232448, 8);
         Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
         StagePlan const plan = plan_stages(s.runs, s.levels, s.roots, s.slots, restricted(s), sizes);
         bool const together = plan.stages.size() > 1 && plan.stages[plan.stages.size() - 2].blocks() <= sizes.together;

@@ -104,6 +104,79 @@ TEST(AtOnceInJoints, IsASolution) {
             }
 }
 
+/// What chains on hinges leave to their solver, and take from it, is what bodies' loads and accelerations say; no rank matters to a bit.
+TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
+    using Add = void (*)(BodyArrays&);
+    Vec3 static const ones{{1, 2, 3}};
+    Add const nothing = [](BodyArrays&) {}, dampers = [](BodyArrays& b) { b.damping.assign(b.joint.size(), ones); },
+              wrenches = [](BodyArrays& b) { b.wrench.assign(b.joint.size(), {ones, ones}); };
+    for (char const* const base : {"base: free, ", "base: fixed, "})
+        for (auto const& [bodies, next] : std::vector<std::pair<int, int>>{{1, 16}, {2, 17}, {16, 33}, {17, 1}, {70, 2}, {333, 129}})
+            for (Add const add : {nothing, dampers, wrenches}) {
+                SCOPED_TRACE(std::string(base) + std::to_string(bodies) + ", " + std::to_string(next) +
+                             (add == dampers    ? ", dampers"
+                              : add == wrenches ? ", wrenches"
+                                                : ""));
+                auto const chain = [&](int seed, int length) {
+                    return std::string("{") + base + "generator: {random: {seed: " + std::to_string(seed) +
+                           ", joint: revolute, bodies: " + std::to_string(length) + "}}}";
+                };
+                std::string const chains = chain(3, bodies) + ", " + chain(4, next) + ", " + chain(5, 40);
+                Scene s = parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
+                for (ChainSpec& spec : s.chains) add(spec.bodies);
+                s.solver.backend = Backend::segments;
+                auto const accelerations = [&](Communicator const& communicator, bool leaves) {
+                    ChainSystem system(s, Axes::joint, communicator);
+                    bool by_hinges = false;  // a chain of one body is of another group
+                    for (JointDynamics* const group : system.joint()) {
+                        by_hinges = by_hinges || group->solver().goes_by_hinges();
+                        leaves ? group->update_to_solve_once() : group->update_configuration();
+                        group->solve_once();
+                        group->set_rates();
+                    }
+                    EXPECT_TRUE(by_hinges);
+                    return system.accelerations();
+                };
+                auto const left = accelerations(testing::world(), true), told = accelerations(testing::world(), false);
+                double const tolerance = 64 * static_cast<double>(s.bodies()) * 0x1p-53;
+                auto const expect_near = [tolerance](std::vector<Vec3> const& a, std::vector<Vec3> const& b, char const* what) {
+                    ASSERT_EQ(a.size(), b.size());
+                    for (std::size_t k = 0; k < a.size(); ++k) EXPECT_LE(norm(a[k] - b[k]), tolerance * largest(b)) << what << k;
+                };
+                expect_near(left.joint_acceleration, told.joint_acceleration, "joint ");
+                expect_near(left.base_acceleration, told.base_acceleration, "base ");
+                expect_near(left.acceleration, told.acceleration, "body ");
+                expect_near(left.alpha, told.alpha, "turning body ");
+                if (testing::world().rank() > 0) continue;
+                auto const alone = accelerations(*serial_communicator(), true);
+                EXPECT_TRUE(same_bits(alone.joint_acceleration, left.joint_acceleration));
+                EXPECT_TRUE(same_bits(alone.base_acceleration, left.base_acceleration));
+                EXPECT_TRUE(same_bits(alone.joint_force, left.joint_force));
+            }
+}
+/// Whatever is asked for after a step, and how often.
+TEST(HingedChains, AreFoundAsOftenAsTheyAreAskedFor) {
+    Scene s = parse_scene("chains: [{base: free, generator: {random: {seed: 3, joint: revolute, bodies: 49}}}]", "scene.yaml");
+    s.solver.backend = Backend::segments;
+    ChainSystem system(s, Axes::joint, testing::world());
+    JointDynamics& group = *system.joint().front();
+    system.evaluate(false);
+    ChainSystem::Accelerations const once = system.accelerations();
+    EXPECT_LE(system.residual(), system.residual_bound());
+    EXPECT_LE(system.residual(), system.residual_bound());
+    group.motion();
+    EXPECT_TRUE(same_bits(system.accelerations().joint_acceleration, once.joint_acceleration));
+    EXPECT_TRUE(same_bits(system.accelerations().joint_force, once.joint_force));
+    system.evaluate();
+    EXPECT_LE(system.residual(), system.residual_bound());
+    system.evaluate(false);
+    EXPECT_TRUE(same_bits(system.accelerations().joint_acceleration, once.joint_acceleration));
+    system.refine();
+    EXPECT_LE(system.residual(), system.residual_bound());
+    system.evaluate(false);
+    EXPECT_LE(system.residual(), system.residual_bound());
+}
+
 /// A drift that goes on by single sweeps is the drift with as many of them.
 TEST_P(AtOnce, DriftsGoOnByASweep) {
     constexpr double h = 0.002;

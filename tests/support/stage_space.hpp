@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "dca/tree_solver.hpp"
@@ -73,6 +74,7 @@ class StageSpace : public HostSpace {
 
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
+        for (std::vector<double>& kept : tree.kept_) std::fill(kept.begin(), kept.end(), std::numeric_limits<double>::quiet_NaN());
         walk(tree).climb(sweep);
     }
     template <class Sweep>

@@ -43,15 +43,15 @@ template <int K, class Real>
 void write_directions(DirectionsView const& view, Abreast<Real> const& bodies, Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, bodies, value);
 }
-/// Every body's record of N numbers, `index` of it. Bodies with the same one lie together.
-template <int N, class Real>
+/// Every body's first numbers of records that are `apart`, `index` of it. Bodies with the same one lie together.
+template <int apart, int N, class Real>
 Vector<Real, N> pick(double const* records, std::int32_t const* index, Abreast<Real> const& bodies, Vector<Real, N> v) {
     if (index[bodies.first] == index[bodies.first + Real::lanes - 1]) {
-        for (int i = 0; i < N; ++i) v[i] = Real(records[std::int64_t{N} * index[bodies.first] + i]);
+        for (int i = 0; i < N; ++i) v[i] = Real(records[std::int64_t{apart} * index[bodies.first] + i]);
         return v;
     }
     std::int64_t at[Real::lanes];
-    for (int j = 0; j < Real::lanes; ++j) at[j] = std::int64_t{N} * index[bodies.first + j];
+    for (int j = 0; j < Real::lanes; ++j) at[j] = std::int64_t{apart} * index[bodies.first + j];
     for (int i = 0; i < N; ++i) v[i] = Real::pick(records + i, at);
     return v;
 }

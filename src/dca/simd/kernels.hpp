@@ -34,7 +34,8 @@ class BodiesInTile {
             if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
             loads_.torque = tile.in(work.loads.torque);
             loads_.omega = tile.in(work.loads.omega);
-            loads_.bias = tile.template in_directions<K>(work.loads.bias);
+            loads_.hinge_rate = tile.in(work.loads.hinge_rate);
+            if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
             loads_.gyroscopic = work.loads.gyroscopic;
         }
     }
@@ -100,8 +101,13 @@ class RunsInTile {
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
 
     explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
-        out_.acceleration = tile_.out(work.out.acceleration);
-        out_.alpha = tile_.out(work.out.alpha);
+        if (View<2> const& of_hinges = work.out.hinge_acceleration; of_hinges.origin) {
+            View<1> const first = tile_.out(View<1>{of_hinges.origin, of_hinges.pitch, of_hinges.size});
+            out_.hinge_acceleration = {first.origin, first.pitch, first.size};  // the other component goes straight to its place
+        } else {
+            out_.acceleration = tile_.out(work.out.acceleration);
+            out_.alpha = tile_.out(work.out.alpha);
+        }
         out_.joint_force = tile_.template out_directions<Leaf::K>(work.out.joint_force);
     }
     /// The next item's bodies usually follow, or come before where the way is back.
@@ -310,7 +316,9 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             count,
             [&](int i) {
                 if (i % part_length == 0) fill(runs, i / part_length, 1);
-                return bodies_.leaf.hinged(bodies_.loads, Column<Real>{i % part_length});
+                auto body = bodies_.leaf.hinged(bodies_.loads, Column<Real>{i % part_length});
+                if (i == 0) take_first_biases(runs, body);
+                return body;
             },
             kept);
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
@@ -326,21 +334,25 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             count,
             [&](int i) {
                 if (i % part_length == part_length - 1) fill(runs, i / part_length, -1);
-                return bodies_.leaf.hinged_frame(bodies_.loads, Column<Real>{i % part_length});
+                auto body = bodies_.leaf.hinged_frame(bodies_.loads, Column<Real>{i % part_length});
+                if (i == 0) take_first_biases(runs, body);
+                return body;
             },
             Kept{*this, runs, place_of(item)}, first, next,
-            [&](int i, BodyAcceleration<Real> const& a) {
+            [&](int i, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
                 Column<Real> const here{i % part_length};
                 if (out_.acceleration.origin) {
                     write(out_.alpha, here, a.alpha);
                     write(out_.acceleration, here, a.a);
                 }
+                if (out_.hinge_acceleration.origin && i == count - 1) end_at(runs, frame, a);
                 if (out_.joint_force) {
                     outboard = i == 0 ? first : inboard_force(bodies_.leaf.hinged(bodies_.loads, here), a, outboard);
                     write_directions<K>(out_.joint_force, here, outboard);
                 }
-                if (here.at == 0) empty(runs, i / part_length);
-            });
+                if (i == 0) begin_at(runs, frame, a);
+            },
+            [&](int i, Real const& of_hinge) { turn(runs, i, of_hinge); });
     }
 
   private:
@@ -350,7 +362,11 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         double* place;
 
         void put(int i, ReleasedHinge<Real> const& hinge) {
-            store_vectors<Real>(of_hinge(i), hinge);
+            double* const kept = of_hinge(i);
+            int const further = ahead * numbers_of_hinge + (i + ahead < count ? 0 : numbers_of_end);
+            prefetch_to_write<Real>(kept, further, numbers_of_hinge);
+            if (i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
+            store_vectors<Real>(kept, hinge);
             watch(i, hinge.inverse.not_positive());
         }
         void put(RunsEnd<Real> const& end) {
@@ -359,20 +375,64 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         ReleasedHinge<Real> hinge(int i) const {
             ReleasedHinge<Real> h;
-            load_vectors<Real>(of_hinge(i), h);
+            double const* const kept = of_hinge(i);
+            prefetch<Real>(kept, -ahead * numbers_of_hinge - (i > ahead ? 0 : numbers_of_end), numbers_of_hinge);
+            load_vectors<Real>(kept, h);
             return h;
         }
         RunsEnd<Real> end() const {
             RunsEnd<Real> e;
+            prefetch<Real>(place, -kept_of_hinged_run * lanes, numbers_of_end);
             load_vectors<Real>(place, e);
             return e;
         }
 
       private:
+        // What is asked for is so many hinges further, in the order of items: the next one's end lies between.
+        static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
         double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
         void watch(int i, unsigned bad) const { note_lost<Real>(all.work_.sweeps, runs.body, i, bad); }
     };
     double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
+    GroupView const& group() const { return work_.group; }
+    template <class Condition>
+    static bool any(RunsInLanes const& runs, Condition const& of_first_body) {
+        bool found = false;
+        for (int j = 0; j < lanes; ++j) found = found || of_first_body(runs.body[j]);
+        return found;
+    }
+    /// In lanes whose runs begin a chain.
+    void take_first_biases(RunsInLanes const& runs, HingedFrame<Real>& body) const {
+        if (!bodies_.loads.hinge_rate.origin) return;
+        alignas(64) double bias[K * lanes];
+        store_vectors<Real>(bias, body.bias);
+        for (int j = 0; j < lanes; ++j)
+            if (group().is_first[runs.body[j]])
+                for (int n = 0; n < K; ++n) bias[n * lanes + j] = work_.loads.bias.origin[n * work_.loads.bias.pitch + runs.body[j]];
+        load_vectors<Real>(bias, body.bias);
+    }
+    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate.
+    void end_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) const {
+        View<2> const& to = work_.out.hinge_acceleration;
+        scatter(View<1>{to.origin + to.pitch, to.pitch, to.size}, runs.body, count, Vector<Real, 1>{{about_outboard_hinge(frame, a)}});
+        if (any(runs, [&](std::int64_t body) { return body + count >= group().size || group().is_last[body + count]; }))
+            scatter_accelerations(runs, count - 1, a);
+    }
+    void begin_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
+        if (out_.hinge_acceleration.origin && any(runs, [&](std::int64_t body) { return group().is_first[body]; }))
+            scatter_accelerations(runs, 0, a);
+        turn(runs, 0, about_inboard_hinge(frame, a));
+    }
+    void scatter_accelerations(RunsInLanes const& runs, int i, BodyAcceleration<Real> const& a) const {
+        scatter(work_.out.alpha, runs.body, i, a.alpha);
+        scatter(work_.out.acceleration, runs.body, i, a.a);
+    }
+    /// The last that is known of body i of the runs.
+    void turn(RunsInLanes const& runs, int i, Real const& of_hinge) {
+        View<2> const& to = out_.hinge_acceleration;
+        if (to.origin) write(View<1>{to.origin, to.pitch, to.size}, Column<Real>{i % part_length}, Vector<Real, 1>{{of_hinge}});
+        if (i % part_length == 0) empty(runs, i / part_length);
+    }
 };
 
 template <class Real, class Leaf>

@@ -29,6 +29,15 @@ CATENA_HD void write(View<D> const& view, Column<Real> const& c, Vector<Real, D>
     CATENA_UNROLL
     for (int i = 0; i < D; ++i) value[i].store(view.origin + i * view.pitch + c.at * Real::lanes);
 }
+/// To bodies body[j] + further, straight to their field.
+template <class Real, int D>
+void scatter(View<D> const& view, std::int64_t const* body, int further, Vector<Real, D> const& value) {
+    alignas(64) double of_lane[Real::lanes];
+    for (int i = 0; i < D; ++i) {
+        value[i].store(of_lane);
+        for (int j = 0; j < Real::lanes; ++j) view.origin[i * view.pitch + body[j] + further] = of_lane[j];
+    }
+}
 template <int K, class Real>
 CATENA_HD Vector<Real, K> read_directions(ConstDirectionsView const& view, Column<Real> const& c) {
     return read(ConstView<K>{view.origin, view.pitch, 0}, c);
@@ -36,6 +45,11 @@ CATENA_HD Vector<Real, K> read_directions(ConstDirectionsView const& view, Colum
 template <int K, class Real>
 CATENA_HD void write_directions(DirectionsView const& view, Column<Real> const& c, Vector<Real, K> const& value) {
     write(View<K>{view.origin, view.pitch, 0}, c, value);
+}
+/// A run's first body may: HingedRunsSideBySide.
+template <class Real>
+CATENA_HD bool begins_chain(GroupView const&, Column<Real> const&) {
+    return false;
 }
 template <class Real>
 CATENA_HD bool ends_chain(GroupView const&, Column<Real> const&) {
