@@ -11,19 +11,8 @@ struct RatesView {
     View<3> base_acceleration;  // one a piece: of a free base's origin, W
 };
 
-/// AccelerationsView::hinge_acceleration of the solution found last.
-struct FoundHinges {
-    ConstView<2> acceleration;            // absent: bodies' accelerations are known
-    std::uint8_t const* joint = nullptr;  // whether it says joint k's; it does those of bodies side by side (joint_lanes.cpp)
-    CATENA_HD bool has(std::int64_t k) const { return acceleration.origin && joint[k] != 0; }
-    template <dca::SeveralBodies Place>
-    CATENA_HD bool has(Place const&) const {
-        return acceleration.origin;
-    }
-};
-
 struct JointChains : JointLoads {
-    FoundHinges hinges;
+    ConstView<2> hinge_acceleration;  // AccelerationsView's, of `in_run`; absent: bodies' accelerations are known
 
     /// Of body k along the axes of its outboard joint: angular acceleration; that of handle 2 along the last axis.
     template <class Place>
@@ -77,7 +66,12 @@ struct JointChains : JointLoads {
             if (LocalDrive const* const d = drive_of(k))
                 return {{scene::acceleration_at(d->first, time),
                          joints().joint[k] == JointType::universal ? scene::acceleration_at(d->second, time) : 0.0, 0}};
-        if (hinges.has(k)) return {{rate_of_hinge(k), RealAt<Place>(0), RealAt<Place>(0)}};
+        if (hinge_acceleration.origin && in_run.has(k)) {
+            auto inboard = read(hinge_acceleration, k, 1);
+            if constexpr (is_one_body<Place>)
+                if (k == 0) inboard = outboard_end.at(-1, 2);
+            return {{read(hinge_acceleration, k, 0) - inboard, RealAt<Place>(0), RealAt<Place>(0)}};
+        }
         Vector3 const turning = read(alpha, k);
         if (joints().type(k) == JointType::free) return turning;
         auto const axes1 = joints().axes(k), to_meeting = turn(k);
@@ -100,20 +94,9 @@ struct JointChains : JointLoads {
         return orientation(k) * (acceleration.load(k) + cross(alpha.load(k), r) + cross(w, cross(w, r))) + given.gravity;
     }
     CATENA_HD bool on_free_base(std::int64_t k) const { return joints().joint[k] == JointType::free; }
-    /// Precondition: it was found.
-    template <class Place>
-    CATENA_HD RealAt<Place> rate_of_hinge(Place k) const {
-        auto inboard = read(hinges.acceleration, k, 1);
-        if constexpr (is_one_body<Place>)
-            if (k == 0) inboard = outboard_end.at(-1, 2);
-        return read(hinges.acceleration, k, 0) - inboard;
-    }
     template <class Place>
     CATENA_HD void set_rates(Place k, RatesView const& out) const {
-        if (hinges.has(k))  // their other components are zero from the first
-            write(View<1>{out.qdd.origin, out.qdd.pitch, out.qdd.size}, k, Vector<RealAt<Place>, 1>{{rate_of_hinge(k)}});
-        else
-            write(out.qdd, k, rate(k));
+        write(out.qdd, k, rate(k));
         if constexpr (is_one_body<Place>)
             if (on_free_base(k)) out.base_acceleration.store(joints().piece_of(k), base_rate(k));
     }

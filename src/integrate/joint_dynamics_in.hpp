@@ -114,16 +114,8 @@ class JointDynamicsIn final : public JointDynamics {
         relative_ = false;
     }
 
-    void update_configuration() override {
-        leaves_loads_ = false;
-        has_matrices_ = false;
-        update(false);
-    }
-    void update_to_solve_once() override {
-        leaves_loads_ = goes_by_hinges_;
-        has_matrices_ = false;
-        update(false);
-    }
+    void update_configuration() override { go_to_configuration(false); }
+    void update_to_solve_once() override { go_to_configuration(goes_by_hinges_); }
     void assemble_matrices() override {
         solver_->assemble_matrices(configuration());
         has_matrices_ = true;
@@ -233,6 +225,11 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void set_loads() {
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
+    }
+    void go_to_configuration(bool leaves_loads) {
+        leaves_loads_ = leaves_loads;
+        has_matrices_ = false;
+        update(false);
     }
     void update(bool again) { needs_positions_ ? update<true>(again) : update<false>(again); }
     /// `again`: the forces on carried beads stay.
@@ -346,7 +343,6 @@ class JointDynamicsIn final : public JointDynamics {
         return {alpha_.view(), acceleration_.view(), {}, {}, has_hinges_ ? hinge_acceleration_.view() : View<2>{}};
     }
     void find_all();
-    /// Of every joint whether its hinge is within a run of several bodies, or joins one to the run before.
     static std::vector<std::uint8_t> hinges_in_runs(ChainGroup const& group) {
         std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
         for (dca::Run const& run : group.schedule.runs)
@@ -380,8 +376,9 @@ class JointDynamicsIn final : public JointDynamics {
         c.acceleration = acceleration_.view();
         c.bias = bias_.view();
         c.outboard_end = outboard_end_.view();
-        if (leaves_loads_) c.left = {leaves_torques(), in_run_list_.data()};
-        if (has_hinges_) c.hinges = {hinge_acceleration_.view(), in_run_list_.data()};
+        c.in_run = {in_run_list_.data()};
+        c.left = {leaves_torques(), leaves_loads_};
+        if (has_hinges_) c.hinge_acceleration = hinge_acceleration_.view();
         return c;
     }
     /// With nothing but what was solved for last.
@@ -409,7 +406,7 @@ class JointDynamicsIn final : public JointDynamics {
     std::vector<JointedTip> tip_;
     double reach_;
     bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_hinges_;
-    std::vector<std::uint8_t> in_run_;  // as FoundHinges::joint
+    std::vector<std::uint8_t> in_run_;  // as HingesInRuns
     List<std::uint8_t> in_run_list_;
     bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
     bool leaves_loads_ = false;     // some of those of the configuration updated last are the solver's to find

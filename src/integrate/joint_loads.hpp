@@ -26,19 +26,24 @@ struct ImplicitJoints {
     }
 };
 
-/// What the solver makes by itself of a scene's velocities: LoadsView::gyroscopic, hinge_rate.
-struct LeftToSolver {
-    bool gyroscopic = false;              // nothing else is in the torques
-    std::uint8_t const* joint = nullptr;  // whether it makes joint k's bias, as it does of bodies side by side; null: none
-    CATENA_HD bool has_bias(std::int64_t k) const { return joint && joint[k] != 0; }
+/// Hinges that a solver which goes_by_hinges() knows by itself: of runs of several bodies, but of no body that begins a chain. Those of
+/// bodies side by side are such (joint_lanes.cpp).
+struct HingesInRuns {
+    std::uint8_t const* joint = nullptr;
+    CATENA_HD bool has(std::int64_t k) const { return joint[k] != 0; }
     template <dca::SeveralBodies Place>
-    CATENA_HD bool has_bias(Place const&) const {
-        return joint;
+    CATENA_HD bool has(Place const&) const {
+        return true;
     }
+};
+/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, and hinge_rate.
+struct LeftToSolver {
+    bool gyroscopic = false, biases = false;
 };
 
 struct JointLoads {
     JointScan scan;
+    HingesInRuns in_run;
     LeftToSolver left;
     ImplicitJoints implicit;
     BodyLoadsView given;
@@ -280,7 +285,7 @@ struct JointLoads {
     template <class Place>
     CATENA_HD void set_loads(Place k) const {
         if (!left.gyroscopic) set_wrench(k);
-        if (!left.has_bias(k)) set_bias(k, turn(k), joints().axes(k));
+        if (!left.biases || !in_run.has(k)) set_bias(k, turn(k), joints().axes(k));
     }
     template <class Place>
     CATENA_HD void set_wrench(Place k) const {

@@ -3,60 +3,10 @@
 
 #include <new>
 #include <type_traits>
-#include <utility>
 
-#include "dca/evaluation.hpp"
-#include "dca/simd/records.hpp"
-#include "dca/simd/runs.hpp"
-#include "dca/simd/tile.hpp"
+#include "dca/simd/hinged_runs.hpp"
 
 namespace catena::dca {
-
-/// Bodies side by side as Evaluation takes them: their constants in the order of lanes, the rest in a tile.
-template <class Real, class Leaf>
-class BodiesInTile {
-    static constexpr int K = Leaf::K;
-
-  public:
-    template <class Tile>
-    BodiesInTile(Tile& tile, RunWork<Leaf> const& work) {
-        loads_.force = tile.in(work.loads.force);
-        if constexpr (Leaf::beads) {
-            group_.inverse_mass = tile.in(work.group.inverse_mass);
-            at_.position = tile.in(work.configuration.position, true);
-            loads_.velocity = tile.in(work.loads.velocity, true);
-        } else {
-            using Frames = typename Leaf::Frames;
-            at_.rotation = tile.in(work.configuration.rotation);
-            at_.r2 = tile.in(work.configuration.r2);
-            if constexpr (Frames::in_joints) at_.axes2 = tile.in(work.configuration.axes2);
-            if constexpr (Frames::on_links) at_.direction = tile.in(work.configuration.direction, true);
-            if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
-            loads_.torque = tile.in(work.loads.torque);
-            loads_.omega = tile.in(work.loads.omega);
-            loads_.hinge_rate = tile.in(work.loads.hinge_rate);
-            if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
-            loads_.gyroscopic = work.loads.gyroscopic;
-        }
-    }
-    /// Those of a part.
-    auto with(Constants<Real> constants) const {
-        GroupView group = group_;
-        each_constant<Leaf>(group, [&constants]<int D>(ConstView<D>& view) { view = constants.template next<D>(); });
-        if constexpr (Leaf::beads) {
-            return typename Leaf::Moving{group, nullptr, at_, loads_};
-        } else {
-            Leaf leaf(group);
-            leaf.set(at_);
-            return Resting<Leaf>{leaf, nullptr, loads_};
-        }
-    }
-
-  private:
-    GroupView group_{};
-    ConfigurationView at_{};
-    LoadsView loads_{};
-};
 
 /// The joints between segments, one a lane, as the way down needs them.
 template <class Real, int K>
@@ -75,78 +25,12 @@ struct NodeInLanes {
 template <class Real, int K>
 inline constexpr bool fits_nodes =
     sizeof(NodeInLanes<Real, K>) == node_numbers<K> * sizeof(Real) && sizeof(OneSided<Real, K>) == passed_numbers<K> * sizeof(Real);
-/// Of joints number[j] + further, those whose bit j of `bad` is set.
-template <class Real, class Leaf>
-void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, unsigned bad) {
-    for (int j = 0; bad != 0 && j < Real::lanes; ++j)
-        if ((bad >> j & 1U) != 0) sweeps.note({static_cast<unsigned long long>(number[j] + further)});
-}
 template <class Leaf, class Real, int K>
 void watch(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, Symmetric<Real, K> const& factor) {
     unsigned bad = 0;
     for (int i = 0; i < K; ++i) bad |= factor(i, i).not_positive();
     note_lost<Real>(sweeps, number, further, bad);
 }
-
-/// Runs side by side, whose bodies are in a tile a part at a time, with what is done to them there.
-template <class Real, class Leaf>
-class RunsInTile {
-    // Beads' neighbours are of the same run for the most part.
-    static constexpr bool by_runs = Leaf::beads;
-    static_assert(!by_runs || constants_of<Leaf> == 0);
-    static constexpr int lanes = Real::lanes;
-    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
-
-  protected:
-    using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
-
-    explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
-        if (View<2> const& of_hinges = work.out.hinge_acceleration; of_hinges.origin) {
-            View<1> const first = tile_.out(View<1>{of_hinges.origin, of_hinges.pitch, of_hinges.size});
-            out_.hinge_acceleration = {first.origin, first.pitch, first.size};  // the other component goes straight to its place
-        } else {
-            out_.acceleration = tile_.out(work.out.acceleration);
-            out_.alpha = tile_.out(work.out.alpha);
-        }
-        out_.joint_force = tile_.template out_directions<Leaf::K>(work.out.joint_force);
-    }
-    /// The next item's bodies usually follow, or come before where the way is back.
-    void fill(RunsInLanes const& runs, int p, int way) {
-        begin_ = {by_runs ? p * part_length : 0};
-        if (!by_runs)
-            tile_.fill(columns(runs, p), way * bodies_of_item);
-        else if (p == (way > 0 ? 0 : parts_of_run - 1))
-            tile_.fill(runs.body, way * bodies_of_item);
-        if constexpr (constants_of<Leaf> > 0) {
-            constexpr int block = constants_of<Leaf> * part_length * lanes;
-            double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            prefetch<Real>(here, 2 * way * block, block);
-            bodies_ = in_tile_.with({here});
-        }
-    }
-    void empty(RunsInLanes const& runs, int p) {
-        if (!by_runs)
-            tile_.empty(columns(runs, p), -bodies_of_item);
-        else if (p == 0)
-            tile_.empty(runs.body, -bodies_of_item);
-    }
-
-    RunWork<Leaf> const& work_;
-
-  private:
-    std::int64_t const* columns(RunsInLanes const& runs, int p) {
-        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
-        return first_;
-    }
-    Tile<Real, by_runs ? longest_run : part_length> tile_;
-    BodiesInTile<Real, Leaf> in_tile_;
-    std::int64_t first_[lanes];
-
-  protected:
-    Bodies bodies_;
-    Column<Real> begin_;  // of the part in the tile
-    AccelerationsView out_{};
-};
 
 template <class Real, class Leaf>
 class RunsSideBySide : RunsInTile<Real, Leaf> {
@@ -294,144 +178,6 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
     void give(Kept const& kept, int i, Directions const& inboard, Directions const& outboard) {
         bodies_.accelerate(kept, inboard, outboard, out_);
         store_forces(GroupView{}, out_, begin_ + i, inboard, outboard);
-    }
-};
-
-/// Runs on hinges, by their inertias: as Evaluation::climb and descend.
-template <class Real, class Leaf>
-class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
-    static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
-    static constexpr int numbers_of_hinge = hinge_numbers * lanes;
-    using Base = RunsInTile<Real, Leaf>;
-    using Base::work_, Base::bodies_, Base::out_, Base::fill, Base::empty;
-    static_assert(sizeof(ReleasedHinge<Real>) == hinge_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == end_numbers * sizeof(Real));
-
-  public:
-    explicit HingedRunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
-
-    void climb(std::int64_t item) {
-        RunsInLanes const& runs = work_.runs[item];
-        Kept kept{*this, runs, place_of(item)};
-        auto const segment = climb_hinges<Real>(
-            count,
-            [&](int i) {
-                if (i % part_length == 0) fill(runs, i / part_length, 1);
-                auto body = bodies_.leaf.hinged(bodies_.loads, Column<Real>{i % part_length});
-                if (i == 0) take_first_biases(runs, body);
-                return body;
-            },
-            kept);
-        scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
-        scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
-    }
-    void descend(std::int64_t item) {
-        RunsInLanes const& runs = work_.runs[item];
-        Vector<Real, K> first, next;
-        gather<Real>(work_.sweeps.forces, runs.body, first);
-        gather<Real>(work_.sweeps.forces, runs.next, next);
-        Vector<Real, K> outboard = next;
-        descend_hinges<Real, false>(
-            count,
-            [&](int i) {
-                if (i % part_length == part_length - 1) fill(runs, i / part_length, -1);
-                auto body = bodies_.leaf.hinged_frame(bodies_.loads, Column<Real>{i % part_length});
-                if (i == 0) take_first_biases(runs, body);
-                return body;
-            },
-            Kept{*this, runs, place_of(item)}, first, next,
-            [&](int i, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
-                Column<Real> const here{i % part_length};
-                if (out_.acceleration.origin) {
-                    write(out_.alpha, here, a.alpha);
-                    write(out_.acceleration, here, a.a);
-                }
-                if (out_.hinge_acceleration.origin && i == count - 1) end_at(runs, frame, a);
-                if (out_.joint_force) {
-                    outboard = i == 0 ? first : inboard_force(bodies_.leaf.hinged(bodies_.loads, here), a, outboard);
-                    write_directions<K>(out_.joint_force, here, outboard);
-                }
-                if (i == 0) begin_at(runs, frame, a);
-            },
-            [&](int i, Real const& of_hinge) { turn(runs, i, of_hinge); });
-    }
-
-  private:
-    struct Kept {
-        HingedRunsSideBySide const& all;
-        RunsInLanes const& runs;
-        double* place;
-
-        void put(int i, ReleasedHinge<Real> const& hinge) {
-            double* const kept = of_hinge(i);
-            int const further = ahead * numbers_of_hinge + (i + ahead < count ? 0 : numbers_of_end);
-            prefetch_to_write<Real>(kept, further, numbers_of_hinge);
-            if (i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
-            store_vectors<Real>(kept, hinge);
-            watch(i, hinge.inverse.not_positive());
-        }
-        void put(RunsEnd<Real> const& end) {
-            store_vectors<Real>(place, end);
-            for (int i = 0; i < 6; ++i) watch(count - 1, end.factor(i, i).not_positive());
-        }
-        ReleasedHinge<Real> hinge(int i) const {
-            ReleasedHinge<Real> h;
-            double const* const kept = of_hinge(i);
-            prefetch<Real>(kept, -ahead * numbers_of_hinge - (i > ahead ? 0 : numbers_of_end), numbers_of_hinge);
-            load_vectors<Real>(kept, h);
-            return h;
-        }
-        RunsEnd<Real> end() const {
-            RunsEnd<Real> e;
-            prefetch<Real>(place, -kept_of_hinged_run * lanes, numbers_of_end);
-            load_vectors<Real>(place, e);
-            return e;
-        }
-
-      private:
-        // What is asked for is so many hinges further, in the order of items: the next one's end lies between.
-        static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
-        double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
-        void watch(int i, unsigned bad) const { note_lost<Real>(all.work_.sweeps, runs.body, i, bad); }
-    };
-    double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
-    GroupView const& group() const { return work_.group; }
-    template <class Condition>
-    static bool any(RunsInLanes const& runs, Condition const& of_first_body) {
-        bool found = false;
-        for (int j = 0; j < lanes; ++j) found = found || of_first_body(runs.body[j]);
-        return found;
-    }
-    /// In lanes whose runs begin a chain.
-    void take_first_biases(RunsInLanes const& runs, HingedFrame<Real>& body) const {
-        if (!bodies_.loads.hinge_rate.origin) return;
-        alignas(64) double bias[K * lanes];
-        store_vectors<Real>(bias, body.bias);
-        for (int j = 0; j < lanes; ++j)
-            if (group().is_first[runs.body[j]])
-                for (int n = 0; n < K; ++n) bias[n * lanes + j] = work_.loads.bias.origin[n * work_.loads.bias.pitch + runs.body[j]];
-        load_vectors<Real>(bias, body.bias);
-    }
-    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate.
-    void end_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) const {
-        View<2> const& to = work_.out.hinge_acceleration;
-        scatter(View<1>{to.origin + to.pitch, to.pitch, to.size}, runs.body, count, Vector<Real, 1>{{about_outboard_hinge(frame, a)}});
-        if (any(runs, [&](std::int64_t body) { return body + count >= group().size || group().is_last[body + count]; }))
-            scatter_accelerations(runs, count - 1, a);
-    }
-    void begin_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
-        if (out_.hinge_acceleration.origin && any(runs, [&](std::int64_t body) { return group().is_first[body]; }))
-            scatter_accelerations(runs, 0, a);
-        turn(runs, 0, about_inboard_hinge(frame, a));
-    }
-    void scatter_accelerations(RunsInLanes const& runs, int i, BodyAcceleration<Real> const& a) const {
-        scatter(work_.out.alpha, runs.body, i, a.alpha);
-        scatter(work_.out.acceleration, runs.body, i, a.a);
-    }
-    /// The last that is known of body i of the runs.
-    void turn(RunsInLanes const& runs, int i, Real const& of_hinge) {
-        View<2> const& to = out_.hinge_acceleration;
-        if (to.origin) write(View<1>{to.origin, to.pitch, to.size}, Column<Real>{i % part_length}, Vector<Real, 1>{{of_hinge}});
-        if (i % part_length == 0) empty(runs, i / part_length);
     }
 };
 

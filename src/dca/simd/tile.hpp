@@ -29,6 +29,10 @@ CATENA_HD void write(View<D> const& view, Column<Real> const& c, Vector<Real, D>
     CATENA_UNROLL
     for (int i = 0; i < D; ++i) value[i].store(view.origin + i * view.pitch + c.at * Real::lanes);
 }
+template <class Real, int D>
+View<1> component(View<D> const& view, int i) {
+    return {view.origin + i * view.pitch, view.pitch, view.size};
+}
 /// To bodies body[j] + further, straight to their field.
 template <class Real, int D>
 void scatter(View<D> const& view, std::int64_t const* body, int further, Vector<Real, D> const& value) {

@@ -1,0 +1,126 @@
+// Runs side by side, whose bodies lie in a tile: what all kernels of an instruction set have in common.
+#pragma once
+
+#include <utility>
+
+#include "dca/evaluation.hpp"
+#include "dca/simd/records.hpp"
+#include "dca/simd/runs.hpp"
+#include "dca/simd/tile.hpp"
+
+namespace catena::dca {
+
+/// Bodies side by side as Evaluation takes them: their constants in the order of lanes, the rest in a tile.
+template <class Real, class Leaf>
+class BodiesInTile {
+    static constexpr int K = Leaf::K;
+
+  public:
+    template <class Tile>
+    BodiesInTile(Tile& tile, RunWork<Leaf> const& work) {
+        loads_.force = tile.in(work.loads.force);
+        if constexpr (Leaf::beads) {
+            group_.inverse_mass = tile.in(work.group.inverse_mass);
+            at_.position = tile.in(work.configuration.position, true);
+            loads_.velocity = tile.in(work.loads.velocity, true);
+        } else {
+            using Frames = typename Leaf::Frames;
+            at_.rotation = tile.in(work.configuration.rotation);
+            at_.r2 = tile.in(work.configuration.r2);
+            if constexpr (Frames::in_joints) at_.axes2 = tile.in(work.configuration.axes2);
+            if constexpr (Frames::on_links) at_.direction = tile.in(work.configuration.direction, true);
+            if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
+            loads_.torque = tile.in(work.loads.torque);
+            loads_.omega = tile.in(work.loads.omega);
+            loads_.hinge_rate = tile.in(work.loads.hinge_rate);
+            if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
+            loads_.gyroscopic = work.loads.gyroscopic;
+        }
+    }
+    /// Those of a part.
+    auto with(Constants<Real> constants) const {
+        GroupView group = group_;
+        each_constant<Leaf>(group, [&constants]<int D>(ConstView<D>& view) { view = constants.template next<D>(); });
+        if constexpr (Leaf::beads) {
+            return typename Leaf::Moving{group, nullptr, at_, loads_};
+        } else {
+            Leaf leaf(group);
+            leaf.set(at_);
+            return Resting<Leaf>{leaf, nullptr, loads_};
+        }
+    }
+
+  private:
+    GroupView group_{};
+    ConfigurationView at_{};
+    LoadsView loads_{};
+};
+
+/// Of joints number[j] + further, those whose bit j of `bad` is set.
+template <class Real, class Leaf>
+void note_lost(TreeSweeps<Leaf> const& sweeps, std::int64_t const* number, int further, unsigned bad) {
+    for (int j = 0; bad != 0 && j < Real::lanes; ++j)
+        if ((bad >> j & 1U) != 0) sweeps.note({static_cast<unsigned long long>(number[j] + further)});
+}
+
+/// Runs side by side, whose bodies are in a tile a part at a time, with what is done to them there.
+template <class Real, class Leaf>
+class RunsInTile {
+    // Beads' neighbours are of the same run for the most part.
+    static constexpr bool by_runs = Leaf::beads;
+    static_assert(!by_runs || constants_of<Leaf> == 0);
+    static constexpr int lanes = Real::lanes;
+    static constexpr std::int64_t bodies_of_item = lanes * longest_run;
+
+  protected:
+    using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
+
+    explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
+        if (View<2> const& of_hinges = work.out.hinge_acceleration; of_hinges.origin) {
+            View<1> const first = tile_.out(component<Real>(of_hinges, 0));
+            out_.hinge_acceleration = {first.origin, first.pitch, first.size};  // the other component goes straight to its place
+        } else {
+            out_.acceleration = tile_.out(work.out.acceleration);
+            out_.alpha = tile_.out(work.out.alpha);
+        }
+        out_.joint_force = tile_.template out_directions<Leaf::K>(work.out.joint_force);
+    }
+    /// The next item's bodies usually follow, or come before where the way is back.
+    void fill(RunsInLanes const& runs, int p, int way) {
+        begin_ = {by_runs ? p * part_length : 0};
+        if (!by_runs)
+            tile_.fill(columns(runs, p), way * bodies_of_item);
+        else if (p == (way > 0 ? 0 : parts_of_run - 1))
+            tile_.fill(runs.body, way * bodies_of_item);
+        if constexpr (constants_of<Leaf> > 0) {
+            constexpr int block = constants_of<Leaf> * part_length * lanes;
+            double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
+            prefetch<Real>(here, 2 * way * block, block);
+            bodies_ = in_tile_.with({here});
+        }
+    }
+    void empty(RunsInLanes const& runs, int p) {
+        if (!by_runs)
+            tile_.empty(columns(runs, p), -bodies_of_item);
+        else if (p == 0)
+            tile_.empty(runs.body, -bodies_of_item);
+    }
+
+    RunWork<Leaf> const& work_;
+
+  private:
+    std::int64_t const* columns(RunsInLanes const& runs, int p) {
+        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
+        return first_;
+    }
+    Tile<Real, by_runs ? longest_run : part_length> tile_;
+    BodiesInTile<Real, Leaf> in_tile_;
+    std::int64_t first_[lanes];
+
+  protected:
+    Bodies bodies_;
+    Column<Real> begin_;  // of the part in the tile
+    AccelerationsView out_{};
+};
+
+}  // namespace catena::dca
