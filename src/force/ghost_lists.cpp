@@ -116,17 +116,17 @@ void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
     for (PointBlock const& block : blocks) grid.within(block.least(), block.most(), [&](Cell const& cell) { cells.insert(cell); });
     bool const has_room = own.empty() || find_place_aside(grid, cells);
     std::vector<PairRange> const ranges = communicator_.max(has_room ? 0.0 : 1.0) > 0 ? std::vector{longest} : plan_.ranges;
-    std::map<int, Meeting> meetings = meet(own, blocks, grid, {cells.begin(), cells.end()});
-    show(meetings);
-    for (auto& [rank, meeting] : meetings) {
+    meet(own, blocks, grid, {cells.begin(), cells.end()});
+    show();
+    for (auto& [rank, meeting] : meetings_) {
         meeting.taken = near_ones(meeting, ranges);
         find_place_among(meeting.theirs, meeting.taken);
         for (std::size_t i = 0; i < meeting.taken.size(); ++i)
             if (std::binary_search(plan_.partners.begin(), plan_.partners.end(), meeting.theirs.piece[i]))
                 meeting.taken[i] = 0;  // it comes
     }
-    swap(meetings, [](Meeting const& m) { return bytes_of(m.taken); }, [](Meeting& m) { return room_for(m.mine.piece.size(), m.asked); });
-    for (auto const& [rank, meeting] : meetings) {
+    swap([](Meeting const& m) { return bytes_of(m.taken); }, [](Meeting& m) { return room_for(m.mine.piece.size(), m.asked); });
+    for (auto const& [rank, meeting] : meetings_) {
         Lists& l = lists[rank];
         for (std::size_t i = 0; i < meeting.asked.size(); ++i)
             for (std::int64_t k = 0; meeting.asked[i] != 0 && k < piece(meeting.mine.piece[i]); ++k)
@@ -143,6 +143,12 @@ void GhostLists::add_near(std::span<Vec3 const> own, ListsOfRank& lists) {
     }
 }
 
+void GhostLists::Shown::clear() {
+    piece.clear();
+    position.clear();
+    first.assign(1, 0);
+}
+
 void GhostLists::Shown::add(std::int64_t bead, std::span<Vec3 const> positions) {
     piece.push_back(bead);
     position.insert(position.end(), positions.begin(), positions.end());
@@ -150,11 +156,10 @@ void GhostLists::Shown::add(std::int64_t bead, std::span<Vec3 const> positions) 
 }
 
 /// With each rank whose beads lie in or around this one's cells, which is mutual. `cells`: what `blocks` reach into.
-std::map<int, GhostLists::Meeting> GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks, Grid const& grid,
-                                                    std::vector<Cell> const& cells) {
+void GhostLists::meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks, Grid const& grid, std::vector<Cell> const& cells) {
     std::vector<std::vector<Cell>> const of_ranks = blocks_of_ranks(communicator_, cells);
     PointGroups const pieces{own, first_of_piece_};
-    std::map<int, Meeting> meetings;
+    for (auto& [rank, meeting] : meetings_) meeting.mine.clear();
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         if (rank == communicator_.rank()) continue;
         CellSet const around = grid.with_surroundings(of_ranks[rank]);
@@ -162,51 +167,50 @@ std::map<int, GhostLists::Meeting> GhostLists::meet(std::span<Vec3 const> own, s
             bool is_shown = false;
             grid.within(block.least(), block.most(), [&](Cell const& cell) { is_shown = is_shown || around.contains(cell); });
             for (std::int64_t i = block.begin; is_shown && i < block.end; ++i)
-                meetings[rank].mine.add(own_bead(first_of_piece_[i]), pieces.group(i));
+                meetings_[rank].mine.add(own_bead(first_of_piece_[i]), pieces.group(i));
         }
     }
-    return meetings;
+    std::erase_if(meetings_, [](auto const& with) { return with.second.mine.piece.empty(); });
 }
 
 /// Brings what the others show.
-void GhostLists::show(std::map<int, Meeting>& meetings) {
-    for (auto& [rank, m] : meetings) m.shown = std::ssize(m.mine.piece);
-    swap(
-        meetings, [](Meeting const& m) { return std::as_bytes(std::span(&m.shown, 1)); },
-        [](Meeting& m) { return std::as_writable_bytes(std::span(&m.expected, 1)); });
-    swap(
-        meetings, [](Meeting const& m) { return bytes_of(m.mine.piece); },
-        [](Meeting& m) { return room_for(static_cast<std::size_t>(m.expected), m.theirs.piece); });
-    for (auto& [rank, m] : meetings)
+void GhostLists::show() {
+    for (auto& [rank, m] : meetings_) m.shown = std::ssize(m.mine.piece);
+    swap([](Meeting const& m) { return std::as_bytes(std::span(&m.shown, 1)); },
+         [](Meeting& m) { return std::as_writable_bytes(std::span(&m.expected, 1)); });
+    swap([](Meeting const& m) { return bytes_of(m.mine.piece); },
+         [](Meeting& m) { return room_for(static_cast<std::size_t>(m.expected), m.theirs.piece); });
+    for (auto& [rank, m] : meetings_) {
+        m.theirs.first.assign(1, 0);
         for (std::int64_t const bead : m.theirs.piece) m.theirs.first.push_back(m.theirs.first.back() + piece(bead));
-    swap(
-        meetings, [](Meeting const& m) { return bytes_of(m.mine.position); },
-        [](Meeting& m) { return room_for(static_cast<std::size_t>(m.theirs.first.back()), m.theirs.position); });
+    }
+    swap([](Meeting const& m) { return bytes_of(m.mine.position); },
+         [](Meeting& m) { return room_for(static_cast<std::size_t>(m.theirs.first.back()), m.theirs.position); });
 }
 
 /// Of the pieces that another rank shows, 1 for those with a bead near one of mine, else 0.
-std::vector<char> GhostLists::near_ones(Meeting const& meeting, std::vector<PairRange> const& ranges) const {
-    struct Acting {
-        std::vector<Vec3> position;
-        std::vector<std::int64_t> first{0};
-    };
+std::vector<char> GhostLists::near_ones(Meeting const& meeting, std::vector<PairRange> const& ranges) {
     std::vector<char> near(meeting.theirs.piece.size(), 0);
-    auto const acting = [&](Shown const& shown, PairRange const& range, std::vector<char> const& left_out) {
-        Acting some;
-        for (std::size_t i = 0; i < shown.piece.size(); ++i) {
-            std::int64_t const begin = shown.first[i], end = left_out.empty() || left_out[i] == 0 ? shown.first[i + 1] : begin;
-            for (std::int64_t k = begin; k < end; ++k)
-                if (range.is_for(shown.piece[i] + k - begin)) some.position.push_back(shown.position[k]);
-            some.first.push_back(std::ssize(some.position));
-        }
-        return some;
-    };
+    std::vector<char> const none(meeting.mine.piece.size(), 0);
     for (PairRange const& range : ranges) {
-        Acting const here = acting(meeting.mine, range, {}), there = acting(meeting.theirs, range, near);
-        auto const found = near_groups({there.position, there.first}, here.position, range.reach + plan_.skin, plan_.box, *executor_);
+        find_acting(meeting.mine, range, none, here_);
+        find_acting(meeting.theirs, range, near, there_);
+        auto const found =
+            near_groups({there_.position, there_.first}, {here_.position, here_.first}, range.reach + plan_.skin, plan_.box, *executor_);
         for (std::size_t i = 0; i < near.size(); ++i) near[i] = std::max(near[i], found[i]);
     }
     return near;
+}
+
+void GhostLists::find_acting(Shown const& shown, PairRange const& range, std::vector<char> const& left_out, Acting& acting) const {
+    acting.position.clear();
+    acting.first.assign(1, 0);
+    for (std::size_t i = 0; i < shown.piece.size(); ++i) {
+        std::int64_t const begin = shown.first[i], end = left_out[i] == 0 ? shown.first[i + 1] : begin;
+        for (std::int64_t k = begin; k < end; ++k)
+            if (range.is_for(shown.piece[i] + k - begin)) acting.position.push_back(shown.position[k]);
+        acting.first.push_back(std::ssize(acting.position));
+    }
 }
 
 /// That of a bead which is not near, where there is no other. Own beads may come nearer by half the skin.
@@ -240,10 +244,10 @@ bool GhostLists::find_place_aside(Grid const& grid, CellSet const& own) {
 
 /// A message from and to each of those ranks.
 template <class Out, class In>
-void GhostLists::swap(std::map<int, Meeting>& meetings, Out const& out, In const& in) {
+void GhostLists::swap(Out const& out, In const& in) {
     std::vector<Outgoing> outgoing;
     std::vector<Incoming> incoming;
-    for (auto& [rank, meeting] : meetings) {
+    for (auto& [rank, meeting] : meetings_) {
         outgoing.push_back({rank, out(std::as_const(meeting))});
         incoming.push_back({rank, in(meeting)});
     }

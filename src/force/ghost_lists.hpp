@@ -92,6 +92,7 @@ class GhostLists {
     using ListsOfRank = std::map<int, Lists>;
     /// Pieces, by the beads at which they begin, and their positions.
     struct Shown {
+        void clear();
         void add(std::int64_t bead, std::span<Vec3 const> positions);
         std::vector<std::int64_t> piece, first{0};  // first: PointGroups'
         std::vector<Vec3> position;
@@ -102,6 +103,11 @@ class GhostLists {
         std::vector<char> asked, taken;  // of my pieces those that the other takes, of its ones those that I do
         std::int64_t shown = 0, expected = 0;
     };
+    /// Those of positions shown whose beads act over a range.
+    struct Acting {
+        std::vector<Vec3> position;
+        std::vector<std::int64_t> first;
+    };
     std::int64_t first() const { return plan_.first_of_rank[communicator_.rank()]; }
     int owner(std::int64_t bead) const;
     std::int64_t piece(std::int64_t bead) const { return plan_.piece.empty() ? 1 : plan_.piece[static_cast<std::size_t>(bead)]; }
@@ -110,13 +116,13 @@ class GhostLists {
     void share_partners();
     void add_near(std::span<Vec3 const> own, ListsOfRank& lists);
     bool find_place_aside(Grid const&, CellSet const& own);
-    std::map<int, Meeting> meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks, Grid const&,
-                                std::vector<Cell> const& cells);
-    void show(std::map<int, Meeting>& meetings);
-    std::vector<char> near_ones(Meeting const&, std::vector<PairRange> const& ranges) const;
+    void meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks, Grid const&, std::vector<Cell> const& cells);
+    void show();
+    std::vector<char> near_ones(Meeting const&, std::vector<PairRange> const& ranges);
+    void find_acting(Shown const&, PairRange const&, std::vector<char> const& left_out, Acting&) const;
     void find_place_among(Shown const& theirs, std::vector<char> const& near);
     template <class Out, class In>
-    void swap(std::map<int, Meeting>& meetings, Out const& out, In const& in);
+    void swap(Out const& out, In const& in);
     void take(ListsOfRank const& lists);
     void exchange(std::vector<Outgoing> const& out, std::vector<Incoming> const& in);
 
@@ -126,6 +132,8 @@ class GhostLists {
     std::vector<std::int64_t> first_of_piece_;  // of own beads, then their number
     std::unique_ptr<Executor> executor_;        // of searches
     ListsOfRank partners_;                      // those of each rank, and own beads that are one's
+    std::map<int, Meeting> meetings_;           // which keep their memory
+    Acting here_, there_;
     std::vector<Neighbour> neighbours_;
     std::vector<std::int64_t> sent_, received_, beads_, pieces_;
     Vec3 aside_ = Vec3::zero(), edge_ = Vec3::zero();  // the first place aside where space has no end; of a cell

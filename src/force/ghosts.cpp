@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <limits>
 #include <numeric>
 
@@ -26,6 +27,10 @@ class Window {
         : count_(grid.ends() ? grid.cells()[axis] : 0),
           width_(static_cast<std::int64_t>(std::ceil(reach / grid.edge()[axis]))),
           all_(count_ > 0 && 2 * width_ + 1 >= count_) {}
+    std::int64_t apart(std::int64_t a, std::int64_t b) const {
+        std::int64_t const d = std::abs(a - b);
+        return count_ > 0 ? std::min(d, count_ - d) : d;
+    }
     /// Calls action(first, last) for at most two runs of cells, each cell once.
     template <class Action>
     void runs(std::int64_t a, Action const& action) const {
@@ -95,21 +100,28 @@ class Search {
         return starts;
     }
 
+    /// Their cells along z, and how many cells they are away, squared.
+    struct Row {
+        std::size_t first, last;
+        std::int64_t away;
+    };
+
     void search_row(std::size_t first, std::size_t last) {
-        std::vector<std::pair<std::size_t, std::size_t>> const rows = rows_near(in_cells_.cells()[first]);
-        std::vector<PointBlock const*> open;
+        std::vector<Row> const rows = rows_near(in_cells_.cells()[first]);
+        std::vector<std::int64_t> open;
         for (std::size_t i = first; i < last; ++i)
             for (std::int64_t const b : in_cells_.points(i)) {
                 PointBlock const& block = ours_.blocks[static_cast<std::size_t>(b)];
-                find_open(block, in_cells_.cells()[i][2], rows, open);
-                for (std::int64_t g = block.begin; g < block.end && !open.empty(); ++g)
-                    near_[static_cast<std::size_t>(g)] = is_near(ours_.groups.group(g), open) ? 1 : 0;
+                open.resize(static_cast<std::size_t>(block.end - block.begin));
+                std::iota(open.begin(), open.end(), block.begin);
+                for (Row const& row : rows)
+                    if (!open.empty()) search_along(row, block, in_cells_.cells()[i][2], open);
             }
     }
 
-    /// Runs of their cells along z.
-    std::vector<std::pair<std::size_t, std::size_t>> rows_near(Cell const& cell) const {
-        std::vector<std::pair<std::size_t, std::size_t>> rows;
+    /// The nearest first: they decide most.
+    std::vector<Row> rows_near(Cell const& cell) const {
+        std::vector<Row> rows;
         std::vector<Cell> const& cells = their_cells_.cells();
         auto const from = [&](Cell const& least) {
             return static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), least) - cells.begin());
@@ -119,55 +131,44 @@ class Search {
             for (std::int64_t x = x_first; x <= x_last; ++x)
                 y_.runs(cell[1], [&](std::int64_t y_first, std::int64_t y_last) {
                     for (std::size_t i = from({x, y_first, lowest}); i < cells.size() && cells[i][0] == x && cells[i][1] <= y_last;) {
-                        std::size_t const end = from({x, cells[i][1] + 1, lowest});
-                        rows.emplace_back(i, end);
+                        std::int64_t const y = cells[i][1], dx = x_.apart(cell[0], x), dy = y_.apart(cell[1], y);
+                        std::size_t const end = from({x, y + 1, lowest});
+                        rows.push_back({i, end, dx * dx + dy * dy});
                         i = end;
                     }
                 });
         });
+        std::stable_sort(rows.begin(), rows.end(), [](Row const& a, Row const& b) { return a.away < b.away; });
         return rows;
     }
 
-    /// Those of their blocks that may have points near the block's, the nearest first.
-    void find_open(PointBlock const& block, std::int64_t z, std::vector<std::pair<std::size_t, std::size_t>> const& rows,
-                   std::vector<PointBlock const*>& open) const {
-        open.clear();
+    /// Takes the groups of a block that are near blocks of the row from the open ones.
+    void search_along(Row const& row, PointBlock const& block, std::int64_t z, std::vector<std::int64_t>& open) {
         std::vector<Cell> const& cells = their_cells_.cells();
-        double nearest = std::numeric_limits<double>::infinity();
-        for (auto const& [row_first, row_last] : rows)
-            z_.runs(z, [&, first_cell = row_first, last_cell = row_last](std::int64_t first, std::int64_t last) {
-                auto const end = cells.begin() + static_cast<std::ptrdiff_t>(last_cell);
-                auto c = std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(first_cell), end, first,
-                                          [](Cell const& at, std::int64_t least) { return at[2] < least; });
-                for (; c != end && (*c)[2] <= last; ++c) {
-                    auto const [begin_block, end_block] = their_cells_.range(static_cast<std::size_t>(c - cells.begin()));
-                    for (std::int64_t k = begin_block; k < end_block; ++k) {
-                        PointBlock const& other = their_blocks_[static_cast<std::size_t>(k)];
-                        double const apart = squared_gap(block.middle, block.half, other);
-                        if (!may_be_near(apart)) continue;
-                        open.push_back(&other);
-                        if (apart < nearest) {
-                            nearest = apart;
-                            std::swap(open.front(), open.back());
-                        }
-                    }
+        z_.runs(z, [&](std::int64_t first, std::int64_t last) {
+            auto const end = cells.begin() + static_cast<std::ptrdiff_t>(row.last);
+            auto c = std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(row.first), end, first,
+                                      [](Cell const& at, std::int64_t least) { return at[2] < least; });
+            for (; c != end && (*c)[2] <= last; ++c) {
+                auto const [begin_block, end_block] = their_cells_.range(static_cast<std::size_t>(c - cells.begin()));
+                for (std::int64_t k = begin_block; k < end_block && !open.empty(); ++k) {
+                    PointBlock const& other = their_blocks_[static_cast<std::size_t>(k)];
+                    if (!may_be_near(squared_gap(block.middle, block.half, other))) continue;
+                    std::erase_if(open, [&](std::int64_t g) { return is_near(g, other); });
                 }
-            });
+            }
+        });
     }
 
-    /// The block with a near point comes first: it is likely to have one for the next group.
-    bool is_near(std::span<Vec3 const> group, std::vector<PointBlock const*>& open) const {
-        for (PointBlock const*& block : open)
-            for (Vec3 const& x : group) {
-                if (!may_be_near(squared_gap(x, Vec3::zero(), *block))) continue;
-                for (std::int64_t g = block->begin; g < block->end; ++g)
-                    for (Vec3 const& other : theirs_.groups.group(g))
-                        if (grid_.squared_distance(x, other) < radius_ * radius_) {
-                            std::swap(block, open.front());
-                            return true;
-                        }
-            }
-        return false;
+    bool is_near(std::int64_t g, PointBlock const& block) {
+        std::span<Vec3 const> const points = ours_.groups.group(g), others = theirs_.groups.of(block);
+        bool const near = std::any_of(points.begin(), points.end(), [&](Vec3 const& x) {
+            return may_be_near(squared_gap(x, Vec3::zero(), block)) && std::any_of(others.begin(), others.end(), [&](Vec3 const& other) {
+                       return grid_.squared_distance(x, other) < radius_ * radius_;
+                   });
+        });
+        near_[static_cast<std::size_t>(g)] = near ? 1 : 0;
+        return near;
     }
 
     /// Between boxes, of nearest images.
@@ -193,17 +194,16 @@ class Search {
 
 }  // namespace
 
-std::vector<char> near_groups(PointGroups const& groups, std::span<Vec3 const> others, double radius, std::optional<Vec3> const& box,
+std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius, std::optional<Vec3> const& box,
                               Executor const& executor) {
-    std::vector<std::int64_t> const first = each_by_itself(others.size());
-    BlocksInCells const ours(groups, radius / 2), theirs({others, first}, radius / 2);
+    BlocksInCells const ours(groups, radius / 2), theirs(others, radius / 2);
     return Search(ours, theirs, radius, box, executor).run(executor);
 }
 
 std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
                                    std::optional<Vec3> const& box) {
-    std::vector<std::int64_t> const first = each_by_itself(points.size());
-    std::vector<char> const is_near = near_groups({points, first}, others, radius, box, *serial_executor());
+    std::vector<std::int64_t> const first = each_by_itself(points.size()), of_others = each_by_itself(others.size());
+    std::vector<char> const is_near = near_groups({points, first}, {others, of_others}, radius, box, *serial_executor());
     std::vector<std::int64_t> near;
     for (std::size_t k = 0; k < is_near.size(); ++k)
         if (is_near[k] != 0) near.push_back(static_cast<std::int64_t>(k));

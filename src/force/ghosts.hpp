@@ -12,9 +12,9 @@
 
 namespace catena {
 
-/// Of each group 1 where one of its points lies within `radius` of one of `others`, else 0. `box`: edges of the periodic box (nearest
-/// images). Preconditions: radius > 0, positions finite.
-std::vector<char> near_groups(PointGroups const& groups, std::span<Vec3 const> others, double radius, std::optional<Vec3> const& box,
+/// Of each group 1 where one of its points lies within `radius` of one of `others`, however these are grouped, else 0. `box`: edges of the
+/// periodic box (nearest images). Preconditions: radius > 0, positions finite.
+std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius, std::optional<Vec3> const& box,
                               Executor const&);
 
 /// Indices, ascending, of the `points` that lie within `radius` of one of `others`; the rest as above.

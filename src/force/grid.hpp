@@ -36,6 +36,7 @@ class Grid {
         for (int i = 0; i < 3; ++i) {
             count_[i] = box ? std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((*box)[i] / width))) : 0;
             edge_[i] = box ? (*box)[i] / static_cast<double>(count_[i]) : width;
+            a_box_[i] = box ? 1 / (*box)[i] : 0;
         }
     }
 
@@ -74,7 +75,7 @@ class Grid {
     /// The shortest of a vector's images.
     Vec3 nearest_image(Vec3 d) const {
         if (box_)
-            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] / (*box_)[i]);
+            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] * a_box_[i]);
         return d;
     }
     /// Of nearest images; the same for (a, b) and (b, a).
@@ -107,7 +108,7 @@ class Grid {
     }
 
     std::optional<Vec3> box_;
-    Vec3 edge_{};
+    Vec3 edge_{}, a_box_{};  // a_box_: boxes a length
     Cell count_{};
 };
 

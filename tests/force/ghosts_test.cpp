@@ -74,11 +74,12 @@ TEST(Ghosts, GroupsAreNearWhereOneOfTheirPointsIs) {
     auto there = scattered(2000, 12, 7);
     for (Vec3& x : there) x[0] += 24;
     std::mt19937_64 random(8);
+    std::vector<std::int64_t> const of_there{0, 1, 1, 700, 2000};
     for (std::int64_t const longest : {1, 5, 60})
         for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{55, 25, 25}}}}) {
+            std::uniform_int_distribution<std::int64_t> length(0, longest);
             std::vector<std::int64_t> first{0};
-            while (first.back() < 3000)
-                first.push_back(std::min<std::int64_t>(first.back() + static_cast<std::int64_t>(random()) % (longest + 1), 3000));
+            while (first.back() < 3000) first.push_back(std::min<std::int64_t>(first.back() + length(random), 3000));
             std::vector<char> expected(first.size() - 1, 0);
             for (std::int64_t const k : near_any(here, there, 3.0, box))
                 expected[static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), k) - first.begin()) - 1] = 1;
@@ -86,7 +87,7 @@ TEST(Ghosts, GroupsAreNearWhereOneOfTheirPointsIs) {
             EXPECT_NE(std::find(expected.begin(), expected.end(), 1), expected.end());
             for (int const threads : {1, 2, 5}) {
                 auto const executor = openmp_is_built() ? openmp_executor(threads) : serial_executor();
-                EXPECT_EQ(near_groups({here, first}, there, 3.0, box, *executor), expected);
+                EXPECT_EQ(near_groups({here, first}, {there, of_there}, 3.0, box, *executor), expected);
             }
         }
 }
