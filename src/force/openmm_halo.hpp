@@ -19,9 +19,8 @@ namespace catena {
 /// too few of these.
 class HaloForces final : public RankForces, public Halo {
   public:
-    /// While lists are made the GPU waits: 0.15 s for half a million beads on each of two ranks. The fastest of a million beads of a
-    /// condensate (CALVADOS 2, 330 mg/ml, 10 fs) has gone 1 nm after some 130 steps, of 14,000 beads 0.25 nm after 32, 0.5 after 80 and
-    /// 1 nm after 220.
+    /// While lists are made the GPU waits. The fastest of a million beads of a condensate (CALVADOS 2, 330 mg/ml, 10 fs) has gone 1 nm
+    /// after some 130 steps, of 14,000 beads 0.25 nm after 32, 0.5 after 80 and 1 nm after 220.
     static double constexpr skin_of_reach_on_device = 0.5;
 
     explicit HaloForces(RankPlan const& plan);
