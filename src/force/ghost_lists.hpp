@@ -1,10 +1,10 @@
 // The beads of other ranks that a rank's own ones feel, its ghosts: which they are, and what of them travels from rank to rank.
 //
-// The ghosts lie within reach + skin of an own bead when the lists are made, so that none is missed until some bead has moved half the
-// skin. Where beads act on each other over several ranges a bead is looked for in those alone in which it acts: neutral ones are not
-// ghosts as far out as charged ones. Then every rank makes its lists anew, all at the same evaluation. Each tells the others which cells of
-// space its beads are in, sends those of its beads that are in or around another's cells, and gets that rank's: from the two sets both find
-// the same pairs, so that the sender knows what the receiver keeps. From then on only those positions travel, between the ranks concerned.
+// The ghosts lie within reach + skin of an own bead when the lists are made, or in a piece with one that does, so that none is missed until
+// some bead has moved half the skin. Where beads act on each other over several ranges a bead is looked for in those alone in which it
+// acts: neutral ones are not ghosts as far out as charged ones. Then every rank makes its lists anew, all at the same evaluation. Each
+// tells the others which cells of space its beads are in, shows another its pieces that are in or around that rank's cells, and is told
+// which of them are ghosts there. From then on only those positions travel, between the ranks concerned.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +19,7 @@
 #include "force/ghost_traffic.hpp"
 #include "force/grid.hpp"
 #include "force/pair_ranges.hpp"
+#include "force/point_blocks.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena {
@@ -31,7 +32,8 @@ class GhostLists {
         std::vector<PairRange> ranges;                     // without any: no other ghosts
         double skin = 0;
         std::optional<Vec3> box;
-        int threads = 0;  // that search; 0: the rank's cores
+        int threads = 0;                  // that search; 0: the rank's cores
+        std::vector<std::uint8_t> piece;  // BeadPieces::length; partners are pieces by themselves
     };
     GhostLists(Communicator const&, Plan);
 
@@ -73,41 +75,67 @@ class GhostLists {
 
     /// Number of this rank's bead k among all.
     std::int64_t own_bead(std::int64_t k) const { return plan_.by_rank.empty() ? first() + k : plan_.by_rank[first() + k]; }
-    /// Partners, then the others; each ascending.
+    /// Partners, ascending, then the others, piece by piece.
     std::vector<std::int64_t> const& beads() const { return beads_; }
+    /// The bead at which each piece begins, without partners.
+    std::vector<std::int64_t> const& pieces() const { return pieces_; }
     /// Places for `count` particles that must not be felt by own beads before the lists are made anew. Precondition: not every bead of
     /// another rank is a ghost.
     Vec3 aside(std::int64_t i, std::int64_t count) const;
     GhostTraffic const& traffic() const { return traffic_; }
 
   private:
+    /// To and from a rank: of own beads and of beads().
     struct Lists {
-        std::vector<std::int64_t> send, receive;  // beads
+        std::vector<std::int64_t> send, receive;
     };
     using ListsOfRank = std::map<int, Lists>;
-    struct Candidate {
-        std::int64_t bead;
-        Vec3 position;
+    /// Pieces, by the beads at which they begin, and their positions.
+    struct Shown {
+        void clear();
+        void add(std::int64_t bead, std::span<Vec3 const> positions);
+        std::vector<std::int64_t> piece, first{0};  // first: PointGroups'
+        std::vector<Vec3> position;
+    };
+    /// Two ranks whose beads may be near each other's.
+    struct Meeting {
+        Shown mine, theirs;
+        std::vector<char> asked, taken;  // of my pieces those that the other takes, of its ones those that I do
+        std::int64_t shown = 0, expected = 0;
+    };
+    /// Those of positions shown whose beads act over a range.
+    struct Acting {
+        std::vector<Vec3> position;
+        std::vector<std::int64_t> first;
     };
     std::int64_t first() const { return plan_.first_of_rank[communicator_.rank()]; }
     int owner(std::int64_t bead) const;
+    std::int64_t piece(std::int64_t bead) const { return plan_.piece.empty() ? 1 : plan_.piece[static_cast<std::size_t>(bead)]; }
 
     std::vector<Vec3> all_positions(std::span<Vec3 const> own) const;
     void share_partners();
     void add_near(std::span<Vec3 const> own, ListsOfRank& lists);
-    bool find_place_aside(Grid const&, std::vector<Cell> const& own);
-    void add_near(std::vector<Candidate> const& mine, std::vector<Candidate> const& theirs, PairRange const&, Lists& lists);
-    std::map<int, std::vector<Candidate>> swap_candidates(std::map<int, std::vector<Candidate>> const& own);
-    void take(ListsOfRank lists);
+    bool find_place_aside(Grid const&, CellSet const& own);
+    void meet(std::span<Vec3 const> own, std::vector<PointBlock> const& blocks, Grid const&, std::vector<Cell> const& cells);
+    void show();
+    std::vector<char> near_ones(Meeting const&, std::vector<PairRange> const& ranges);
+    void find_acting(Shown const&, PairRange const&, std::vector<char> const& left_out, Acting&) const;
+    void find_place_among(Shown const& theirs, std::vector<char> const& near);
+    template <class Out, class In>
+    void swap(Out const& out, In const& in);
+    void take(ListsOfRank const& lists);
     void exchange(std::vector<Outgoing> const& out, std::vector<Incoming> const& in);
 
     Communicator const& communicator_;
     Plan plan_;
-    std::vector<std::int64_t> place_;     // of each bead in by_rank
-    std::unique_ptr<Executor> executor_;  // of searches
-    ListsOfRank partners_;                // those of each rank, and own beads that are one's
+    std::vector<std::int64_t> place_;           // of each bead in by_rank
+    std::vector<std::int64_t> first_of_piece_;  // of own beads, then their number
+    std::unique_ptr<Executor> executor_;        // of searches
+    ListsOfRank partners_;                      // those of each rank, and own beads that are one's
+    std::map<int, Meeting> meetings_;           // which keep their memory
+    Acting here_, there_;
     std::vector<Neighbour> neighbours_;
-    std::vector<std::int64_t> sent_, received_, beads_;
+    std::vector<std::int64_t> sent_, received_, beads_, pieces_;
     Vec3 aside_ = Vec3::zero(), edge_ = Vec3::zero();  // the first place aside where space has no end; of a cell
     std::vector<Vec3> free_;                           // middles of cells aside, where it has
     bool has_partners_ = false, renew_ = true;

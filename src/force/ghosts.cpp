@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 
 #include "force/cells.hpp"
 #include "force/grid.hpp"
@@ -13,29 +14,22 @@ namespace catena {
 
 namespace {
 
-/// How far apart the points of two cells so many cells apart are at least and at most along an axis, squared.
-struct Apart {
-    double least, most;
-};
+std::vector<std::int64_t> each_by_itself(std::size_t points) {
+    std::vector<std::int64_t> first(points + 1);
+    std::iota(first.begin(), first.end(), std::int64_t{0});
+    return first;
+}
 
-/// Along one axis of a grid, the cells whose points may be near those of a cell.
+/// Along one axis of a grid, the cells whose points may be within reach of those of a cell.
 class Window {
   public:
-    Window(Grid const& grid, int axis, double radius)
-        : count_(grid.ends() ? grid.cells()[axis] : 0), width_(static_cast<std::int64_t>(std::ceil(radius / grid.edge()[axis]))) {
-        double const edge = grid.edge()[axis], slack = 1e-9 * radius;  // however a point's cell is rounded
-        if (count_ > 0 && 2 * width_ + 1 >= count_) all_ = true;
-        for (std::int64_t d = 0; d <= width_; ++d) {
-            double const least = std::max(0.0, (static_cast<double>(d) - 1) * edge - slack),
-                         most = (static_cast<double>(d) + 1) * edge + slack;
-            apart_.push_back({least * least, most * most});
-        }
-    }
-    /// Precondition: b is in the window of a.
-    Apart const& apart(std::int64_t a, std::int64_t b) const {
-        std::int64_t d = std::abs(a - b);
-        if (count_ > 0) d = std::min(d, count_ - d);
-        return apart_[static_cast<std::size_t>(d)];
+    Window(Grid const& grid, int axis, double reach)
+        : count_(grid.ends() ? grid.cells()[axis] : 0),
+          width_(static_cast<std::int64_t>(std::ceil(reach / grid.edge()[axis]))),
+          all_(count_ > 0 && 2 * width_ + 1 >= count_) {}
+    std::int64_t apart(std::int64_t a, std::int64_t b) const {
+        std::int64_t const d = std::abs(a - b);
+        return count_ > 0 ? std::min(d, count_ - d) : d;
     }
     /// Calls action(first, last) for at most two runs of cells, each cell once.
     template <class Action>
@@ -49,46 +43,54 @@ class Window {
 
   private:
     std::int64_t count_, width_;
-    bool all_ = false;
-    std::vector<Apart> apart_;
+    bool all_;
 };
 
-/// Cells [first, last) of a row along z, and how far apart their points and those of another row are.
-struct Row {
-    std::size_t first, last;
-    Apart apart;
-};
-
-/// Whether points are near others: by their cells, most of which decide for all that they hold.
-class Search {
-  public:
-    Search(Grid const& grid, double radius, std::span<Vec3 const> points, PointsInCells const& in_cells, std::span<Vec3 const> others,
-           PointsInCells const& others_in_cells)
-        : grid_(grid),
-          squared_(radius * radius),
-          x_(grid, 0, radius),
-          y_(grid, 1, radius),
-          z_(grid, 2, radius),
-          points_(points),
-          in_cells_(in_cells),
-          others_in_cells_(others_in_cells),
-          near_(points.size(), 0) {
-        for (std::int64_t const k : others_in_cells.points()) others_.push_back(others[static_cast<std::size_t>(k)]);
+/// Blocks by the cells of their middles.
+struct BlocksInCells {
+    BlocksInCells(PointGroups const& points, double edge) : groups(points), blocks(blocks_of(points, edge)) {
+        for (PointBlock const& b : blocks) {
+            middles.push_back(b.middle);
+            for (int c = 0; c < 3; ++c) half[c] = std::max(half[c], b.half[c]);
+        }
     }
 
-    std::vector<std::int64_t> run(Executor const& executor) {
+    PointGroups groups;
+    std::vector<PointBlock> blocks;
+    std::vector<Vec3> middles;
+    Vec3 half = Vec3::zero();  // of the widest
+};
+
+/// Which groups are near others: by blocks of either, most of which are out of reach.
+class Search {
+  public:
+    Search(BlocksInCells const& ours, BlocksInCells const& theirs, double radius, std::optional<Vec3> const& box, Executor const& executor)
+        : radius_(radius),
+          ours_(ours),
+          theirs_(theirs),
+          reach_(ours.half + theirs.half + radius * Vec3{{1, 1, 1}}),
+          grid_(std::max({reach_[0], reach_[1], reach_[2]}) / cells_a_reach, box),
+          x_(grid_, 0, reach_[0]),
+          y_(grid_, 1, reach_[1]),
+          z_(grid_, 2, reach_[2]),
+          in_cells_(grid_, ours.middles, executor),
+          their_cells_(grid_, theirs.middles, executor),
+          near_(static_cast<std::size_t>(ours.groups.size()), 0) {
+        for (std::int64_t const b : their_cells_.points()) their_blocks_.push_back(theirs.blocks[static_cast<std::size_t>(b)]);
+    }
+
+    std::vector<char> run(Executor const& executor) {
         std::vector<std::size_t> const rows = row_starts(in_cells_.cells());
-        int constexpr cost = 64;  // of a row in bodies
+        int constexpr cost = 256;  // of a row in bodies
         executor.for_ranges(std::ssize(rows) - 1, cost, [&](std::int64_t begin, std::int64_t end) {
             for (std::int64_t i = begin; i < end; ++i) search_row(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(i) + 1]);
         });
-        std::vector<std::int64_t> near;
-        for (std::size_t k = 0; k < near_.size(); ++k)
-            if (near_[k] != 0) near.push_back(static_cast<std::int64_t>(k));
-        return near;
+        return std::move(near_);
     }
 
   private:
+    static double constexpr cells_a_reach = 2;
+
     /// Where rows along z begin among cells, and the number of these.
     static std::vector<std::size_t> row_starts(std::vector<Cell> const& cells) {
         std::vector<std::size_t> starts;
@@ -98,19 +100,29 @@ class Search {
         return starts;
     }
 
+    /// Their cells along z, and how many cells they are away, squared.
+    struct Row {
+        std::size_t first, last;
+        std::int64_t away;
+    };
+
     void search_row(std::size_t first, std::size_t last) {
         std::vector<Row> const rows = rows_near(in_cells_.cells()[first]);
-        std::vector<std::size_t> open;
-        for (std::size_t i = first; i < last; ++i) {
-            bool const all = all_near(in_cells_.cells()[i][2], rows, open);
-            for (std::int64_t const k : in_cells_.points(i)) near_[static_cast<std::size_t>(k)] = all || is_near(k, open) ? 1 : 0;
-        }
+        std::vector<std::int64_t> open;
+        for (std::size_t i = first; i < last; ++i)
+            for (std::int64_t const b : in_cells_.points(i)) {
+                PointBlock const& block = ours_.blocks[static_cast<std::size_t>(b)];
+                open.resize(static_cast<std::size_t>(block.end - block.begin));
+                std::iota(open.begin(), open.end(), block.begin);
+                for (Row const& row : rows)
+                    if (!open.empty()) search_along(row, block, in_cells_.cells()[i][2], open);
+            }
     }
 
-    /// The nearest first.
+    /// The nearest first: they decide most.
     std::vector<Row> rows_near(Cell const& cell) const {
         std::vector<Row> rows;
-        std::vector<Cell> const& cells = others_in_cells_.cells();
+        std::vector<Cell> const& cells = their_cells_.cells();
         auto const from = [&](Cell const& least) {
             return static_cast<std::size_t>(std::lower_bound(cells.begin(), cells.end(), least) - cells.begin());
         };
@@ -119,80 +131,83 @@ class Search {
             for (std::int64_t x = x_first; x <= x_last; ++x)
                 y_.runs(cell[1], [&](std::int64_t y_first, std::int64_t y_last) {
                     for (std::size_t i = from({x, y_first, lowest}); i < cells.size() && cells[i][0] == x && cells[i][1] <= y_last;) {
-                        std::int64_t const y = cells[i][1];
+                        std::int64_t const y = cells[i][1], dx = x_.apart(cell[0], x), dy = y_.apart(cell[1], y);
                         std::size_t const end = from({x, y + 1, lowest});
-                        Apart const a = x_.apart(cell[0], x), b = y_.apart(cell[1], y);
-                        if (a.least + b.least < squared_) rows.push_back({i, end, {a.least + b.least, a.most + b.most}});
+                        rows.push_back({i, end, dx * dx + dy * dy});
                         i = end;
                     }
                 });
         });
-        std::sort(rows.begin(), rows.end(), [](Row const& a, Row const& b) {
-            return a.apart.most != b.apart.most ? a.apart.most < b.apart.most : a.first < b.first;
-        });
+        std::stable_sort(rows.begin(), rows.end(), [](Row const& a, Row const& b) { return a.away < b.away; });
         return rows;
     }
 
-    /// Whether all points of a cell are near one; if not, `open`: cells with points that may be near some.
-    bool all_near(std::int64_t z, std::vector<Row> const& rows, std::vector<std::size_t>& open) const {
-        open.clear();
-        std::vector<Cell> const& cells = others_in_cells_.cells();
-        bool all = false;
-        for (Row const& row : rows) {
-            z_.runs(z, [&](std::int64_t first, std::int64_t last) {
-                auto const end = cells.begin() + static_cast<std::ptrdiff_t>(row.last);
-                auto c = std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(row.first), end, first,
-                                          [](Cell const& at, std::int64_t least) { return at[2] < least; });
-                for (; c != end && (*c)[2] <= last && !all; ++c) {
-                    Apart const apart = z_.apart(z, (*c)[2]);
-                    all = row.apart.most + apart.most < squared_;
-                    if (row.apart.least + apart.least < squared_) open.push_back(static_cast<std::size_t>(c - cells.begin()));
+    /// Takes the groups of a block that are near blocks of the row from the open ones.
+    void search_along(Row const& row, PointBlock const& block, std::int64_t z, std::vector<std::int64_t>& open) {
+        std::vector<Cell> const& cells = their_cells_.cells();
+        z_.runs(z, [&](std::int64_t first, std::int64_t last) {
+            auto const end = cells.begin() + static_cast<std::ptrdiff_t>(row.last);
+            auto c = std::lower_bound(cells.begin() + static_cast<std::ptrdiff_t>(row.first), end, first,
+                                      [](Cell const& at, std::int64_t least) { return at[2] < least; });
+            for (; c != end && (*c)[2] <= last; ++c) {
+                auto const [begin_block, end_block] = their_cells_.range(static_cast<std::size_t>(c - cells.begin()));
+                for (std::int64_t k = begin_block; k < end_block && !open.empty(); ++k) {
+                    PointBlock const& other = their_blocks_[static_cast<std::size_t>(k)];
+                    if (!may_be_near(squared_gap(block.middle, block.half, other))) continue;
+                    std::erase_if(open, [&](std::int64_t g) { return is_near(g, other); });
                 }
-            });
-            if (all) break;
-        }
-        return all;
-    }
-
-    bool is_near(std::int64_t k, std::vector<std::size_t> const& open) const {
-        Vec3 const& x = points_[static_cast<std::size_t>(k)];
-        return std::any_of(open.begin(), open.end(), [&](std::size_t cell) {
-            auto const there = others_in_cells_.range(cell);
-            return std::any_of(others_.begin() + there.first, others_.begin() + there.second,
-                               [&](Vec3 const& other) { return grid_.squared_distance(x, other) < squared_; });
+            }
         });
     }
 
-    Grid const& grid_;
-    double squared_;
+    bool is_near(std::int64_t g, PointBlock const& block) {
+        std::span<Vec3 const> const points = ours_.groups.group(g), others = theirs_.groups.of(block);
+        bool const near = std::any_of(points.begin(), points.end(), [&](Vec3 const& x) {
+            return may_be_near(squared_gap(x, Vec3::zero(), block)) && std::any_of(others.begin(), others.end(), [&](Vec3 const& other) {
+                       return grid_.squared_distance(x, other) < radius_ * radius_;
+                   });
+        });
+        near_[static_cast<std::size_t>(g)] = near ? 1 : 0;
+        return near;
+    }
+
+    /// Between boxes, of nearest images.
+    double squared_gap(Vec3 const& middle, Vec3 const& half, PointBlock const& other) const {
+        Vec3 d = grid_.nearest_image(middle - other.middle);
+        for (int c = 0; c < 3; ++c) d[c] = std::max(0.0, std::abs(d[c]) - half[c] - other.half[c]);
+        return dot(d, d);
+    }
+    bool may_be_near(double squared_gap) const {
+        double constexpr slack = 1 + 1e-9;  // however boxes are rounded
+        return squared_gap < slack * radius_ * radius_;
+    }
+
+    double radius_;
+    BlocksInCells const &ours_, &theirs_;
+    Vec3 reach_;
+    Grid grid_;
     Window x_, y_, z_;
-    std::span<Vec3 const> points_;
-    std::vector<Vec3> others_;  // cell by cell
-    PointsInCells const &in_cells_, &others_in_cells_;
+    PointsInCells in_cells_, their_cells_;
+    std::vector<PointBlock> their_blocks_;  // cell by cell
     std::vector<char> near_;
 };
 
-/// Small ones decide about more points.
-Grid grid_for(double radius, std::optional<Vec3> const& box) {
-    double constexpr cells_a_radius = 4;
-    return Grid(radius / cells_a_radius, box);
-}
-
 }  // namespace
+
+std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius, std::optional<Vec3> const& box,
+                              Executor const& executor) {
+    BlocksInCells const ours(groups, radius / 2), theirs(others, radius / 2);
+    return Search(ours, theirs, radius, box, executor).run(executor);
+}
 
 std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
                                    std::optional<Vec3> const& box) {
-    Grid const grid = grid_for(radius, box);
-    auto const executor = serial_executor();
-    PointsInCells const a(grid, points, *executor), b(grid, others, *executor);
-    return Search(grid, radius, points, a, others, b).run(*executor);
-}
-
-NearEachOther near_each_other(std::span<Vec3 const> one, std::span<Vec3 const> other, double radius, std::optional<Vec3> const& box,
-                              Executor const& executor) {
-    Grid const grid = grid_for(radius, box);
-    PointsInCells const a(grid, one, executor), b(grid, other, executor);
-    return {Search(grid, radius, one, a, other, b).run(executor), Search(grid, radius, other, b, one, a).run(executor)};
+    std::vector<std::int64_t> const first = each_by_itself(points.size()), of_others = each_by_itself(others.size());
+    std::vector<char> const is_near = near_groups({points, first}, {others, of_others}, radius, box, *serial_executor());
+    std::vector<std::int64_t> near;
+    for (std::size_t k = 0; k < is_near.size(); ++k)
+        if (is_near[k] != 0) near.push_back(static_cast<std::int64_t>(k));
+    return near;
 }
 
 std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,

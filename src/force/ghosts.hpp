@@ -8,20 +8,18 @@
 
 #include "dca/executor.hpp"
 #include "dca/linear.hpp"
+#include "force/point_blocks.hpp"
 
 namespace catena {
 
-/// Indices, ascending, of the `points` that lie within `radius` of one of `others`. `box`: edges of the periodic box (nearest images).
-/// What is near one of `points` is found from either side alike. Preconditions: radius > 0, positions finite.
+/// Of each group 1 where one of its points lies within `radius` of one of `others`, however these are grouped, else 0. `box`: edges of the
+/// periodic box (nearest images). Preconditions: radius > 0, positions finite.
+std::vector<char> near_groups(PointGroups const& groups, PointGroups const& others, double radius, std::optional<Vec3> const& box,
+                              Executor const&);
+
+/// Indices, ascending, of the `points` that lie within `radius` of one of `others`; the rest as above.
 std::vector<std::int64_t> near_any(std::span<Vec3 const> points, std::span<Vec3 const> others, double radius,
                                    std::optional<Vec3> const& box);
-
-/// Both at once: those of `one` near some of `other`, and the other way round.
-struct NearEachOther {
-    std::vector<std::int64_t> one, other;
-};
-NearEachOther near_each_other(std::span<Vec3 const> one, std::span<Vec3 const> other, double radius, std::optional<Vec3> const& box,
-                              Executor const&);
 
 /// Beads that are not among `own` and lie within `radius` of one of these, ascending.
 std::vector<std::int64_t> ghosts_of(std::span<Vec3 const> positions, std::span<std::int64_t const> own, double radius,

@@ -36,6 +36,7 @@ class Grid {
         for (int i = 0; i < 3; ++i) {
             count_[i] = box ? std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor((*box)[i] / width))) : 0;
             edge_[i] = box ? (*box)[i] / static_cast<double>(count_[i]) : width;
+            a_box_[i] = box ? 1 / (*box)[i] : 0;
         }
     }
 
@@ -45,9 +46,8 @@ class Grid {
     Cell const& cells() const { return count_; }
 
     Cell cell(Vec3 const& x) const {
-        double constexpr far = 1e15;  // an integer still tells neighbours apart there
-        Cell c{};
-        for (int i = 0; i < 3; ++i) c[i] = wrapped(static_cast<std::int64_t>(std::clamp(std::floor(x[i] / edge_[i]), -far, far)), i);
+        Cell c = unwrapped(x);
+        for (int i = 0; i < 3; ++i) c[i] = wrapped(c[i], i);
         return c;
     }
 
@@ -72,12 +72,24 @@ class Grid {
         return all;
     }
 
+    /// The shortest of a vector's images.
+    Vec3 nearest_image(Vec3 d) const {
+        if (box_)
+            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] * a_box_[i]);
+        return d;
+    }
     /// Of nearest images; the same for (a, b) and (b, a).
     double squared_distance(Vec3 const& a, Vec3 const& b) const {
-        Vec3 d = a - b;
-        if (box_)
-            for (int i = 0; i < 3; ++i) d[i] -= (*box_)[i] * std::nearbyint(d[i] / (*box_)[i]);
+        Vec3 const d = nearest_image(a - b);
         return dot(d, d);
+    }
+    /// Calls visit(cell) for those that a box reaches into; in a small periodic box for some more than once.
+    template <class Visit>
+    void within(Vec3 const& least, Vec3 const& most, Visit visit) const {
+        Cell const a = unwrapped(least), b = unwrapped(most);
+        for (std::int64_t x = a[0]; x <= b[0]; ++x)
+            for (std::int64_t y = a[1]; y <= b[1]; ++y)
+                for (std::int64_t z = a[2]; z <= b[2]; ++z) visit(Cell{wrapped(x, 0), wrapped(y, 1), wrapped(z, 2)});
     }
 
     /// A cell's place along an axis, around the box where there is one.
@@ -88,8 +100,15 @@ class Grid {
     }
 
   private:
+    Cell unwrapped(Vec3 const& x) const {
+        double constexpr far = 1e15;  // an integer still tells neighbours apart there
+        Cell c{};
+        for (int i = 0; i < 3; ++i) c[i] = static_cast<std::int64_t>(std::clamp(std::floor(x[i] / edge_[i]), -far, far));
+        return c;
+    }
+
     std::optional<Vec3> box_;
-    Vec3 edge_{};
+    Vec3 edge_{}, a_box_{};  // a_box_: boxes a length
     Cell count_{};
 };
 

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "force/bead_pieces.hpp"
 #include "force/ghost_lists.hpp"
 #include "force/ghost_slots.hpp"
 #include "force/halo.hpp"
@@ -13,13 +14,13 @@
 
 namespace catena {
 
-/// Particles of the Context: own beads, partners, and slots for other ghosts, some of each kind to spare, which stand aside. Where more of
-/// a kind come than there are slots, the parameters of others change; a Context is made anew where there are too few in all.
+/// Particles of the Context: own beads, partners, and slots for pieces of other ghosts, some of each kind to spare, which stand aside.
+/// Where more of a kind come than there are slots, the parameters of others of their length change; a Context is made anew where there are
+/// too few of these.
 class HaloForces final : public RankForces, public Halo {
   public:
-    /// While lists are made the GPU waits: 0.15 s for half a million beads on each of two ranks. The fastest of a million beads of a
-    /// condensate (CALVADOS 2, 330 mg/ml, 10 fs) has gone 1 nm after some 130 steps, of 14,000 beads 0.25 nm after 32, 0.5 after 80 and
-    /// 1 nm after 220.
+    /// While lists are made the GPU waits. The fastest of a million beads of a condensate (CALVADOS 2, 330 mg/ml, 10 fs) has gone 1 nm
+    /// after some 130 steps, of 14,000 beads 0.25 nm after 32, 0.5 after 80 and 1 nm after 220.
     static double constexpr skin_of_reach_on_device = 0.5;
 
     explicit HaloForces(RankPlan const& plan);
@@ -60,21 +61,30 @@ class HaloForces final : public RankForces, public Halo {
     static constexpr char const* in_trouble = "the position of bead {:.0f}, or OpenMM's force on it, is not finite";
     /// One slot of a kind in so many is a spare when a Context is made, and so many besides.
     static std::int64_t constexpr spare_part = 8, least_spares = 16;
+    /// OpenMM computes on so many particles that follow each other at once: the longest pieces begin there.
+    static int constexpr block = BeadPieces::longest;
 
     std::vector<std::int64_t> const& own() const { return share_.own(); }
     static std::vector<std::int64_t> every_number(std::int64_t count);
+    BeadPieces pieces(RankPlan const& plan) const;
+    void count_kinds_elsewhere();
+    int first_slot() const { return static_cast<int>(own().size() + share_.partners().size()); }
     Subset subset_of_slots() const;
-    void make_context(std::span<std::int64_t const> others);
+    void list_particles();
+    void make_context();
+    /// Then there may be no place aside.
+    bool everyone_is_a_ghost() const { return std::ssize(ghosts_.pieces()) == elsewhere_; }
 
     Communicator const& communicator_;
     bool every_rank_has_beads_;
     std::unique_ptr<ForceContext> home_;  // before all Contexts that are made in its GPU context, share_'s among them
     SplitShare share_;
+    BeadPieces pieces_;
     GhostLists ghosts_;
     bool audit_;
-    std::int64_t all_;  // beads of all ranks
-    std::vector<int> kind_of_bead_;
-    std::vector<std::int64_t> of_kind_elsewhere_;  // exchangeable beads of other ranks
+    std::vector<std::int64_t> of_kind_elsewhere_;  // exchangeable pieces of other ranks
+    std::int64_t elsewhere_ = 0;                   // all of them
+    bool is_aligned_ = false;                      // by particles that stand aside for good
     GhostSlots slots_;
     Lists lists_;
     std::shared_ptr<OpenMM::System> system_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <utility>
 
 #include "force/openmm_ranges.hpp"
 
@@ -49,8 +50,8 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
     std::sort(partners_.begin(), partners_.end());
 }
 
-GhostLists::Plan SplitShare::lists() const {
-    return {beads_.first_of_rank, beads_.by_rank, partners_, ranges_, skin_, box_, beads_.threads};
+GhostLists::Plan SplitShare::lists(std::vector<std::uint8_t> pieces) const {
+    return {beads_.first_of_rank, beads_.by_rank, partners_, ranges_, skin_, box_, beads_.threads, std::move(pieces)};
 }
 
 std::vector<int> SplitShare::particles_of(std::span<std::int64_t const> beads) const {

@@ -23,7 +23,8 @@ class SplitShare {
     std::vector<std::int64_t> const& own() const { return own_; }
     /// Beads of other ranks that share a bonded term with own ones, ascending.
     std::vector<std::int64_t> const& partners() const { return partners_; }
-    GhostLists::Plan lists() const;
+    /// `pieces`: in which others are ghosts.
+    GhostLists::Plan lists(std::vector<std::uint8_t> pieces = {}) const;
     OpenMM::System const& system() const { return *model_.system; }
     double reach() const { return ends_ ? longest_reach(ranges_) : std::numeric_limits<double>::infinity(); }
     std::vector<PairRange> const& ranges() const { return ranges_; }

@@ -34,6 +34,23 @@ class PartnerCollector : public TermFilter {
     std::set<int> partners_;
 };
 
+/// Marks the particles of terms that join ranks; keeps none.
+class JoinedAcrossRanks : public TermFilter {
+  public:
+    explicit JoinedAcrossRanks(std::vector<int> const& rank_of_particle) : rank_(rank_of_particle), joined_(rank_.size(), 0) {}
+    bool keep(std::initializer_list<int*> particles) override {
+        int const rank = rank_[**particles.begin()];
+        if (std::any_of(particles.begin(), particles.end(), [&](int const* p) { return rank_[*p] != rank; }))
+            for (int const* p : particles) joined_[*p] = 1;
+        return false;
+    }
+    std::vector<char> const& joined() const { return joined_; }
+
+  private:
+    std::vector<int> const& rank_;
+    std::vector<char> joined_;
+};
+
 class NoTerm : public TermFilter {
   public:
     bool keep(std::initializer_list<int*>) override { return false; }
@@ -43,7 +60,7 @@ class NoTerm : public TermFilter {
 class Renumbering : public TermFilter {
   public:
     Renumbering(int particle_count, Subset const& subset)
-        : particles_(subset.particles), own_count_(subset.own), index_(particle_count, -1) {
+        : particles_(subset.particles), after_(subset.after), own_count_(subset.own), index_(particle_count, -1) {
         for (int i = 0; i < subset.fixed; ++i) index_[particles_[i]] = i;
     }
     bool keep(std::initializer_list<int*> particles) override {
@@ -58,9 +75,10 @@ class Renumbering : public TermFilter {
         return true;
     }
     std::vector<int> const& particles() const { return particles_; }
+    std::vector<int> const& after() const { return after_; }
 
   private:
-    std::vector<int> const& particles_;
+    std::vector<int> const &particles_, &after_;
     int own_count_;
     std::vector<int> index_;  // in the subset; -1: not in it for good
 };
@@ -86,6 +104,14 @@ void collect_exclusions(CustomNonbondedForce const& from, TermFilter& filter) {
         int a, b;
         from.getExclusionParticles(i, a, b);
         filter.keep({&a, &b});
+    }
+}
+
+void collect_terms(System const& system, TermFilter& filter) {
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i))) collect_exceptions(*pairs, filter);
+        if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i))) collect_exclusions(*pairs, filter);
+        copy_bonded(system.getForce(i), filter);
     }
 }
 
@@ -135,6 +161,7 @@ std::unique_ptr<Force> copy_pairs(CustomNonbondedForce const& from, Renumbering 
         from.getExclusionParticles(i, a, b);
         if (subset.keep_pair({&a, &b})) to->addExclusion(a, b);
     }
+    for (int const k : subset.after()) to->addExclusion(k - 1, k);
     copy_interaction_groups(from, subset, *to);
     return to;
 }
@@ -148,6 +175,7 @@ void copy_exceptions(NonbondedForce const& from, Renumbering const& subset, Nonb
         from.getExceptionParameters(i, a, b, charge, sigma, epsilon);
         if (subset.keep_pair({&a, &b})) index[i] = to.addException(a, b, charge, sigma, epsilon);
     }
+    for (int const k : subset.after()) to.addException(k - 1, k, 0, 1, 0);
     std::string parameter;
     for (int i = 0; i < from.getNumExceptionParameterOffsets(); ++i) {
         int exception;
@@ -232,12 +260,14 @@ double reach_of(System const& system) {
 
 std::vector<int> bonded_partners(System const& system, std::vector<int> const& own) {
     PartnerCollector collector(system.getNumParticles(), own);
-    for (int i = 0; i < system.getNumForces(); ++i) {
-        if (auto const* pairs = dynamic_cast<NonbondedForce const*>(&system.getForce(i))) collect_exceptions(*pairs, collector);
-        if (auto const* pairs = dynamic_cast<CustomNonbondedForce const*>(&system.getForce(i))) collect_exclusions(*pairs, collector);
-        copy_bonded(system.getForce(i), collector);
-    }
+    collect_terms(system, collector);
     return collector.partners();
+}
+
+std::vector<char> joined_across_ranks(System const& system, std::vector<int> const& rank_of_particle) {
+    JoinedAcrossRanks filter(rank_of_particle);
+    collect_terms(system, filter);
+    return filter.joined();
 }
 
 bool can_exchange_particles(System const& system) {

@@ -27,11 +27,15 @@ double reach_of(OpenMM::System const&);
 /// Particles, ascending, that share a bonded term, an exception or an exclusion with one of `own` and are not among them.
 std::vector<int> bonded_partners(OpenMM::System const&, std::vector<int> const& own);
 
+/// Of each particle 1 where it shares such a term with one of another rank, else 0.
+std::vector<char> joined_across_ranks(OpenMM::System const&, std::vector<int> const& rank_of_particle);
+
 /// Particles of another System: the first `own` of them with all the forces that act on them, the first `fixed` for good, those after
 /// exchangeable.
 struct Subset {
     std::vector<int> particles;
     int own = 0, fixed = 0;
+    std::vector<int> after = {};  // exchangeable ones, by their places here, that are one molecule to OpenMM with the one before
 };
 
 /// Whether particles of a Subset's System can be exchanged: parameters can, members of interaction groups and of offsets cannot.
@@ -41,8 +45,8 @@ bool can_exchange_particles(OpenMM::System const&);
 std::vector<int> kinds_of_particles(OpenMM::System const&);
 
 /// The System of the subset's particles, in this order: bonded terms that touch own ones, and all pairs, but that exchangeable particles
-/// have no exclusions. Force groups and names stay. Precondition: what shares a bonded term with own particles is among the fixed ones, as
-/// is, where some are exchangeable, what shares an exclusion.
+/// have no exclusions but those of neighbours in a molecule. Force groups and names stay. Precondition: what shares a bonded term with own
+/// particles is among the fixed ones, as is, where some are exchangeable, what shares an exclusion.
 std::unique_ptr<OpenMM::System> system_of(Subset const&, OpenMM::System const& whole);
 
 /// Gives the exchangeable particles of `system`, made for a subset of that shape, the parameters that those of this one have in `whole`,

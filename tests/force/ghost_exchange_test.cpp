@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <set>
 
@@ -51,7 +52,14 @@ struct Beads {
         for (Vec3& x : positions)
             for (double& c : x.data) c += step(random);
     }
-    /// All ghosts that act within the ranges' reach and so much more, partners included.
+    std::vector<std::int64_t> piece_with(std::int64_t bead) const {
+        std::int64_t first = bead;
+        while (!plan.piece.empty() && plan.piece[static_cast<std::size_t>(first)] == 0) --first;
+        std::vector<std::int64_t> all(plan.piece.empty() ? 1 : plan.piece[static_cast<std::size_t>(first)]);
+        std::iota(all.begin(), all.end(), first);
+        return all;
+    }
+    /// All ghosts that act within the ranges' reach and so much more, or are in a piece with one, partners included.
     std::vector<std::int64_t> expected(double more) const {
         std::set<std::int64_t> all(plan.partners.begin(), plan.partners.end());
         for (PairRange const& range : plan.ranges) {
@@ -64,7 +72,8 @@ struct Beads {
                 }
             for (std::int64_t const k : own_beads())
                 if (range.is_for(k)) own.push_back(std::lower_bound(acting.begin(), acting.end(), k) - acting.begin());
-            for (std::int64_t const i : ghosts_of(there, own, range.reach + more, plan.box)) all.insert(acting[i]);
+            for (std::int64_t const i : ghosts_of(there, own, range.reach + more, plan.box))
+                for (std::int64_t const k : piece_with(acting[i])) all.insert(k);
         }
         return {all.begin(), all.end()};
     }
@@ -126,6 +135,32 @@ TEST(GhostExchange, HoldsNearestImagesInABox) {
             Beads beads(150, 50, communicator, true);  // some are boxes away
             beads.plan.box = box;
             EXPECT_GT(walk_along(beads, communicator, 30, 0.03), 1);
+        }
+    });
+}
+
+/// Of four beads, or of one and three, scattered far from each other or not.
+TEST(GhostExchange, PiecesAreGhostsAsAWhole) {
+    on_ranks([](Communicator const& communicator) {
+        std::pair<std::optional<Vec3>, double> const cases[] = {{std::nullopt, 1.0}, {std::nullopt, 9.0}, {Vec3{{60, 12, 12}}, 1.0}};
+        for (auto const& [box, width] : cases) {
+            Beads beads(240, 12, communicator);
+            beads.plan.box = box;
+            std::uniform_real_distribution<double> off(-width, width);
+            for (std::int64_t k = 0; k < 240; ++k) {
+                beads.plan.piece.push_back(k % 4 == 0 ? k % 20 == 0 ? 1 : 4 : k % 20 == 1 ? 3 : 0);
+                if (beads.plan.piece.back() == 0)
+                    beads.positions[k] = beads.positions[k - 1] + Vec3{{off(beads.random), off(beads.random), off(beads.random)}};
+            }
+            PairRange few{reach, {}};
+            for (std::int64_t k = 0; k < 240; ++k) few.acts.push_back(k % 3 == 0 ? 1 : 0);
+            beads.plan.ranges = {few, {0.4 * reach, {}}};
+            Beads single = beads;
+            single.plan.piece.clear();
+            if (communicator.size() > 1) {
+                EXPECT_GT(beads.expected(skin).size(), single.expected(skin).size());
+            }
+            walk_along(beads, communicator, 20, 0.03);
         }
     });
 }

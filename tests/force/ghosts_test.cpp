@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -67,22 +68,49 @@ TEST(Ghosts, AreFoundFromEitherSideAlike) {
                           near_any({&there[i], 1}, {&here[k], 1}, 2.0, box).size());
 }
 
-/// Of two clouds that touch, on any number of threads.
-TEST(Ghosts, OfEachOtherAreThoseOfEither) {
+/// Of a cloud that touches another, in groups of chance lengths, some of them empty, on any number of threads.
+TEST(Ghosts, GroupsAreNearWhereOneOfTheirPointsIs) {
     auto const here = scattered(3000, 12, 6);
     auto there = scattered(2000, 12, 7);
     for (Vec3& x : there) x[0] += 24;
-    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{55, 25, 25}}}}) {
-        auto const one = near_any(here, there, 3.0, box), other = near_any(there, here, 3.0, box);
-        EXPECT_GT(one.size(), 50U);
-        EXPECT_LT(one.size(), 2000U);
-        for (int const threads : {1, 2, 5}) {
-            auto const executor = openmp_is_built() ? openmp_executor(threads) : serial_executor();
-            NearEachOther const both = near_each_other(here, there, 3.0, box, *executor);
-            EXPECT_EQ(both.one, one);
-            EXPECT_EQ(both.other, other);
+    std::mt19937_64 random(8);
+    std::vector<std::int64_t> const of_there{0, 1, 1, 700, 2000};
+    for (std::int64_t const longest : {1, 5, 60})
+        for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{55, 25, 25}}}}) {
+            std::uniform_int_distribution<std::int64_t> length(0, longest);
+            std::vector<std::int64_t> first{0};
+            while (first.back() < 3000) first.push_back(std::min<std::int64_t>(first.back() + length(random), 3000));
+            std::vector<char> expected(first.size() - 1, 0);
+            for (std::int64_t const k : near_any(here, there, 3.0, box))
+                expected[static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), k) - first.begin()) - 1] = 1;
+            EXPECT_NE(std::find(expected.begin(), expected.end(), 0), expected.end());
+            EXPECT_NE(std::find(expected.begin(), expected.end(), 1), expected.end());
+            for (int const threads : {1, 2, 5}) {
+                auto const executor = openmp_is_built() ? openmp_executor(threads) : serial_executor();
+                EXPECT_EQ(near_groups({here, first}, {there, of_there}, 3.0, box, *executor), expected);
+            }
         }
-    }
+}
+
+/// Points along curves lie together in blocks, and blocks by themselves far apart.
+TEST(Ghosts, OfChainsAreThoseOfAllPairs) {
+    auto const walk = [](std::uint64_t seed) {
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> place(-40, 40), step(-0.4, 0.4);
+        std::vector<Vec3> x;
+        for (int k = 0; k < 600; ++k) {
+            if (k % 100 == 0)
+                x.push_back({{place(random), place(random), place(random)}});
+            else
+                x.push_back(x.back() + Vec3{{step(random), step(random), step(random)}});
+        }
+        return x;
+    };
+    std::vector<Vec3> const positions = walk(9);
+    for (std::optional<Vec3> const& box :
+         {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{17, 14, 15}}}, std::optional<Vec3>{Vec3{{5, 40, 6}}}})
+        for (double const radius : {0.3, 1.5, 4.0, 9.0})
+            EXPECT_EQ(ghosts_of(positions, run(250, 420), radius, box), by_all_pairs(positions, 250, 420, radius, box)) << radius;
 }
 
 TEST(Ghosts, DisplacementIsTheLargest) {

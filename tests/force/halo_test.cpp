@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <random>
 
@@ -128,10 +129,25 @@ std::vector<Vec3> moved(BeadSystem const& beads, int step) {
 }
 
 struct Walk {
-    std::int64_t rebuilds = 0, changes = 0, contexts = 0, largest = 0;
+    std::int64_t rebuilds = 0, changes = 0, contexts = 0, largest = 0, ghosts = 0;
+    int joined = 0;  // pairs of ghosts that are one molecule to OpenMM
 };
 
-Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Communicator const& communicator) {
+int joined_ghosts(HaloForces& forces, int own) {
+    if (own == 0) return 0;
+    auto const& pairs = dynamic_cast<OpenMM::CustomNonbondedForce const&>(forces.computing()->context().getSystem().getForce(0));
+    int joined = 0;
+    for (int i = 0; i < pairs.getNumExclusions(); ++i) {
+        int a, b;
+        pairs.getExclusionParticles(i, a, b);
+        joined += a >= own && b >= own ? 1 : 0;
+    }
+    return joined;
+}
+
+using Places = std::function<std::vector<Vec3>(BeadSystem const&, int)>;  // of all beads at a step
+
+Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Communicator const& communicator, Places const& places = moved) {
     BeadSystem const beads = split(all_beads, communicator.size());
     std::int64_t const first = beads.first_of_rank[communicator.rank()];
     OpenMmModel const model = spec.system.empty() ? calvados2_model(spec, beads) : system_model(spec, beads);
@@ -144,7 +160,7 @@ Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Commun
     replicated.replicate = true;
     auto const oracle = make_openmm_force(replicated, beads, communicator);
     for (int step = 0; step <= steps; ++step) {
-        std::vector<Vec3> const x = moved(beads, step);
+        std::vector<Vec3> const x = places(beads, step);
         if (step % 7 == 3) forces.renew_ghosts();
         auto const found = memory.evaluate({x.begin() + first, x.begin() + first + static_cast<std::ptrdiff_t>(own)});
         if (step % 3 != 0) continue;
@@ -153,7 +169,8 @@ Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Commun
         EXPECT_LE(difference(found, expected), same * communicator.max(largest(expected)))
             << "step " << step << " on " << communicator.size() << " ranks, from bead " << first;
     }
-    return {forces.traffic().rebuilds, memory.contexts(), forces.contexts(), forces.largest_context()};
+    int const joined = spec.system.empty() ? joined_ghosts(forces, static_cast<int>(own)) : 0;
+    return {forces.traffic().rebuilds, memory.contexts(), forces.contexts(), forces.largest_context(), forces.traffic().ghosts, joined};
 }
 
 BeadSystem eight_chains(std::optional<Vec3> const& box) {
@@ -173,6 +190,68 @@ TEST(Halo, ForcesAreThoseOfTheReplicatedSystem) {
                 EXPECT_LT(w.changes, w.rebuilds / 2 + 1);
             }
         });
+}
+
+/// Chains alike go in pieces where they are whole on a rank; of 45, some are cut.
+TEST(Halo, ChainsThatAreAlikeGoInPieces) {
+    std::string const one = random_sequence(36, 31), other = random_sequence(20, 32);
+    std::vector<std::string> sequences;
+    for (int c = 0; c < 45; ++c) sequences.push_back(c % 2 == 0 ? one : other);
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{190, 8.5, 8.2}}}})
+        on_ranks([&](Communicator const& communicator) {
+            Walk const w = walk(on_reference(), proteins(sequences, 1, box), 24, communicator);
+            EXPECT_GT(w.rebuilds, 24 / 7);
+            EXPECT_EQ(w.joined > 0, communicator.size() > 1);
+            EXPECT_LE(w.contexts, 4);
+        });
+}
+
+/// Every second chain comes while the others go: there are no slots of its kinds, but as many of their lengths.
+TEST(Halo, PiecesTakeSlotsOfOtherKinds) {
+    std::string const one = random_sequence(40, 33), other = random_sequence(40, 34);
+    std::vector<std::string> sequences;
+    for (int c = 0; c < 80; ++c) sequences.push_back(c % 2 == 0 ? one : other);
+    Places const places = [](BeadSystem const& beads, int step) {
+        std::vector<Vec3> x;
+        for (std::int64_t b = 0; b < beads.size(); ++b) {
+            std::int64_t const chain = b / 40, k = b % 40;
+            bool const is_near = (chain % 2 == 0) == (step >= 6);
+            x.push_back({{0.8 * static_cast<double>(k % 5) + 4.0 * static_cast<double>(chain % 40), 0.9 * static_cast<double>(k / 5),
+                          (chain >= 40 ? is_near ? 2.0 : 40.0 : 0.0) + 0.1 * static_cast<double>(step % 2)}});
+        }
+        return x;
+    };
+    on_ranks([&](Communicator const& communicator) {
+        Walk const w = walk(on_reference(), proteins(sequences, 1, Vec3{{170, 20, 90}}), 9, communicator, places);
+        if (communicator.size() != 2 || communicator.rank() != 0) return;
+        EXPECT_EQ(w.contexts, 1);
+        EXPECT_EQ(w.changes, 2);
+        EXPECT_EQ(w.joined, 20 * (31 + 7));
+    });
+}
+
+/// All of them come: a Context is made anew, and again where no place is left for particles that align the slots.
+TEST(Halo, MorePiecesThanSlots) {
+    std::vector<std::string> const sequences(80, random_sequence(40, 35));
+    Places const places = [](BeadSystem const& beads, int step) {
+        std::vector<Vec3> x;
+        for (std::int64_t b = 0; b < beads.size(); ++b) {
+            std::int64_t const chain = b / 40, k = b % 40;
+            bool const is_near = step >= 3 && (chain < 79 || step >= 6);
+            x.push_back({{0.8 * static_cast<double>(k % 5) + 4.0 * static_cast<double>(chain % 40), 0.9 * static_cast<double>(k / 5),
+                          chain >= 40 ? is_near       ? 2.0
+                                        : chain == 40 ? 4.0
+                                                      : 40.0
+                                      : 0.0}});
+        }
+        return x;
+    };
+    on_ranks([&](Communicator const& communicator) {
+        Walk const w = walk(on_reference(), proteins(sequences, 1, Vec3{{170, 20, 90}}), 9, communicator, places);
+        if (communicator.size() != 2) return;
+        EXPECT_EQ(w.contexts, communicator.rank() == 0 ? 3 : 2);
+        EXPECT_EQ(w.ghosts, 40 * 40);
+    });
 }
 
 TEST(Halo, EveryForce) {
@@ -228,25 +307,82 @@ TEST(Halo, ABeadInTroubleIsEverybodysMessage) {
 }
 
 TEST(Slots, GhostsTakeThoseOfTheirKind) {
-    std::vector<int> const kind{0, 1, 0, 1, 2, 0};
-    GhostSlots slots(kind);
-    slots.make({0, 1, 4, 0, 0});
-    EXPECT_EQ(slots.size(), 5);
+    BeadPieces const beads = single_beads({0, 1, 0, 1, 2, 0});
+    GhostSlots slots(beads);
+    slots.make({0, 1, 4, 0, 0}, 0);
+    EXPECT_EQ(slots.particles(), 5);
     EXPECT_EQ(slots.idle().size(), 5U);
     EXPECT_TRUE(slots.take(std::vector<std::int64_t>{0, 1, 4}));
     EXPECT_EQ(slots.idle(), (std::vector<int>{3, 4}));
     EXPECT_TRUE(slots.take(std::vector<std::int64_t>{0, 2, 3}));  // 3 in the place of 1
-    EXPECT_EQ(slots.slot(0), 0);
-    EXPECT_EQ(slots.slot(2), 3);
-    EXPECT_EQ(slots.slot(3), 1);
+    EXPECT_EQ(slots.particle(0), 0);
+    EXPECT_EQ(slots.particle(2), 3);
+    EXPECT_EQ(slots.particle(3), 1);
     EXPECT_EQ(slots.idle(), (std::vector<int>{2, 4}));
     EXPECT_FALSE(slots.take(std::vector<std::int64_t>{1, 3}));  // two of kind 1
-    EXPECT_EQ(slots.slot(3), 1);
+    EXPECT_EQ(slots.particle(3), 1);
     EXPECT_TRUE(slots.take_of_any_kind(std::vector<std::int64_t>{1, 3}));
-    EXPECT_EQ(slots.slot(3), 1);
-    EXPECT_EQ(kind[static_cast<std::size_t>(slots.like(slots.slot(1)))], 1);
+    EXPECT_EQ(slots.particle(3), 1);
+    EXPECT_EQ(beads.kind[static_cast<std::size_t>(slots.like()[static_cast<std::size_t>(slots.particle(1))])], 1);
     EXPECT_EQ(slots.idle().size(), 3U);
     EXPECT_FALSE(slots.take_of_any_kind(std::vector<std::int64_t>{0, 1, 2, 3, 4, 5}));
+}
+
+/// Pieces of three beads of kinds a and b, of two, and single ones.
+TEST(Slots, PiecesTakeThoseOfTheirLength) {
+    BeadPieces const beads{{3, 0, 0, 3, 0, 0, 3, 0, 0, 2, 0, 1, 1}, {7, 0, 0, 8, 0, 0, 8, 0, 0, 9, 0, 0, 1}};
+    GhostSlots slots(beads);
+    slots.make({0, 3, 9, 11}, 2);
+    EXPECT_EQ(slots.particles(), 11);
+    EXPECT_EQ(slots.like(), (std::vector<std::int64_t>{0, 0, 0, 1, 2, 3, 4, 5, 9, 10, 11}));
+    EXPECT_EQ(slots.after(), (std::vector<int>{3, 4, 6, 7, 9}));
+    EXPECT_EQ(slots.idle(), (std::vector<int>{2, 3, 4, 5, 6, 7, 8, 9, 10, 0, 1}));
+    EXPECT_TRUE(slots.take(std::vector<std::int64_t>{6, 9}));
+    EXPECT_EQ(slots.particle(6), 5);
+    EXPECT_EQ(slots.particle(9), 8);
+    EXPECT_EQ(slots.idle(), (std::vector<int>{2, 3, 4, 10, 0, 1}));
+    EXPECT_FALSE(slots.take(std::vector<std::int64_t>{3, 6}));
+    EXPECT_TRUE(slots.take_of_any_kind(std::vector<std::int64_t>{3, 6}));
+    EXPECT_EQ(slots.particle(6), 5);
+    EXPECT_EQ(slots.particle(3), 2);
+    EXPECT_EQ(slots.like()[2], 3);
+    EXPECT_FALSE(slots.take_of_any_kind(std::vector<std::int64_t>{11, 12}));  // only one of that length
+    EXPECT_EQ(slots.particle(3), 2);
+}
+
+/// Chains alike: where they are whole on a rank and share no term with beads elsewhere they go in pieces.
+TEST(Pieces, AreOfWholeChainsThatAreAlike) {
+    std::string const sequence = random_sequence(70, 3);
+    BeadSystem const chains = proteins(std::vector<std::string>(20, sequence));
+    std::vector<int> kind;
+    for (std::int64_t b = 0; b < chains.size(); ++b) kind.push_back(static_cast<int>(sequence[static_cast<std::size_t>(b % 70)] - 'A'));
+    std::vector<char> joined(kind.size(), 0);
+    joined[3 * 70 + 5] = 1;
+    BeadSystem beads = split(chains, 1);
+    beads.first_of_rank = {0, 9 * 70 + 20, beads.size()};  // the tenth is cut
+    BeadPieces const pieces = pieces_of(beads, kind, joined);
+    for (std::int64_t b = 0; b < beads.size(); ++b) {
+        std::int64_t const chain = b / 70, k = b % 70;
+        int const expected = chain == 3 || chain == 9 ? 1 : k == 0 || k == 32 ? 32 : k == 64 ? 6 : 0;
+        EXPECT_EQ(pieces.of(b), expected) << b;
+        if (expected > 1) {
+            EXPECT_EQ(pieces.kind[static_cast<std::size_t>(b)], pieces.kind[static_cast<std::size_t>(k)]) << b;
+        }
+    }
+    EXPECT_NE(pieces.kind[0], pieces.kind[32]);
+
+    // Chains in another order on their ranks are whole all the same, unless their beads are not in a row.
+    for (std::int64_t c = 19; c >= 0; --c)
+        for (std::int64_t k = 0; k < 70; ++k) beads.by_rank.push_back(70 * c + k);
+    std::swap(beads.by_rank[0], beads.by_rank[1]);  // of the last chain
+    BeadPieces const reversed = pieces_of(beads, kind, joined);
+    for (std::int64_t c = 0; c < 20; ++c) EXPECT_EQ(reversed.of(70 * c), c == 3 || c == 10 || c == 19 ? 1 : 32) << c;
+
+    beads.by_rank.clear();
+    EXPECT_TRUE(pieces_of(beads, std::vector<int>(kind.size(), 0), joined).length.empty());  // single beads' blocks are as narrow
+    for (std::int64_t c = 0; c < 20; ++c)
+        kind[static_cast<std::size_t>(70 * c)] = kind[static_cast<std::size_t>(70 * c + 40)] = 30 + static_cast<int>(c);
+    EXPECT_TRUE(pieces_of(beads, kind, joined).length.empty());  // no two pieces are alike but the shortest
 }
 
 }  // namespace

@@ -198,6 +198,9 @@ INSTANTIATE_TEST_SUITE_P(
                            "{name: a, count: 40, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
                            "velocities: thermal}",
                            "box: {periodic: [90, 13, 12]}", 90, true},
+                      Case{"in_pieces",
+                           "{name: a, count: 40, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}",
+                           "box: {periodic: [110, 14, 13]}", 110, true},
                       Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""},
                       Case{"held",
                            "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
