@@ -13,7 +13,7 @@ GhostLists::Moves GhostExchange::moves(std::span<Vec3 const> own) const {
         m.far = largest_displacement(listed_, own) >= *farthest;
     for (std::int64_t k = 0; k < std::ssize(own); ++k)
         if (!std::all_of(own[k].data, own[k].data + 3, [](double x) { return std::isfinite(x); }))
-            m.bead = std::max(m.bead, lists_.own_bead(k));
+            m.bead = std::max(m.bead, lists_.number(lists_.own_bead(k)));
     return m;
 }
 

@@ -351,8 +351,11 @@ void GhostLists::audit(std::span<Vec3 const> own, std::span<Vec3 const> ghosts) 
     }
     worst = communicator_.max(worst);
     if (worst >= count)
-        throw SharedError(fmt::format("forces.openmm.audit: bead {:.0f} is felt on a rank that has no ghost of it", worst - count + 1));
-    if (worst > no_bead) throw SharedError(fmt::format("forces.openmm.audit: a ghost of bead {:.0f} is not where the bead is", worst + 1));
+        throw SharedError(fmt::format("forces.openmm.audit: bead {} is felt on a rank that has no ghost of it",
+                                      number(static_cast<std::int64_t>(worst - count)) + 1));
+    if (worst > no_bead)
+        throw SharedError(
+            fmt::format("forces.openmm.audit: a ghost of bead {} is not where the bead is", number(static_cast<std::int64_t>(worst)) + 1));
 }
 
 }  // namespace catena

@@ -34,6 +34,7 @@ class GhostLists {
         std::optional<Vec3> box;
         int threads = 0;                  // that search; 0: the rank's cores
         std::vector<std::uint8_t> piece;  // BeadPieces::length; partners are pieces by themselves
+        std::vector<std::int64_t> number = {};  // of each bead in messages; empty: as they are
     };
     GhostLists(Communicator const&, Plan);
 
@@ -75,6 +76,8 @@ class GhostLists {
 
     /// Number of this rank's bead k among all.
     std::int64_t own_bead(std::int64_t k) const { return plan_.by_rank.empty() ? first() + k : plan_.by_rank[first() + k]; }
+    /// A bead's in messages.
+    std::int64_t number(std::int64_t bead) const { return plan_.number.empty() ? bead : plan_.number[static_cast<std::size_t>(bead)]; }
     /// Partners, ascending, then the others, piece by piece.
     std::vector<std::int64_t> const& beads() const { return beads_; }
     /// The bead at which each piece begins, without partners.

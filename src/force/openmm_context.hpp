@@ -33,22 +33,34 @@ class ForceContext {
 
     std::int64_t size() const { return std::ssize(positions_); }
 
-    /// Of its particles, nm, W. Where all may be shifted, the middle of the first `centred` goes to the origin.
+    /// Of its particles, nm, W. Where all may be shifted, the middle of the first `centred` goes to the origin. Shifts and the cells that
+    /// particles are taken from stay for a while: OpenMM takes a particle for one that has moved far where they change, and looks for all
+    /// pairs anew. Platform Reference does so anyway: there they depend on these positions alone.
     void set_positions(std::span<Vec3 const> positions, std::size_t centred);
+    /// Shifts and cells are found anew at the next positions: as in a Context that has just been made.
+    void place_anew() { placed_for_ = 0; }
     /// Forces on particle i = 0 .. size - 1, kJ/mol/nm, W.
     std::vector<OpenMM::Vec3> forces();
     Placement placement() const { return placement_; }
     OpenMM::Context& context() { return *context_; }
-    /// Energy of one force group, kJ/mol.
-    double energy(int group);
+    /// Those of its System's forces, kJ/mol, each in the place of its group. Precondition: no two have one group.
+    void find_energies(std::span<double> of_group);
 
   private:
+    /// As long as OpenMM's own integrators leave particles in one order.
+    static constexpr int evaluations_of_a_place = 250, on_reference = 1;
+
+    void find_places(std::span<Vec3 const> positions, std::size_t centred);
+    bool has_strayed(OpenMM::Vec3 const& x) const;
+
     std::optional<Vec3> box_;
     Placement placement_;
     std::shared_ptr<OpenMM::System const> system_;
     OpenMM::VerletIntegrator integrator_{0.001};  // a Context wants one; it never steps
     std::unique_ptr<OpenMM::Context> context_;
     std::vector<OpenMM::Vec3> positions_;
+    std::vector<Vec3> place_;  // what is taken off each particle's coordinates
+    int evaluations_, placed_for_ = 0;  // of a place, and since it was found
 };
 
 }  // namespace catena

@@ -10,6 +10,7 @@
 
 #include "clock.hpp"
 #include "error.hpp"
+#include "force/force_layers.hpp"
 #include "force/openmm_path.hpp"
 #include "force/openmm_rank.hpp"
 #include "force/openmm_subset.hpp"
@@ -47,6 +48,7 @@ class OpenMmForces final : public OpenMmForce {
   private:
     std::int64_t first() const { return first_of_rank_[communicator_.rank()]; }
     std::int64_t own_count() const { return first_of_rank_[communicator_.rank() + 1] - first(); }
+    std::vector<ForceLayer> layers(OpenMmSpec const& spec, BeadSystem const& beads);
     std::unique_ptr<RankForces> make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const;
     void evaluate() noexcept;
     void wait();
@@ -56,8 +58,8 @@ class OpenMmForces final : public OpenMmForce {
     bool replicate_, overlap_, leaves_a_core_;
     OpenMmModel model_;
     OpenMmPlatform platform_;
-    std::optional<Vec3> box_;  // where the forces are periodic
     PathChoice path_;
+    std::vector<ForceLayer> layers_;  // taken off the model
     std::unique_ptr<RankForces> rank_;
     std::unique_ptr<DevicePath> device_;
     std::vector<Vec3> own_, forces_;
@@ -111,18 +113,29 @@ OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Comm
       leaves_a_core_(!platform.on_cpu() || cores_of_rank(communicator) > 1),
       model_(std::move(model)),
       platform_(std::move(platform)),
-      box_(box_of(model_, beads)),
       path_(spec.path, platform_.on_cpu() && spec.overlap, why_no_device, beads.scene_file),
+      layers_(layers(spec, beads)),
       rank_(make_rank_forces(spec, beads)),
       own_(static_cast<std::size_t>(own_count())),
       forces_(own_.size()) {
     if (path_.on_device()) device_ = rank_->device_path(spec.overlap);
 }
 
+/// On a GPU two Contexts take longer: lists of a shorter reach hold half of the pairs, not an eighth, and there are twice as many kernels.
+std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem const& beads) {
+    bool const pays = spec.layers == "all" || (spec.layers == "auto" && platform_.on_cpu());
+    if (spec.replicate || path_.on_device() || !pays) return {};
+    double constexpr few = 0.6, all = 1;
+    std::vector<ForceLayer> taken = take_layers(model_, beads, spec.layers == "auto" ? few : all);
+    for (ForceLayer const& layer : taken) model_.notes.insert(model_.notes.begin(), text_of(layer, beads));
+    return taken;
+}
+
 std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const {
-    RankPlan const plan{model_, platform_, beads, communicator_, box_, spec.audit};
-    if (communicator_.size() == 1 || spec.replicate) return make_whole_forces(plan);
-    return path_.on_device() ? make_halo_forces(plan) : make_split_forces(plan);
+    auto const make = communicator_.size() == 1 || spec.replicate ? make_whole_forces
+                      : path_.on_device()                         ? make_halo_forces
+                                                                  : make_split_forces;
+    return make_layered_forces({model_, platform_, beads, communicator_, box_of(model_, beads), spec.audit}, layers_, make);
 }
 
 void OpenMmForces::evaluate() noexcept {
@@ -178,8 +191,7 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     std::vector<double> values(model_.terms.size());
     std::string failure;
     try {
-        if (ForceContext* const context = rank_->every_bead(device_.get()))
-            for (std::size_t i = 0; i < values.size(); ++i) values[i] = context->energy(static_cast<int>(i));
+        rank_->find_energies(device_.get(), values);
     } catch (std::exception const& e) {
         if (communicator_.rank() != 0) throw;
         failure = e.what();

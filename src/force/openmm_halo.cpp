@@ -160,7 +160,9 @@ std::vector<Vec3> HaloForces::forces_again() {
     return own_forces;
 }
 
-ForceContext* HaloForces::every_bead(DevicePath* device) { return share_.every_bead(device->positions(), home_.get()); }
+void HaloForces::find_energies(DevicePath* device, std::span<double> of_group) {
+    share_.find_energies(device->positions(), home_.get(), of_group);
+}
 
 void HaloForces::gather(std::span<Vec3 const>) { throw ComputationError("positions stay on the GPU"); }
 void HaloForces::evaluate(std::span<Vec3>) { throw ComputationError("forces stay on the GPU"); }

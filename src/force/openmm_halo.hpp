@@ -28,7 +28,7 @@ class HaloForces final : public RankForces, public Halo {
     // RankForces
     void gather(std::span<Vec3 const> own) override;
     void evaluate(std::span<Vec3> own_forces) override;
-    ForceContext* every_bead(DevicePath* device) override;
+    void find_energies(DevicePath* device, std::span<double> of_group) override;
     DevicePathPlan plan(bool overlap);
     std::unique_ptr<DevicePath> device_path(bool overlap) override;
     std::vector<Vec3> forces_again() override;

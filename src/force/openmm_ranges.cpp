@@ -76,23 +76,22 @@ std::vector<char> acts_in(OpenMM::NonbondedForce const& force) {
     return acts;
 }
 
-/// None of a force that is not one between pairs.
-std::vector<char> acts_in(OpenMM::Force const& force) {
-    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return acts_in(*pairs);
-    if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force)) return acts_in(*pairs);
-    return {};
-}
-
 bool are_among(std::vector<char> const& some, std::vector<char> const& others) {
     return std::equal(some.begin(), some.end(), others.begin(), [](char one, char other) { return one <= other; });
 }
 
 }  // namespace
 
+std::vector<char> acting_particles(OpenMM::Force const& force) {
+    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return acts_in(*pairs);
+    if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force)) return acts_in(*pairs);
+    return {};
+}
+
 std::vector<PairRange> pair_ranges(OpenMM::System const& system, std::vector<std::int64_t> const& bead_of_particle) {
     std::map<double, std::vector<char>, std::greater<>> acts_to;  // of each particle
     for (int i = 0; i < system.getNumForces(); ++i) {
-        std::vector<char> const acts = acts_in(system.getForce(i));
+        std::vector<char> const acts = acting_particles(system.getForce(i));
         if (acts.empty()) continue;
         if (acts.size() != bead_of_particle.size())
             throw OpenMM::OpenMMException(system.getForce(i).getName() +

@@ -27,9 +27,9 @@ class RankForces {
     /// Forces on own beads at the positions gathered last, on any thread: it sends no messages. Throws ComputationError and what OpenMM
     /// throws.
     virtual void evaluate(std::span<Vec3> own_forces) = 0;
-    /// A Context of every bead at the positions gathered last, or where `device` has them, on rank 0, nullptr on others: for energies.
-    /// Collective, but that rank 0 may throw what OpenMM throws.
-    virtual ForceContext* every_bead(DevicePath* device) = 0;
+    /// On rank 0 the energies of its forces at the positions gathered last, or where `device` has them, kJ/mol, each in the place of its
+    /// group. Collective, but that rank 0 may throw what OpenMM throws once nothing collective is left to do.
+    virtual void find_energies(DevicePath* device, std::span<double> of_group) = 0;
     /// The path on which positions and forces stay on the GPU, in the place of gather() and evaluate(). Precondition: they are made for it.
     virtual std::unique_ptr<DevicePath> device_path(bool /*overlap*/) { return nullptr; }
     /// Forces on own beads at the positions that the path had last.
@@ -52,6 +52,8 @@ class RankForces {
     static double constexpr skin_of_reach = 0.125;
 };
 
+struct ForceLayer;
+
 /// What the ranks' shares are made from. A rank without beads builds nothing.
 struct RankPlan {
     OpenMmModel const& model;
@@ -59,7 +61,8 @@ struct RankPlan {
     BeadSystem const& beads;
     Communicator const& communicator;
     std::optional<Vec3> box;  // edges of the box where the forces are periodic
-    bool audit = false;       // compares the ghosts with a search among all beads at every evaluation
+    bool audit = false;        // compares the ghosts with a search among all beads at every evaluation
+    double longest_reach = 0;  // of other forces on these beads: their ghosts' lists last as long
 };
 
 /// A Context with every bead on each rank: one rank, or `replicate`; for the GPU one rank alone. Throws what OpenMM throws if it refuses
@@ -70,6 +73,10 @@ std::unique_ptr<RankForces> make_whole_forces(RankPlan const&);
 std::unique_ptr<RankForces> make_split_forces(RankPlan const&);
 /// The same for the path on which positions and forces stay on the GPU.
 std::unique_ptr<RankForces> make_halo_forces(RankPlan const&);
+
+/// Layer by layer (force/force_layers.hpp), each made by `make`; through the host. `plan`'s model is what the layers were taken off.
+using MakeRankForces = std::unique_ptr<RankForces> (*)(RankPlan const&);
+std::unique_ptr<RankForces> make_layered_forces(RankPlan const&, std::vector<ForceLayer> const& layers, MakeRankForces make);
 
 /// Throws ComputationError where one of `vectors` is not finite. `bead`: which each belongs to. `what`: "the position".
 void check_finite(std::span<Vec3 const> vectors, std::span<std::int64_t const> bead, char const* what);

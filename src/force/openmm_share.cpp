@@ -33,7 +33,7 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
       particle_of_bead_(plan.model.bead_of_particle.size()),
       ends_(std::isfinite(reach_of(*plan.model.system))),
       ranges_(ends_ ? pair_ranges(*plan.model.system, plan.model.bead_of_particle) : std::vector<PairRange>{}),
-      skin_(skin_of_reach * longest_reach(ranges_)),
+      skin_(skin_of_reach * std::max(longest_reach(ranges_), plan.longest_reach)),
       exchanges_(can_exchange_particles(*plan.model.system)) {
     for (std::size_t p = 0; p < particle_of_bead_.size(); ++p) particle_of_bead_[model_.bead_of_particle[p]] = static_cast<int>(p);
     for (int rank = 0; rank < communicator_.size(); ++rank) {
@@ -41,6 +41,7 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
         bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
         bead_at_.insert(bead_at_.end(), of_rank.begin(), of_rank.end());
     }
+    for (std::int64_t const bead : own_) own_numbers_.push_back(beads_.name(bead));
     if (own_.empty()) return;
     if (!ends_) {
         partners_ = all_but(own_, beads_.size());
@@ -51,7 +52,7 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
 }
 
 GhostLists::Plan SplitShare::lists(std::vector<std::uint8_t> pieces) const {
-    return {beads_.first_of_rank, beads_.by_rank, partners_, ranges_, skin_, box_, beads_.threads, std::move(pieces)};
+    return {beads_.first_of_rank, beads_.by_rank, partners_, ranges_, skin_, box_, beads_.threads, std::move(pieces), beads_.number};
 }
 
 std::vector<int> SplitShare::particles_of(std::span<std::int64_t const> beads) const {
@@ -68,15 +69,15 @@ Subset SplitShare::subset_of(std::span<std::int64_t const> ghosts) const {
     return subset;
 }
 
-ForceContext* SplitShare::every_bead(std::span<Vec3 const> own, ForceContext* home) {
+void SplitShare::find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group) {
     std::vector<Vec3> all(communicator_.rank() == 0 ? particle_of_bead_.size() : 0);
     communicator_.gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)), bytes_of_rank_);
-    if (communicator_.rank() != 0) return nullptr;
+    if (communicator_.rank() != 0) return;
     if (!energies_) energies_ = context_of(model_.system, home);
     std::vector<Vec3> of_particles(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) of_particles[particle_of_bead_[bead_at_[i]]] = all[i];
     energies_->set_positions(of_particles, of_particles.size());
-    return energies_.get();
+    energies_->find_energies(of_group);
 }
 
 }  // namespace catena

@@ -39,8 +39,10 @@ class SplitShare {
     std::unique_ptr<ForceContext> context_of(std::shared_ptr<OpenMM::System const> system, ForceContext* home = nullptr) const {
         return std::make_unique<ForceContext>(std::move(system), platform_, box_, home);
     }
-    /// A Context of every bead on rank 0 with these positions, nullptr on others. Collective.
-    ForceContext* every_bead(std::span<Vec3 const> own, ForceContext* home = nullptr);
+    /// RankForces::find_energies with these positions.
+    void find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group);
+    /// Of own beads in the scene, for messages.
+    std::vector<std::int64_t> const& own_numbers() const { return own_numbers_; }
     std::optional<Vec3> const& box() const { return box_; }
 
   private:
@@ -49,7 +51,7 @@ class SplitShare {
     BeadSystem const& beads_;
     Communicator const& communicator_;
     std::optional<Vec3> box_;
-    std::vector<std::int64_t> own_;
+    std::vector<std::int64_t> own_, own_numbers_;
     std::vector<int> particle_of_bead_;
     bool ends_;  // every force has a cutoff
     std::vector<PairRange> ranges_;

@@ -33,10 +33,12 @@ class SplitForces final : public RankForces {
         context_->set_positions(positions_, own().size());
         auto const forces = context_->forces();
         for (std::size_t k = 0; k < own().size(); ++k) own_forces[k] = {{forces[k][0], forces[k][1], forces[k][2]}};
-        check_finite(own_forces, own(), "OpenMM's force");
+        check_finite(own_forces, share_.own_numbers(), "OpenMM's force");
     }
 
-    ForceContext* every_bead(DevicePath*) override { return share_.every_bead(std::span(positions_).first(own().size())); }
+    void find_energies(DevicePath*, std::span<double> of_group) override {
+        share_.find_energies(std::span(positions_).first(own().size()), nullptr, of_group);
+    }
     void renew_ghosts() override { ghosts_.renew(); }
     bool ghosts_are_due() const override { return ghosts_.is_due(); }
     GhostTraffic traffic() const override { return ghosts_.traffic(); }
@@ -70,10 +72,12 @@ class SplitForces final : public RankForces {
         std::int64_t const needed = std::ssize(own()) + std::ssize(ghosts_.beads());
         std::int64_t const enough = std::min(beads_, needed + needed / spare_part + least_spares);
         bool const fits = needed <= context_->size() && context_->size() <= 2 * enough;
-        if (share_.exchanges() && fits)
+        if (share_.exchanges() && fits) {
             exchange_particles(subset_of(ghosts_.beads(), context_->size() - needed), share_.system(), *system_, context_->context());
-        else
+            context_->place_anew();
+        } else {
             make_context(ghosts_.beads(), share_.exchanges() ? enough - needed : 0);
+        }
     }
 
     /// One particle in so many is a spare when a Context is made, and so many besides.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 #include <string>
 
@@ -303,13 +304,19 @@ std::vector<int> kinds_of_particles(System const& system) {
 }
 
 std::unique_ptr<System> system_of(Subset const& subset, System const& whole) {
+    std::vector<int> forces(static_cast<std::size_t>(whole.getNumForces()));
+    std::iota(forces.begin(), forces.end(), 0);
+    return system_of(subset, whole, forces);
+}
+
+std::unique_ptr<System> system_of(Subset const& subset, System const& whole, std::vector<int> const& forces) {
     auto system = std::make_unique<System>();
     Vec3 a, b, c;
     whole.getDefaultPeriodicBoxVectors(a, b, c);
     system->setDefaultPeriodicBoxVectors(a, b, c);
     for (int p : subset.particles) system->addParticle(whole.getParticleMass(p));
     Renumbering renumbering(whole.getNumParticles(), subset);
-    for (int i = 0; i < whole.getNumForces(); ++i) {
+    for (int const i : forces) {
         Force const& from = whole.getForce(i);
         auto to = copy_force(from, renumbering);
         to->setForceGroup(from.getForceGroup());

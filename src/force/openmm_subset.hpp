@@ -48,6 +48,8 @@ std::vector<int> kinds_of_particles(OpenMM::System const&);
 /// have no exclusions but those of neighbours in a molecule. Force groups and names stay. Precondition: what shares a bonded term with own
 /// particles is among the fixed ones, as is, where some are exchangeable, what shares an exclusion.
 std::unique_ptr<OpenMM::System> system_of(Subset const&, OpenMM::System const& whole);
+/// With some of its forces alone.
+std::unique_ptr<OpenMM::System> system_of(Subset const&, OpenMM::System const& whole, std::vector<int> const& forces);
 
 /// Gives the exchangeable particles of `system`, made for a subset of that shape, the parameters that those of this one have in `whole`,
 /// and so in its `context`.

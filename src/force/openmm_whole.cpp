@@ -12,7 +12,10 @@ namespace {
 class WholeForces final : public RankForces {
   public:
     explicit WholeForces(RankPlan const& plan)
-        : model_(plan.model), platform_(plan.platform), communicator_(plan.communicator), box_(plan.box) {
+        : model_(plan.model),
+          platform_(plan.platform),
+          communicator_(plan.communicator),
+          box_(plan.box) {
         BeadSystem const& beads = plan.beads;
         std::vector<std::int64_t> particle_of_bead(model_.bead_of_particle.size());
         for (std::size_t p = 0; p < particle_of_bead.size(); ++p)
@@ -22,6 +25,7 @@ class WholeForces final : public RankForces {
             bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
             for (std::int64_t const bead : of_rank) particle_.push_back(particle_of_bead[bead]);
         }
+        for (std::int64_t const bead : model_.bead_of_particle) number_of_particle_.push_back(beads.name(bead));
         first_ = beads.first_of_rank[communicator_.rank()];
         if (first_ < beads.first_of_rank[communicator_.rank() + 1]) make_context();
     }
@@ -35,19 +39,19 @@ class WholeForces final : public RankForces {
 
     void evaluate(std::span<Vec3> own_forces) override {
         if (own_forces.empty()) return;
-        check_finite(positions_, model_.bead_of_particle, "the position");
+        check_finite(positions_, number_of_particle_, "the position");
         context_->set_positions(positions_, positions_.size());
         std::vector<Vec3> all;
         for (OpenMM::Vec3 const& f : context_->forces()) all.push_back({{f[0], f[1], f[2]}});
-        check_finite(all, model_.bead_of_particle, "OpenMM's force");
+        check_finite(all, number_of_particle_, "OpenMM's force");
         for (std::size_t k = 0; k < own_forces.size(); ++k) own_forces[k] = all[particle_[first_ + k]];
     }
 
-    ForceContext* every_bead(DevicePath*) override {
-        if (communicator_.rank() != 0) return nullptr;
+    void find_energies(DevicePath*, std::span<double> of_group) override {
+        if (communicator_.rank() != 0) return;
         if (!context_) make_context();
         if (!positions_.empty()) context_->set_positions(positions_, positions_.size());  // else they are on a GPU
-        return context_.get();
+        context_->find_energies(of_group);
     }
     std::unique_ptr<DevicePath> device_path(bool overlap) override {
         DevicePathPlan plan;
@@ -74,6 +78,7 @@ class WholeForces final : public RankForces {
     OpenMmPlatform const& platform_;
     Communicator const& communicator_;
     std::optional<Vec3> box_;
+    std::vector<std::int64_t> number_of_particle_;        // in the scene, for messages
     std::vector<std::int64_t> particle_, bytes_of_rank_;  // of beads in the order of by_rank
     std::int64_t first_ = 0;
     std::unique_ptr<ForceContext> context_;

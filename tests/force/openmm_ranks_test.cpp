@@ -25,7 +25,7 @@ class Ranks : public ::testing::Test {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
             auto const force = make_openmm_force(spec, beads, communicator);
-            auto const whole = make_openmm_force(spec, split(all_beads, 1), *serial);
+            auto const whole = make_openmm_force(in_one_context(spec), split(all_beads, 1), *serial);
             auto positions = wound(beads, 3);
             int const evaluations = 5;
             for (int i = 0; i < evaluations; ++i) {
@@ -46,6 +46,14 @@ class Ranks : public ::testing::Test {
         });
     }
 
+    static OpenMmSpec in_one_context(OpenMmSpec spec) {
+        spec.layers = "none";
+        return spec;
+    }
+    static OpenMmSpec layer_by_layer(OpenMmSpec spec) {
+        spec.layers = "all";
+        return spec;
+    }
     static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole) {
         auto const terms = force.energies(), expected = whole.energies();
         EXPECT_EQ(terms.size(), expected.size());
@@ -82,7 +90,7 @@ TEST_F(Ranks, AChainThatComesFromAfar) {
         BeadSystem const beads = split(all_beads, communicator.size());
         auto const serial = serial_communicator();
         auto const force = make_openmm_force(on_reference(), beads, communicator);
-        auto const whole = make_openmm_force(on_reference(), split(all_beads, 1), *serial);
+        auto const whole = make_openmm_force(in_one_context(on_reference()), split(all_beads, 1), *serial);
         auto positions = wound(beads, 3);
         for (std::int64_t k = 30; k < 60; ++k) positions[k][2] += 12;
         for (double const step : {0.0, -0.2, -9.0, -2.8, 6.0}) {
@@ -114,6 +122,33 @@ TEST_F(Ranks, EveryForce) {
 TEST_F(Ranks, EveryForceInABox) {
     BeadSystem const beads = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
     compare(of_system(*every_force(beads), "every-box.xml"), beads, 0.03, Lists::are_made_anew);
+}
+
+TEST_F(Ranks, InOneContext) {
+    BeadSystem const beads = proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}});
+    compare(in_one_context(on_reference()), beads, 0.1, Lists::are_made_anew);
+}
+
+/// "every.xml": a force between charges is a layer, with exclusions among them.
+TEST_F(Ranks, LayerByLayer) {
+    BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
+    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03, Lists::are_made_anew);
+    BeadSystem const in_box = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
+    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03, Lists::are_made_anew);
+}
+
+TEST_F(Ranks, ALayerWithoutBeadsOnSomeRanks) {
+    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1, Lists::are_made_anew);
+    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1, Lists::are_made_anew);  // no layer: no charge
+}
+
+TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
+    BeadSystem const in_system = proteins({random_sequence(20, 20), random_sequence(60, 21)});
+    BeadSystem scene = proteins({random_sequence(60, 21), random_sequence(20, 20)});
+    std::swap(scene.chain_name[0], scene.chain_name[1]);
+    OpenMmSpec spec = layer_by_layer(of_system(*every_force(in_system), "layers-order.xml"));
+    spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
+    compare(spec, scene, 0.03, Lists::are_made_anew);
 }
 
 TEST_F(Ranks, BondedForcesAlone) {
