@@ -18,7 +18,9 @@ Vec3 mean(std::vector<Vec3> const& x) {
 /// Of the only rank.
 class LonePath final : public GpuPath {
   public:
-    LonePath(OpenMM::Context& context, DevicePathPlan plan) : GpuPath(context, std::move(plan)) { compute_with(on_device(context)); }
+    LonePath(OpenMM::Context& context, DevicePathPlan plan) : GpuPath(context, std::move(plan), evaluations_of_an_order) {
+        compute_with(on_device(context));
+    }
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         refuse_trouble();  // of the evaluation before, which is over where its step is
@@ -39,6 +41,9 @@ class LonePath final : public GpuPath {
     }
 
   private:
+    /// OpenMM's own integrators do so after 250, which would be a twentieth of a step of 100,000 beads; chains move little meanwhile.
+    static constexpr int evaluations_of_an_order = 1000;
+
     void order_anew(std::span<DeviceBeads* const> beads) {
         beads_.assign(beads.begin(), beads.end());
         std::vector<Vec3> const x = positions();
@@ -51,7 +56,8 @@ class LonePath final : public GpuPath {
 
 }  // namespace
 
-GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan) : plan_(std::move(plan)), home_(on_device(home)) {
+GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations_of_an_order)
+    : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations_of_an_order) {
     // What lives in OpenMM's context is made there.
     if (!home_->make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
     flags_ = std::make_unique<PinnedBuffer<Flags>>(1);
@@ -140,7 +146,7 @@ void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));
-    of_this_order_ = (of_this_order_ + 1) % evaluations_of_an_order;
+    of_this_order_ = (of_this_order_ + 1) % of_an_order_;
 }
 
 void GpuPath::finish(std::span<DeviceBeads* const> beads) {

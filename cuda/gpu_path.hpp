@@ -22,7 +22,8 @@ void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
 class GpuPath : public DevicePath {
   public:
     /// `home`: a Context that outlives this; what the chains and this keep on the GPU is kept in its CUcontext.
-    GpuPath(OpenMM::Context& home, DevicePathPlan plan);
+    /// `evaluations_of_an_order`: particles are brought into a new order after so many.
+    GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations_of_an_order);
     ~GpuPath() override;
 
     bool make_current() noexcept override { return home_->make_current(); }
@@ -31,9 +32,6 @@ class GpuPath : public DevicePath {
     std::vector<Vec3> positions() override;
 
   protected:
-    /// OpenMM's own integrators leave their particles in one order as long.
-    static constexpr int evaluations_of_an_order = 250;
-
     struct Flags {
         std::int64_t trouble = -1, far = 0, of_ghosts = -1;
     };
@@ -73,9 +71,9 @@ class GpuPath : public DevicePath {
     std::unique_ptr<Events> events_;
     std::unique_ptr<Buffer<DeviceBead>> own_;
     DeviceParticles particles_;
-    std::vector<std::int32_t> place_;  // of each particle
-    std::vector<DeviceBeads*> beads_;  // of the last evaluation
-    int of_this_order_ = 0;            // evaluations
+    std::vector<std::int32_t> place_;      // of each particle
+    std::vector<DeviceBeads*> beads_;      // of the last evaluation
+    int of_an_order_, of_this_order_ = 0;  // evaluations
     bool timed_ = false;
     double begun_ = 0;
     Interval exchange_;

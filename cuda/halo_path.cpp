@@ -36,7 +36,7 @@ class Room {
 
 class HaloPath final : public GpuPath {
   public:
-    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan)), halo_(*plan_.halo) {}
+    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan), evaluations_of_an_order), halo_(*plan_.halo) {}
     ~HaloPath() override { make_current(); }  // what it owns lives there
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
@@ -54,6 +54,9 @@ class HaloPath final : public GpuPath {
     void refuse_trouble() override { halo_.refuse_trouble(take_trouble()); }
 
   private:
+    /// Where lists are made anew ghosts come from elsewhere.
+    static constexpr int evaluations_of_an_order = 250;
+
     Halo::Lists const& lists() const { return halo_.lists(); }
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
     std::span<Vec3> in() const { return {(*in_).data(), lists().particle.size()}; }

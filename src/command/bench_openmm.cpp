@@ -27,7 +27,7 @@ namespace {
 /// OpenMM's set-up of so many constraints has not ended within minutes; more are tried in a process that can be stopped.
 constexpr std::int64_t most_constraints_unguarded = 200000;
 constexpr std::chrono::seconds patience{30};
-constexpr double block_seconds = 0.1;
+constexpr double block_seconds = 0.1, longest_block = 4;
 constexpr double slow_seconds = 1;  // of a step: two are enough to warm up
 constexpr int timed_steps = 3;      // the median one is drawn
 
@@ -35,6 +35,7 @@ constexpr int timed_steps = 3;      // the median one is drawn
 struct Runner {
     std::function<void(int)> step;
     int of_block = 1;
+    int period = 1;  // steps after which all that is done now and then has been done: in a block, where that is not too long
     std::vector<double> seconds = {};
 
     void warm_up() {
@@ -47,6 +48,7 @@ struct Runner {
         step(3);
         double const one = (seconds_now() - start) / 3;
         of_block = static_cast<int>(std::clamp(block_seconds / one, 1.0, 1000.0));
+        if (period * one < longest_block) of_block = std::max(of_block, period);
         step(std::min(of_block, 40));
     }
     void block() {
@@ -55,6 +57,9 @@ struct Runner {
         seconds.push_back((seconds_now() - start) / of_block);
     }
 };
+
+/// Of a new order of particles on a GPU.
+int period_of(ChainSystem const& system) { return system.openmm()->path() == "device" ? 1000 : 1; }
 
 void take_turns(std::vector<Runner*> const& runners, int blocks) {
     for (int b = 0; b < blocks; ++b)
@@ -160,6 +165,7 @@ struct Rival {
             own = make_openmm_own(*catena.scene().forces.openmm, catena.system().beads(), communicator, links,
                                   own_run(catena.scene(), backend), positions);
             runner.step = [this](int count) { own->step(count); };
+            runner.period = period_of(catena.system());
             runner.warm_up();
         } catch (std::exception const& e) {
             found.fail(e.what());
@@ -195,6 +201,7 @@ SideBySide compare(std::int64_t beads, BenchRequest const& request, Communicator
     ChainSystem& system = catena.system();
     std::vector<Vec3> const start = system.snapshot().position;
     Runner own{[&](int count) { catena.step(count); }};
+    own.period = period_of(system);
     own.warm_up();
     Rival bonds{OwnLinks::bonds}, constraints{OwnLinks::constraints};
     bonds.make(catena, communicator, backend, start);
