@@ -20,9 +20,9 @@ struct ForceLayer {
     std::vector<std::int64_t> bead;  // of the scene, of each of these, ascending
 };
 
-/// Takes forces off `model`, the longest first, as long as all Contexts together have fewer pairs, and no more than `most_pairs` of those of
-/// one: CustomNonbondedForces with a cutoff that ask for all pairs (no interaction groups) and for nothing beyond it (no correction of the
-/// energy). Those in which no bead acts get no layer. None where a force cannot be split. The same on every rank.
+/// Takes forces off `model`, the longest first, as long as all Contexts together have fewer pairs, and no more than `most_pairs` of those
+/// of one: CustomNonbondedForces with a cutoff that ask for all pairs (no interaction groups) and for nothing beyond it (no correction of
+/// the energy). Those in which no bead acts get no layer. None where a force cannot be split. The same on every rank.
 std::vector<ForceLayer> take_layers(OpenMmModel& model, BeadSystem const& beads, double most_pairs);
 
 /// Of each of a rank's own beads in a layer, its place among all of the rank's, in the order of BeadSystem::by_rank.

@@ -32,8 +32,8 @@ class GhostLists {
         std::vector<PairRange> ranges;                     // without any: no other ghosts
         double skin = 0;
         std::optional<Vec3> box;
-        int threads = 0;                  // that search; 0: the rank's cores
-        std::vector<std::uint8_t> piece;  // BeadPieces::length; partners are pieces by themselves
+        int threads = 0;                        // that search; 0: the rank's cores
+        std::vector<std::uint8_t> piece;        // BeadPieces::length; partners are pieces by themselves
         std::vector<std::int64_t> number = {};  // of each bead in messages; empty: as they are
     };
     GhostLists(Communicator const&, Plan);

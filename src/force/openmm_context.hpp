@@ -59,7 +59,7 @@ class ForceContext {
     OpenMM::VerletIntegrator integrator_{0.001};  // a Context wants one; it never steps
     std::unique_ptr<OpenMM::Context> context_;
     std::vector<OpenMM::Vec3> positions_;
-    std::vector<Vec3> place_;  // what is taken off each particle's coordinates
+    std::vector<Vec3> place_;           // what is taken off each particle's coordinates
     int evaluations_, placed_for_ = 0;  // of a place, and since it was found
 };
 

@@ -34,7 +34,7 @@ struct BeadSystem {
     std::vector<std::int64_t>
         first_of_rank;                  // size ranks + 1: rank r owns beads by_rank[first_of_rank[r]] .. by_rank[first_of_rank[r + 1] - 1]
     std::vector<std::int64_t> by_rank;  // beads in the order in which ranks own them; empty: as they are
-    std::vector<std::int64_t> number;  // of each bead in the scene, for messages; empty: as they are
+    std::vector<std::int64_t> number;   // of each bead in the scene, for messages; empty: as they are
     std::optional<Vec3> box;
     std::string scene_file;  // for messages
     int threads = 0;         // that look for ghosts; 0: the rank's cores

@@ -60,7 +60,7 @@ struct RankPlan {
     OpenMmPlatform const& platform;
     BeadSystem const& beads;
     Communicator const& communicator;
-    std::optional<Vec3> box;  // edges of the box where the forces are periodic
+    std::optional<Vec3> box;   // edges of the box where the forces are periodic
     bool audit = false;        // compares the ghosts with a search among all beads at every evaluation
     double longest_reach = 0;  // of other forces on these beads: their ghosts' lists last as long
 };

@@ -12,10 +12,7 @@ namespace {
 class WholeForces final : public RankForces {
   public:
     explicit WholeForces(RankPlan const& plan)
-        : model_(plan.model),
-          platform_(plan.platform),
-          communicator_(plan.communicator),
-          box_(plan.box) {
+        : model_(plan.model), platform_(plan.platform), communicator_(plan.communicator), box_(plan.box) {
         BeadSystem const& beads = plan.beads;
         std::vector<std::int64_t> particle_of_bead(model_.bead_of_particle.size());
         for (std::size_t p = 0; p < particle_of_bead.size(); ++p)

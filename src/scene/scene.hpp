@@ -154,8 +154,8 @@ struct OpenMmSpec {
     std::string precision;         // GPU platforms
     int threads = 0;               // per rank; 0: cores / ranks
     int device = -1;
-    std::string path = "auto";  // auto | device (positions and forces stay on the GPU) | host (worker thread) | inline
-    bool overlap = true;        // the chains' own work goes on while forces are computed (paths device and host)
+    std::string path = "auto";    // auto | device (positions and forces stay on the GPU) | host (worker thread) | inline
+    bool overlap = true;          // the chains' own work goes on while forces are computed (paths device and host)
     std::string layers = "auto";  // auto | all | none: forces that reach far and act on few beads in Contexts of their own
     bool replicate = false;
     bool audit = false;             // compares the ghosts with a search among all beads at every evaluation
