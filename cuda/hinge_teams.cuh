@@ -70,7 +70,7 @@ class HingeTeam {
         dca::InertiaRun<double> run = whole();
         Body const last = body(count - 1);
         dca::ReleasedHinge<double> hinge;
-        dca::RunsEnd<double> const end = end_run(run, outboard_handle(body(count - 2)), last, hinge);
+        dca::RunsEnd<double> const end = end_run(run, outboard_handle(body(count - 2)), last, hinge, dca::Undriven{});
         if (leads()) {
             kept.put(count - 1, hinge);
             kept.put(end);

@@ -116,15 +116,21 @@ Outcome ended(Outcome outcome, std::string const& what, Table const& table, Comm
     return outcome;
 }
 
+std::string words_of(std::string const& loads) {
+    if (loads == "none") return "; gravity alone";
+    return loads == "torques" ? "; gravity and torques of joints" : "; gravity, torques of joints and a wrench on every body";
+}
+
 Outcome solve(Communicator const& communicator, BenchRequest const& request) {
     std::vector<Backend> const backends = request.backends.empty() ? cpu_backends() : request.backends;
     Table table(
         {"joint", "bodies", "backend", "threads", "matrix sweep", "bias sweep", "evaluation", "ABA oracle", "residual", "bound", ""},
         {0, 2, 10});
     Outcome outcome = begun("solve", communicator);
+    outcome.json["loads"] = request.loads;
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
-            Scene scene = random_scene(joint, bodies, overrides_of(request));
+            Scene scene = random_scene(joint, bodies, overrides_of(request), request.loads);
             bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
             Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
             for (Backend const backend : backends) {
@@ -137,7 +143,8 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
                 outcome.json["results"].push_back(json_of(m, scene, oracle));
             }
         }
-    std::string const what = fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too", request.repeat);
+    std::string const what = fmt::format("ns a body, median of {}; a whole evaluation holds kinematics and loads too{}", request.repeat,
+                                         words_of(request.loads));
     return ended(std::move(outcome), what, table, communicator);
 }
 

@@ -82,9 +82,10 @@ Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
     Outcome outcome;
     outcome.json = {{"bench", "peers"}, {"build", version_json()}, {"hardware", hardware_json()}, {"ranks", 1},
                     {"limits", Json()}, {"peers", Json()},         {"results", Json::array()},    {"stops", Json::array()}};
+    outcome.json["loads"] = request.loads;
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
-            PeerContest contest(random_scene(joint, bodies, overrides_of(request)), joint);
+            PeerContest contest(random_scene(joint, bodies, overrides_of(request), request.loads), joint);
             contest.add(request.backends.empty() ? cpu_backends() : request.backends, communicator);
             peers.add_to(contest, {"", joint, "", bodies});
             peers.add(contest.take_turns(request.repeat));
@@ -92,11 +93,12 @@ Outcome bench_peers(Communicator const& communicator, BenchRequest request) {
             spdlog::info("{} bodies on {} joints: measured", bodies, joint);
         }
     outcome.text = fmt::format(
-        "ns a body of forward dynamics, positions to accelerations, blocks of {} in turn, medians of {}; of Catena's: over its quickest "
+        "ns a body of forward dynamics, positions to accelerations, loads: {}; blocks of {} in turn, medians of {}; of Catena's: over its "
+        "quickest "
         "whole evaluation on one core; error: the largest of a joint's acceleration, over the largest acceleration; its bound: 32 depth "
         "2^-53 times "
         "the growth of roundings, depth the tree's or, of a peer, the number of bodies. {}; Catena: {}, {}\n",
-        duration_text(block_seconds), request.repeat, hardware_text(), compiler_name(), instruction_set());
+        request.loads, duration_text(block_seconds), request.repeat, hardware_text(), compiler_name(), instruction_set());
     outcome.text += table.text();
     peers.describe(outcome);
     outcome.json["valid"] = outcome.valid;

@@ -18,6 +18,7 @@ constexpr std::string_view log_levels[] = {"trace", "debug", "info", "warn", "er
 constexpr std::string_view handle_names[] = {"projected", "full", "articulated"};
 constexpr std::string_view joint_names[] = {"link",      "planar",  "spherical", "universal", "revolute",
                                             "prismatic", "helical", "weld",      "mixed"};
+constexpr std::string_view load_names[] = {"none", "torques", "wrenches"};
 constexpr std::string_view suite_names[] = {"stability"};
 constexpr std::string_view bench_names[] = {"list",     "evaluation", "solve",   "peers",   "openmm",
                                             "sampling", "overlap",    "figures", "network", "plan"};
@@ -28,8 +29,8 @@ constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 /// Everything as it stands on the command line.
 struct Words {
     CommonOptions common;
-    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, backends, figures, ranks, hosts, network, suite,
-        cases;
+    std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, loads, backends, figures, ranks, hosts, network,
+        suite, cases;
     std::vector<std::string> scenes;
     SamplingWords sampling;
     bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
@@ -165,6 +166,10 @@ void add_commands(CLI::App& app, Words& words) {
                      "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute; "
                      "evaluation takes the first two, peers these and planar)")
         ->type_name("J,...");
+    command
+        ->add_option("--loads", words.loads,
+                     "of solve and peers, beside gravity: none | torques of joints | wrenches (default), in ground axes on every body, too")
+        ->type_name("LOADS");
     add_repeat(*command, words, "21");
     command
         ->add_option("--backend", words.backends,
@@ -328,7 +333,7 @@ BenchRequest bench_request(Words const& words) {
     request.name = known_value("catena bench", words.name, bench_names);
     using Given = std::pair<char const*, std::string const&>;
     for (auto const& [option, given] : {Given{"--figure", words.figures}, Given{"--output", words.output}, Given{"--joints", words.joints},
-                                        Given{"--sizes", words.sizes}, Given{"--repeat", words.repeat}})
+                                        Given{"--sizes", words.sizes}, Given{"--repeat", words.repeat}, Given{"--loads", words.loads}})
         if (!given.empty() && !bench_takes(request.name, option))
             throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name), "command line", "leave it out");
     request.sizes = bench_sizes(request.name);
@@ -337,6 +342,8 @@ BenchRequest bench_request(Words const& words) {
     if (!words.sizes.empty()) request.sizes = sizes_of(words);
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
     for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
+    if (!words.loads.empty()) request.loads = words.loads;
+    known_value("--loads", request.loads, load_names);
     if (!words.backends.empty())
         for (std::string const& backend : comma_list("--backend", words.backends))
             request.backends.push_back(backend_named("--backend", backend));

@@ -7,7 +7,7 @@
 
 namespace catena::command {
 
-Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides) {
+Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides, std::string const& loads) {
     std::string const name = fmt::format("random-{}-{}", joint, bodies);
     std::string const text = fmt::format(
         "title: random chain, {0}, {1} bodies\n"
@@ -15,7 +15,11 @@ Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<st
         "chains: [{{name: random, base: {2}, generator: {{random: {{bodies: {1}, joint: {0}, seed: 1}}}}}}]\n"
         "forces: {{gravity: [0, 0, -9.81]}}\n",
         joint, bodies, joint == "link" ? "free" : "fixed");
-    return parse_scene(text, name, overrides);
+    Scene scene = parse_scene(text, name, overrides);
+    BodyArrays& all = scene.chains.front().bodies;
+    if (loads != "wrenches") all.wrench.clear();
+    if (loads == "none") all.torque.clear();
+    return scene;
 }
 
 Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides) {

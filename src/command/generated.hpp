@@ -9,8 +9,10 @@
 
 namespace catena::command {
 
-/// `joint`: link (free base) | spherical | revolute (fixed base, gravity). The same chain for the same arguments everywhere.
-Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides);
+/// `joint`: link (free base) | spherical | revolute (fixed base, gravity). `loads`, beside gravity: none | torques of joints | wrenches,
+/// on every body and in ground axes, beside these. The same chain for the same arguments everywhere.
+Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides,
+                   std::string const& loads = "wrenches");
 
 /// Eight bodies that swing under gravity from a given start without losing energy. `joint`: revolute | spherical | mixed | link.
 Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides);

@@ -64,7 +64,8 @@ struct BenchRequest : CommonOptions {
     std::string name;
     std::vector<std::int64_t> sizes;  // empty: the benchmark's own
     std::vector<std::string> joints{"link", "spherical", "revolute"};
-    std::vector<Backend> backends;  // empty: all of this build
+    std::string loads = "wrenches";  // of solve and peers, as random_scene()
+    std::vector<Backend> backends;   // empty: all of this build
     std::vector<std::string> figures;
     std::string output;  // folder, of figures and of overlap's pictures
     int repeat = 21;

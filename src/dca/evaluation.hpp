@@ -170,7 +170,8 @@ struct Evaluation {
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
         HingesInJoints<Sweeps> kept(s, run);
         Segment const segment = climb_hinges<double>(
-            static_cast<int>(run.count), [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); }, kept);
+            static_cast<int>(run.count), [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); }, [](int) { return Undriven{}; },
+            kept);
         s.note(kept.lost());
         return segment;
     }

@@ -141,12 +141,36 @@ CATENA_HD Release<Real> release_hinge(SpatialInertia<Real>& all, Vector<Real, 3>
         }
     return r;
 }
+template <class Real>
+CATENA_HD void take_away(Wrench<Real>& w, Release<Real> const& r, Real const& along) {
+    w = {plus_scaled(w.torque, -along, r.turning), plus_scaled(w.force, -along, r.moving)};
+}
 /// Returns what the wrench had along the hinge.
 template <class Real>
 CATENA_HD Real release_hinge(Wrench<Real>& w, Release<Real> const& r) {
     Real const along = dot(r.axis, w.torque);
-    w = {plus_scaled(w.torque, -along, r.turning), plus_scaled(w.force, -along, r.moving)};
+    take_away(w, r, along);
     return along;
+}
+/// What a hinge does about its axis on the body outboard of it: nothing, or a torque, which then is in no body's own.
+struct Undriven {};
+template <class Real>
+CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Undriven) {
+    return release_hinge(bias, r);
+}
+template <class Real>
+CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Real const& torque) {
+    Real const along = dot(r.axis, bias.torque) + torque;
+    take_away(bias, r, along);
+    return along;
+}
+template <class Real>
+CATENA_HD Real left_along_hinge(Undriven) {
+    return Real(0);
+}
+template <class Real>
+CATENA_HD Real left_along_hinge(Real const& torque) {
+    return -torque;
 }
 /// What the run's accelerations at its first joint gain by a hinge: row j of z, up to its diagonal, and of e.
 template <class Real>
@@ -177,20 +201,24 @@ CATENA_HD void differ(Real& e, Wrench<Real> const& first, HingePassed<Real> cons
     e = e - (dot(first.torque, joint.angular) + dot(first.force, joint.linear));
 }
 /// To the hinge, and past it.
-template <class Real>
-CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, Vector<Real, 3> const& to_hinge, HingePassed<Real> const& joint) {
+template <class Real, class Torque>
+CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, Vector<Real, 3> const& to_hinge, HingePassed<Real> const& joint,
+                                         Torque const& torque) {
     ReleasedHinge<Real> h;
     move_point(run.inertia, to_hinge);
     turn_axes(run.inertia, joint.turn);
     Release<Real> const r = release_hinge(run.inertia, joint.axis, h);
-    auto const pass = [&](Wrench<Real>& w) {
+    auto const bring = [&](Wrench<Real>& w) {
         move_point(w, to_hinge);
         turn_axes(w, joint.turn);
-        return release_hinge(w, r);
     };
-    h.bias = pass(run.bias);
+    bring(run.bias);
+    h.bias = release_driven(run.bias, r, torque);
     CATENA_UNROLL
-    for (int j = 0; j < 5; ++j) h.first[j] = pass(run.first[j]);
+    for (int j = 0; j < 5; ++j) {
+        bring(run.first[j]);
+        h.first[j] = release_hinge(run.first[j], r);
+    }
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) {
         Real row[5];
@@ -283,10 +311,11 @@ CATENA_HD HingePassed<Real> last_joint(OutboardHandle<Real> const& before, Hinge
                 (transpose(last.e1) * last.inward1 + Vector3{{last.bias[0], last.bias[1], last.bias[2]}})};
 }
 /// Goes on to `body`, the one after `before` and not the last of the run; what it returns is for the way back.
-template <class Real>
-CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& body) {
+template <class Real, class Torque>
+CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& body,
+                                    Torque const& torque) {
     HingePassed<Real> const joint = joint_between(before, body);
-    ReleasedHinge<Real> const hinge = pass_hinge(run, before.r, joint);
+    ReleasedHinge<Real> const hinge = pass_hinge(run, before.r, joint, torque);
     differ(run, joint);
     Vector<Real, 3> const to_centre = -body.r1;
     move_point(run.inertia, to_centre);
@@ -303,17 +332,17 @@ CATENA_HD Vector<Real, 6> six_of(Vector<Real, 3> const& force, Vector<Real, 3> c
     return {{force[0], force[1], force[2], torque[0], torque[1], torque[2]}};
 }
 /// Goes on to `last`, the last body, in the joint's axes; `hinge` as go_on(), in these axes too.
-template <class Real>
+template <class Real, class Torque>
 CATENA_HD RunsEnd<Real> end_run(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& last,
-                                ReleasedHinge<Real>& hinge) {
+                                ReleasedHinge<Real>& hinge, Torque const& torque) {
     using Vector3 = Vector<Real, 3>;
     HingePassed<Real> const joint = last_joint(before, last);
-    hinge = pass_hinge(run, before.r, joint);
+    hinge = pass_hinge(run, before.r, joint, torque);
     CATENA_UNROLL
     for (int j = 0; j < 3; ++j) run.inertia.turning(2, j) = run.inertia.coupling(2, j) = Real(0);  // not what rounding left there
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) run.first[j].torque[2] = Real(0);
-    run.bias.torque[2] = Real(0);
+    run.bias.torque[2] = left_along_hinge<Real>(torque);
     differ(run, joint);
 
     Matrix<Real, 3, 3> const to_joint = transpose(last.e1);
@@ -435,22 +464,22 @@ CATENA_HD Vector<Real, 5> inboard_force(HingedBody<Real> const& body, BodyAccele
     return {{along_force[0], along_force[1], along_force[2], along_torque[0], along_torque[1]}};
 }
 
-/// A run of `count` bodies, two or more: body(i) is asked for in turn. `kept`: put(i, ReleasedHinge) of joint i in the run, and put(RunsEnd),
-/// for the way back.
-template <class Real, class Body, class Kept>
-CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Body const& body, Kept&& kept) {
+/// A run of `count` bodies, two or more: body(i) is asked for in turn, and after all but the first torque(i), of the hinge inboard of it: a
+/// Real or Undriven. `kept`: put(i, ReleasedHinge) of joint i in the run, and put(RunsEnd), for the way back.
+template <class Real, class Body, class Torque, class Kept>
+CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Body const& body, Torque const& torque, Kept&& kept) {
     HingedBody<Real> const begins = body(0);
     InertiaRun<Real> run = begin_run(begins);
     OutboardHandle<Real> before = outboard_handle(begins);
     CATENA_NO_UNROLL
     for (int i = 1; i < count - 1; ++i) {
         HingedBody<Real> const next = body(i);
-        kept.put(i, go_on(run, before, next));
+        kept.put(i, go_on(run, before, next, torque(i)));
         before = outboard_handle(next);
     }
     HingedBody<Real> const last = body(count - 1);
     ReleasedHinge<Real> hinge;
-    RunsEnd<Real> const end = end_run(run, before, last, hinge);
+    RunsEnd<Real> const end = end_run(run, before, last, hinge, torque(count - 1));
     kept.put(count - 1, hinge);
     kept.put(end);
     return segment_of(run, end, last);

@@ -329,39 +329,52 @@ class BodyLeaf {
     /// Precondition of these: by_inertia.
     template <class Place>
     CATENA_HD HingedFrame<RealAt<Place>> hinged_frame(LoadsView const& loads, Place k) const {
-        auto const state = frames_.state(k);
-        return hinged_frame(loads, k, state, read_or_zero(loads.omega, k));
+        auto f = frame_at_rest(k);
+        set_moving(loads, k, read_or_zero(loads.omega, k), f);
+        return f;
     }
     template <class Place>
     CATENA_HD HingedBody<RealAt<Place>> hinged(LoadsView const& loads, Place k) const {
-        using Real = RealAt<Place>;
-        auto const state = frames_.state(k);
-        Vector<Real, 3> const omega = read_or_zero(loads.omega, k);
-        HingedBody<Real> b{hinged_frame(loads, k, state, omega), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)),
-                           read_or_zero(loads.torque, k), read_or_zero(loads.force, k)};
-        if (loads.gyroscopic) b.torque = b.torque - cross(omega, b.inertia * omega);
+        auto b = hinged_at_rest(loads, k);
+        auto const omega = read_or_zero(loads.omega, k);
+        set_moving(loads, k, omega, b);
+        add_gyroscopic(loads, omega, b);
         return b;
+    }
+    // What they are made of. Not copied: a compiler may copy vectors by halves, which the next to read them waits for.
+    template <class Place>
+    CATENA_HD HingedFrame<RealAt<Place>> frame_at_rest(Place k) const {
+        using Vector3 = Vec3At<Place>;
+        auto const state = frames_.state(k);
+        return {state.r1,
+                state.r2,
+                Frames::inboard_axes(state, to_matrix(as_quaternion(state.rotation))),
+                axes_of(state.axes2),
+                Vector3::zero(),
+                Vector3::zero(),
+                Vector<RealAt<Place>, 5>::zero()};
+    }
+    template <class Place>
+    CATENA_HD HingedBody<RealAt<Place>> hinged_at_rest(LoadsView const& loads, Place k) const {
+        return {frame_at_rest(k), read(group_.mass, k)[0], as_symmetric(read(group_.inertia, k)), read_or_zero(loads.torque, k),
+                read_or_zero(loads.force, k)};
+    }
+    template <class Place>
+    CATENA_HD void set_moving(LoadsView const& loads, Place k, Vec3At<Place> const& omega, HingedFrame<RealAt<Place>>& f) const {
+        f.inward1 = cross(omega, cross(omega, f.r1));
+        f.inward2 = cross(omega, cross(omega, f.r2));
+        if (loads.hinge_rate.origin) {
+            f.bias = hinge_bias(f.e1, omega, read(loads.hinge_rate, k)[0]);
+            if (!begins_chain(group_, k)) return;
+        }
+        if (loads.bias) f.bias = read_directions<5>(loads.bias, k);
+    }
+    template <class Real>
+    CATENA_HD void add_gyroscopic(LoadsView const& loads, Vector<Real, 3> const& omega, HingedBody<Real>& b) const {
+        if (loads.gyroscopic) b.torque = b.torque - cross(omega, b.inertia * omega);
     }
 
   private:
-    template <class Place, class State>
-    CATENA_HD HingedFrame<RealAt<Place>> hinged_frame(LoadsView const& loads, Place k, State const& state,
-                                                      Vec3At<Place> const& omega) const {
-        using Real = RealAt<Place>;
-        HingedFrame<Real> f{state.r1,
-                            state.r2,
-                            Frames::inboard_axes(state, to_matrix(as_quaternion(state.rotation))),
-                            axes_of(state.axes2),
-                            cross(omega, cross(omega, state.r1)),
-                            cross(omega, cross(omega, state.r2)),
-                            Vector<Real, 5>::zero()};
-        if (loads.hinge_rate.origin) {
-            f.bias = hinge_bias(f.e1, omega, read(loads.hinge_rate, k)[0]);
-            if (!begins_chain(group_, k)) return f;
-        }
-        if (loads.bias) f.bias = read_directions<5>(loads.bias, k);
-        return f;
-    }
     template <class Place, class Handles>
     CATENA_HD SegmentMatrix<RealAt<Place>, K> matrix(Body<Place> const& body, Handles const& h) const {
         auto s = leaf_matrix(body.inverse_mass, body.inverse_inertia, h.h1, h.h2);

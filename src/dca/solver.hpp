@@ -88,6 +88,17 @@ struct ConfigurationView {
     std::int64_t pieces = 0;
 };
 
+/// For one that follows_hinges(): of runs side by side omega is known of first bodies alone, and this stands in the place of torque and
+/// force. A view without origin means zero.
+struct HingeLoads {
+    bool given = false;
+    /// What joints do along their free directions, on body k along the axes of its inboard joint (of hinges: 0, 0, the torque about it);
+    /// [0, size].
+    ConstView<3> joint_torque;
+    ConstView<3> torque, force;  // from outside, about the centre of mass, W
+    ConstView<4> orientation;    // where these are: of first bodies, quaternion of B in W
+};
+
 /// What the biases depend on. A view without origin means zero.
 struct LoadsView {
     ConstView<3> torque;       // on each body about its centre of mass, B, joint torques and -omega x J omega included
@@ -100,6 +111,7 @@ struct LoadsView {
     /// For assemble_and_solve() that goes_by_hinges(): rates of the hinges, of which it makes their biases. `bias` then is asked for of
     /// bodies alone that begin a chain or make a run by themselves.
     ConstView<1> hinge_rate{};
+    HingeLoads hinges{};
 };
 
 /// Of links: what the inverse of their matrix T (formulas, "Link chains") says beyond solutions.
@@ -174,6 +186,9 @@ class ChainSolver {
     /// Whether it takes runs on hinges by their inertias, and so can do with less: LoadsView::hinge_rate,
     /// AccelerationsView::hinge_acceleration.
     virtual bool goes_by_hinges() const { return false; }
+    /// Whether it finds angular velocities and torques along the runs that go side by side (deal_out_runs()) by itself:
+    /// HingeLoads.
+    virtual bool follows_hinges() const { return false; }
     /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
     /// Collective.
     virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,

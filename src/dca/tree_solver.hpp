@@ -90,6 +90,7 @@ class TreeSolver final : public ChainSolver {
     /// The chapter's tree of pairs stays plain, and so do full handles.
     bool at_once() const override { return Leaf::projected && group_.partition.trees.front().run_length > 1; }
     bool goes_by_hinges() const override { return takes_runs_whole && at_once() && group_.hinged; }
+    bool follows_hinges() const override { return goes_by_hinges() && aside_.has_value(); }
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
         return space_.time_chained(chained, repeat, shown_matrices_.asks_host(), [&] { assemble_and_solve(configuration, loads, out); });

@@ -68,7 +68,7 @@ struct EmbeddedSteps {
             if (chains.on_free_base(k)) advance_base(chains.joints().piece_of(k), k, s);
             chains.joints().follow_course(state, k, s.time);
         }
-        chains.template set_relative<positions>(k);
+        if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
     CATENA_HD void advance_base(std::int64_t piece, std::int64_t k, EmbeddedStage const& s) const {
         StateView const &state = steps.chains.scan.state, &start = steps.start;

@@ -21,7 +21,7 @@ void JointDynamicsIn<Space>::embedded_stage(EmbeddedStage const& stage) {
     EmbeddedSteps const s = embedded();
     each_body<positions>([&](JointLoops const& loops, auto... bodies) { loops.embedded_stage(s, stage, bodies...); },
                          [s, stage] CATENA_LAMBDA(std::int64_t k) { s.template advance<positions>(k, stage); });
-    relative_ = true;
+    relative_ = !s.steps.chains.left.motions;
 }
 
 template <class Space>

@@ -87,7 +87,7 @@ class JointDynamicsIn final : public JointDynamics {
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         if constexpr (has_lanes)
-            if (JointLanes lanes(group, given_.springs, space.simd()); lanes.any()) lanes_ = std::move(lanes);
+            if (JointLanes lanes(group, given_.springs, solver_->follows_hinges(), space.simd()); lanes.any()) lanes_ = std::move(lanes);
         if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince) pair_.emplace(group);
         if (scene.solver.refine > 0) refinement_.emplace(group);
         set_state(make_joint_state(group, scene));
@@ -121,7 +121,7 @@ class JointDynamicsIn final : public JointDynamics {
         has_matrices_ = true;
     }
     void solve() override {
-        if (std::exchange(leaves_loads_, false)) set_loads();
+        if (std::exchange(leaves_loads_, false)) leaves_motions_ ? update(false) : set_loads();
         set_carried_loads();
         solver_->solve(loads(), found(false));
         exchange_ends();
@@ -226,12 +226,22 @@ class JointDynamicsIn final : public JointDynamics {
     void set_loads() {
         space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
     }
+    /// Loads that were the solver's to find. Precondition: motions are known.
+    void leave_nothing() {
+        leaves_motions_ = false;
+        if (std::exchange(leaves_loads_, false)) set_loads();
+    }
     void go_to_configuration(bool leaves_loads) {
         leaves_loads_ = leaves_loads;
         has_matrices_ = false;
+        if constexpr (has_lanes)
+            if (leaves_loads_ && follows_hinges()) return follow_hinges();
         update(false);
     }
-    void update(bool again) { needs_positions_ ? update<true>(again) : update<false>(again); }
+    void update(bool again) {
+        leaves_motions_ = false;
+        needs_positions_ ? update<true>(again) : update<false>(again);
+    }
     /// `again`: the forces on carried beads stay.
     template <bool positions>
     void update(bool again) {
@@ -260,12 +270,29 @@ class JointDynamicsIn final : public JointDynamics {
             t.set_acceleration_bias(i, gravity, out);
         });
     }
+    /// update() where the solver follows_hinges().
+    void follow_hinges() {
+        leaves_motions_ = true;
+        JointChains c = chains();
+        c.scan.motion.orients_first_alone = !needs_orientations_;
+        has_orientations_ = relative_ = false;
+        lanes_->each_outside(
+            space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
+            [c](std::int64_t k) { c.template set_relative<false>(k); });
+        lanes_->follow_hinges(space_, c);
+        if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
+        kinematics_.template sweep<false>(c.scan, lanes_->tree());
+        lanes_->begin_runs(space_, c.scan);
+        lanes_->each_outside(
+            space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
+            [c](std::int64_t k) { c.template set_motion<false>(k, false); });
+    }
     template <bool positions>
     void runge_kutta(RungeKuttaStage const& stage) {
         JointSteps const s = steps();
         each_body<positions>([&](JointLoops const& loops, auto... bodies) { loops.runge_kutta(s, stage, bodies...); },
                              [s, stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
-        relative_ = true;
+        relative_ = !s.chains.left.motions;
     }
     template <bool positions>
     void embedded_stage(EmbeddedStage const&);
@@ -327,11 +354,29 @@ class JointDynamicsIn final : public JointDynamics {
         all.gyroscopic = leaves_torques();
         View<3> const qd = state_.qd.view();
         all.hinge_rate = {qd.origin, qd.pitch, qd.size};
+        if (leaves_motions_) all.hinges = loads_of_hinges();
+        return all;
+    }
+    HingeLoads loads_of_hinges() {
+        HingeLoads all{true, {}, {}, {}, {}};
+        View<4> const joint = joint_load_.view();
+        if (given_.joint_loads) all.joint_torque = {joint.origin, joint.pitch, joint.size};
+        if (given_.wrenches) {
+            BodyLoadsView const given = loads_.view();
+            all.torque = given.wrench_torque;
+            all.force = given.wrench_force;
+            all.orientation = motion_.orientation.view();
+        }
         return all;
     }
     /// Nothing but gyration turns bodies, on whatever rank.
     bool leaves_torques() const {
         return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged && !group_.carried_in_scene;
+    }
+    /// Where nothing acts by bodies' positions. The lanes are those of the solver's.
+    bool follows_hinges() const {
+        if constexpr (has_lanes) return lanes_ && !needs_positions_ && solver_->follows_hinges();
+        return false;
     }
     AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
     /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
@@ -377,7 +422,7 @@ class JointDynamicsIn final : public JointDynamics {
         c.bias = bias_.view();
         c.outboard_end = outboard_end_.view();
         c.in_run = {in_run_list_.data()};
-        c.left = {leaves_torques(), leaves_loads_};
+        c.left = {leaves_torques(), leaves_loads_, leaves_motions_};
         if (has_hinges_) c.hinge_acceleration = hinge_acceleration_.view();
         return c;
     }
@@ -410,6 +455,7 @@ class JointDynamicsIn final : public JointDynamics {
     List<std::uint8_t> in_run_list_;
     bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
     bool leaves_loads_ = false;     // some of those of the configuration updated last are the solver's to find
+    bool leaves_motions_ = false;   // and angular velocities of bodies in lanes
     bool has_matrices_ = false;     // of the configuration updated last
     bool has_all_ = true;           // bodies' accelerations and joints' forces of the solution found last
     bool has_hinges_ = false;       // hinge_acceleration_ of that

@@ -113,9 +113,10 @@ void JointDynamicsIn<Space>::find_all() {
         relative_ = false;
         kinematics_.evaluate(state_.view(), false, motion_.view());
     }
-    if (!std::exchange(has_all_, true))
-        has_matrices_ ? solver_->solve(loads(), all()) : solver_->assemble_and_solve(configuration(), loads(), all());
-    if (std::exchange(leaves_loads_, false)) set_loads();
+    bool const has_all = std::exchange(has_all_, true);
+    if (has_matrices_) leave_nothing();
+    if (!has_all) has_matrices_ ? solver_->solve(loads(), all()) : solver_->assemble_and_solve(configuration(), loads(), all());
+    leave_nothing();
 }
 
 template <class Space>

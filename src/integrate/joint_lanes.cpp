@@ -28,29 +28,47 @@ bool go_side_by_side(ChainGroup const& group, bool springs, std::int64_t k, int 
     return true;
 }
 
+/// Of bodies [begin, end).
+template <class Bodies>
+void deal_out(ChainGroup const& group, bool springs, std::int64_t begin, std::int64_t end, int lanes, Bodies& bodies) {
+    for (std::int64_t k = begin; k < end;) {
+        if (k + lanes <= end && go_side_by_side(group, springs, k, lanes)) {
+            bodies.first.push_back(k);
+            k += lanes;
+        } else {
+            bodies.others.push_back(k);
+            ++k;
+        }
+    }
+}
+
 }  // namespace
 
-JointLanes::JointLanes(ChainGroup const& group, bool springs, SimdLevel level) {
+JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdLevel level) {
     if (level == SimdLevel::off || !rounds_as_vectors() || !group.drives.empty() || group.carried_in_scene || !group.implicit_joint.empty())
         return;
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);
-    for (std::int64_t k = 0; k < group.size;) {
-        if (go_side_by_side(group, springs, k, lanes)) {
-            first_.push_back(k);
-            k += lanes;
-        } else {
-            others_.push_back(k);
-            ++k;
-        }
-    }
-    if (first_.empty()) {
-        others_ = {};
+    deal_out(group, springs, 0, group.size, lanes, bodies_);
+    if (!any()) {
+        bodies_ = {};
         return;
     }
     runs_ = dca::deal_out_runs(group, lanes, false);
     tree_.emplace(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots);
+    if (!hinges) return;
+    for (dca::Run const& run : runs_.others) deal_out(group, springs, run.body, run.body + run.count, lanes, outside_);
+    for (dca::RunsInLanes const& item : runs_.items)
+        for (int lane = 0; lane < lanes; ++lane)
+            if (group.is_first[static_cast<std::size_t>(item.body[lane])] && (lane == 0 || item.body[lane] != item.body[lane - 1]))
+                outside_.others.push_back(item.body[lane]);
+    constants_ = dca::constants_in_lanes(runs_.items, lanes, hinge_constants, [&group](std::int64_t k, double* place) {
+        auto const axes = group.axes1[k];
+        auto const rotation = group.joint_rotation[k];
+        for (int i = 0; i < 3; ++i) *place++ = axes[3 + i];
+        for (int i = 0; i < 4; ++i) *place++ = rotation[i];
+    });
 }
 
 }  // namespace catena

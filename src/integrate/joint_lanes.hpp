@@ -17,47 +17,90 @@ struct JointLoops {
     void (*set_relative)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     /// JointScan::follow of the runs of items [begin, end), whose wholes it shows.
     void (*follow)(JointScan const&, dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end);
+    /// The same of runs on hinges from their coordinates: turns and torques of their joints, wholes, and motions against the bodies inboard
+    /// of them of first bodies alone. Of chains' first bodies all but the wholes is known. `constants`: hinge_constants of every body, as
+    /// RunWork::constants.
+    void (*follow_hinges)(JointLoads const&, dca::RunsInLanes const* items, double const* constants, std::int64_t begin, std::int64_t end);
+    /// After the scan, angular velocities of these runs' first bodies.
+    void (*begin_runs)(JointScan const&, dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end);
     void (*set_motion)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*set_rates)(JointChains const&, RatesView const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
     void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
 };
+/// The hinge's axis, and the rotation of its meeting frame.
+inline constexpr int hinge_constants = 7;
 /// Precondition: simd_levels() has them.
 JointLoops avx2_joint_loops(bool positions);
 JointLoops avx512_joint_loops(bool positions);
 
 class JointLanes {
   public:
-    /// `springs`: whether joints have any. The group must outlive it.
-    JointLanes(ChainGroup const&, bool springs, SimdLevel);
+    /// `springs`: whether joints have any. `hinges`: whether the solver follows_hinges(). The group must outlive it.
+    JointLanes(ChainGroup const&, bool springs, bool hinges, SimdLevel);
     // A copy's tree would be of the original's runs.
     JointLanes(JointLanes&&) = default;
     JointLanes& operator=(JointLanes&&) = default;
 
     /// Whether any bodies go side by side. Precondition of all that follows.
-    bool any() const { return !first_.empty(); }
+    bool any() const { return !bodies_.first.empty(); }
     /// some(loops, first, begin, end) for those, one(k) for the others.
     template <class Space, class Some, class One>
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
-        JointLoops const& loops = loops_[positions ? 1 : 0];
-        space.over_ranges(std::ssize(first_), 2, [&](std::int64_t begin, std::int64_t end) { some(loops, first_.data(), begin, end); });
-        space.over(typename Space::template List<std::int64_t>(others_), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
+        each_of(bodies_, space, positions, some, one);
     }
 
     /// JointScan::follow of the runs that go side by side; tree() has the others, and what is above all of them.
     template <class Space>
     void follow(Space const& space, bool positions, JointScan const& scan) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
-        space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),
-                          [&](std::int64_t begin, std::int64_t end) { loops.follow(scan, runs_.items.data(), begin, end); });
+        over_runs(space,
+                  [&](dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end) { loops.follow(scan, items, begin, end); });
     }
     HostSpace::ScanTree const& tree() const { return *tree_; }
 
+    // Chains whose solver follows_hinges(), none of whose positions is asked for. Precondition: `hinges`.
+
+    /// As each(): of bodies whose runs do not go side by side, and of those that begin a chain.
+    template <class Space, class Some, class One>
+    void each_outside(Space const& space, Some const& some, One const& one) const {
+        each_of(outside_, space, false, some, one);
+    }
+    /// After set_relative() of those outside.
+    template <class Space>
+    void follow_hinges(Space const& space, JointLoads const& loads) const {
+        over_runs(space, [&](dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end) {
+            loops_[0].follow_hinges(loads, items, constants_.data(), begin, end);
+        });
+    }
+    template <class Space>
+    void begin_runs(Space const& space, JointScan const& scan) const {
+        over_runs(space, [&](dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end) {
+            loops_[0].begin_runs(scan, items, begin, end);
+        });
+    }
+
   private:
+    struct Bodies {
+        std::vector<std::int64_t> first, others;  // of those that fill a vector; all that do not
+    };
+    template <class Space, class Some, class One>
+    void each_of(Bodies const& bodies, Space const& space, bool positions, Some const& some, One const& one) const {
+        JointLoops const& loops = loops_[positions ? 1 : 0];
+        space.over_ranges(std::ssize(bodies.first), 2,
+                          [&](std::int64_t begin, std::int64_t end) { some(loops, bodies.first.data(), begin, end); });
+        space.over(std::span(bodies.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
+    }
+    template <class Space, class Action>
+    void over_runs(Space const& space, Action const& action) const {
+        space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),
+                          [&](std::int64_t begin, std::int64_t end) { action(runs_.items.data(), begin, end); });
+    }
     JointLoops loops_[2]{};
     dca::RunsDealtOut runs_;
     std::optional<HostSpace::ScanTree> tree_;
-    std::vector<std::int64_t> first_, others_;
+    Bodies bodies_, outside_;
+    dca::AlignedNumbers constants_;
 };
 
 }  // namespace catena

@@ -36,9 +36,10 @@ struct HingesInRuns {
         return true;
     }
 };
-/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, and hinge_rate.
+/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, hinge_rate; and follows_hinges,
+/// where an update finds bodies' motions as it needs them (JointLanes::follow_hinges).
 struct LeftToSolver {
-    bool gyroscopic = false, biases = false;
+    bool gyroscopic = false, biases = false, motions = false;
 };
 
 struct JointLoads {

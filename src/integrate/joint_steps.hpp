@@ -55,7 +55,7 @@ struct JointSteps {
             if (chains.on_free_base(k)) runge_kutta_base(joints.piece_of(k), chains.base_rate(k), s);
             joints.follow_course(state, k, s.time);
         }
-        chains.template set_relative<positions>(k);
+        if (!chains.left.motions) chains.template set_relative<positions>(k);
     }
     CATENA_HD void runge_kutta_base(std::int64_t piece, Vec3 const& acceleration, RungeKuttaStage const& s) const {
         StateView const& state = chains.scan.state;

@@ -81,6 +81,12 @@ TEST(Bench, SolveGivesEachFigureWithItsResidual) {
         EXPECT_EQ(row.at("sweeps_an_evaluation").at("matrix"), 1);
     }
     EXPECT_EQ(count(catena({"bench", "solve", "--sizes", "20", "--repeat", "1", "--backend", "segments"}).out, " VALID\n"), 3U);
+    for (auto const& [loads, words] : {std::pair{"none", "gravity alone"}, {"torques", "gravity and torques of joints."}}) {
+        Ended const light = catena(
+            {"bench", "solve", "--sizes", "300", "--joints", "revolute", "--repeat", "1", "--backend", "segments", "--loads", loads});
+        EXPECT_EQ(count(light.out, " VALID\n"), 1U) << light.out;
+        EXPECT_NE(light.out.find(words), std::string::npos) << light.out;
+    }
 }
 
 TEST(Bench, EvaluationsAreValidAndAsked) {

@@ -113,6 +113,7 @@ TEST(CommandLine, WhatCannotBeIsRefused) {
                                                                        {{"run", "a", "--overwrite", "--restart", "c"}, "--overwrite"},
                                                                        {{"bench", "solve", "--sizes", "10,,20"}, "(--sizes)"},
                                                                        {{"bench", "solve", "--joints", "hinge"}, "--joints"},
+                                                                       {{"bench", "peers", "--loads", "heavy"}, "--loads"},
                                                                        {{"--frob"}, "not an option"}}) {
         EXPECT_NE(refusal(words).find(part), std::string::npos) << refusal(words);
         EXPECT_EQ(refusal(words).find('\n'), std::string::npos) << refusal(words);

@@ -25,7 +25,8 @@ struct KeptHinges {
 };
 BiasedSegment<double, 5> climb(std::vector<Body> const& b, KeptHinges& kept) {
     kept.hinges.resize(b.size());
-    return climb_hinges<double>(static_cast<int>(b.size()), [&](int i) { return b[static_cast<std::size_t>(i)]; }, kept);
+    return climb_hinges<double>(
+        static_cast<int>(b.size()), [&](int i) { return b[static_cast<std::size_t>(i)]; }, [](int) { return Undriven{}; }, kept);
 }
 
 struct Draw {
@@ -181,6 +182,38 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
         EXPECT_LE(hinges.value(), tolerance(n)) << seed;
         EXPECT_LE(off / largest, tolerance(n)) << seed;  // no torque about a hinge
         EXPECT_LE(last.value(), tolerance(n) * std::max(1.0, largest)) << seed;
+    }
+}
+
+/// A hinge's torque is what its two bodies' torques would say.
+TEST_P(InertiaRuns, TakeHingesTorques) {
+    int const n = GetParam();
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+        std::vector<Body> const b = bodies(n, seed);
+        Draw draw{std::mt19937_64(seed + 200)};
+        std::vector<double> torque(b.size());
+        std::vector<Body> pushed = b;
+        for (std::size_t k = 1; k < b.size(); ++k) {
+            torque[k] = draw(-3, 3);
+            pushed[k].torque = pushed[k].torque + torque[k] * b[k].e1.column(2);
+            pushed[k - 1].torque = pushed[k - 1].torque - torque[k] * b[k - 1].e2.column(2);
+        }
+        KeptHinges expected, found;
+        auto const of_pushed = climb(pushed, expected).bias;
+        found.hinges.resize(b.size());
+        auto const driven =
+            climb_hinges<double>(
+                n, [&](int i) { return b[static_cast<std::size_t>(i)]; }, [&](int i) { return torque[static_cast<std::size_t>(i)]; }, found)
+                .bias;
+        Difference biases, hinges;
+        for (int i = 0; i < 5; ++i) {
+            biases.add(driven.b1[i], of_pushed.b1[i]);
+            biases.add(driven.b2[i], of_pushed.b2[i]);
+        }
+        for (std::size_t k = 1; k < b.size(); ++k) hinges.add(found.hinges[k].bias, expected.hinges[k].bias);
+        for (int i = 0; i < 6; ++i) hinges.add(found.at_end.bias[i], expected.at_end.bias[i]);
+        EXPECT_LE(biases.value(), tolerance(n)) << seed;
+        EXPECT_LE(hinges.value(), tolerance(n)) << seed;
     }
 }
 

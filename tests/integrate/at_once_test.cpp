@@ -1,6 +1,7 @@
 // Matrices and biases in one sweep: as good a solution as by one sweep after the other, and the same one.
 #include <gtest/gtest.h>
 
+#include "dca/simd/level.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/same_bits.hpp"
@@ -52,6 +53,12 @@ double largest(std::vector<Vec3> const& a) {
     double most = 0;
     for (Vec3 const& v : a) most = std::max(most, norm(v));
     return most;
+}
+
+std::vector<Vec3> halves(std::vector<Vector<double, 6>> const& wrenches) {
+    std::vector<Vec3> all;
+    for (auto const& w : wrenches) all.insert(all.end(), {Vec3{{w[0], w[1], w[2]}}, Vec3{{w[3], w[4], w[5]}}});
+    return all;
 }
 
 /// Ranks may not matter to a bit; how the sweeps are put together matters in the last ones, which a chain of n bodies lets grow like n.
@@ -106,35 +113,48 @@ TEST(AtOnceInJoints, IsASolution) {
 
 /// What chains on hinges leave to their solver, and take from it, is what bodies' loads and accelerations say; no rank matters to a bit.
 TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
-    using Add = void (*)(BodyArrays&);
+    struct Loads {
+        char const* name;
+        void (*set)(BodyArrays&);  // beside random torques and wrenches
+    };
     Vec3 static const ones{{1, 2, 3}};
-    Add const nothing = [](BodyArrays&) {}, dampers = [](BodyArrays& b) { b.damping.assign(b.joint.size(), ones); },
-              wrenches = [](BodyArrays& b) { b.wrench.assign(b.joint.size(), {ones, ones}); };
+    Loads const loads[] = {{"as they are", [](BodyArrays&) {}},
+                           {"dampers", [](BodyArrays& b) { b.damping.assign(b.joint.size(), ones); }},
+                           {"more wrenches", [](BodyArrays& b) { b.wrench.assign(b.joint.size(), {ones, ones}); }},
+                           {"torques alone", [](BodyArrays& b) { b.wrench.clear(); }},
+                           {"wrenches alone", [](BodyArrays& b) { b.torque.clear(); }},
+                           {"none", [](BodyArrays& b) { b.wrench.clear(), b.torque.clear(); }},
+                           {"springs and dampers", [](BodyArrays& b) {
+                                b.wrench.clear(), b.torque.clear();
+                                b.stiffness.assign(b.joint.size(), ones), b.damping.assign(b.joint.size(), ones);
+                            }}};
     for (char const* const base : {"base: free, ", "base: fixed, "})
         for (auto const& [bodies, next] : std::vector<std::pair<int, int>>{{1, 16}, {2, 17}, {16, 33}, {17, 1}, {70, 2}, {333, 129}})
-            for (Add const add : {nothing, dampers, wrenches}) {
-                SCOPED_TRACE(std::string(base) + std::to_string(bodies) + ", " + std::to_string(next) +
-                             (add == dampers    ? ", dampers"
-                              : add == wrenches ? ", wrenches"
-                                                : ""));
+            for (Loads const& of : loads) {
+                SCOPED_TRACE(std::string(base) + std::to_string(bodies) + ", " + std::to_string(next) + ", " + of.name);
                 auto const chain = [&](int seed, int length) {
                     return std::string("{") + base + "generator: {random: {seed: " + std::to_string(seed) +
                            ", joint: revolute, bodies: " + std::to_string(length) + "}}}";
                 };
                 std::string const chains = chain(3, bodies) + ", " + chain(4, next) + ", " + chain(5, 40);
                 Scene s = parse_scene("chains: [" + chains + "]\nforces: {gravity: [1, 2, -9.81]}", "scene.yaml");
-                for (ChainSpec& spec : s.chains) add(spec.bodies);
+                for (ChainSpec& spec : s.chains) of.set(spec.bodies);
                 s.solver.backend = Backend::segments;
                 auto const accelerations = [&](Communicator const& communicator, bool leaves) {
                     ChainSystem system(s, Axes::joint, communicator);
-                    bool by_hinges = false;  // a chain of one body is of another group
+                    bool by_hinges = false, follows = false;  // a chain of one body is of another group
                     for (JointDynamics* const group : system.joint()) {
                         by_hinges = by_hinges || group->solver().goes_by_hinges();
+                        follows = follows || group->solver().follows_hinges();
                         leaves ? group->update_to_solve_once() : group->update_configuration();
                         group->solve_once();
                         group->set_rates();
                     }
                     EXPECT_TRUE(by_hinges);
+                    if (communicator.size() == 1 && s.bodies() > 100) {
+                        EXPECT_EQ(follows, rounds_as_vectors() && simd_levels().size() > 1);
+                    }
+                    EXPECT_LE(system.residual(), system.residual_bound());
                     return system.accelerations();
                 };
                 auto const left = accelerations(testing::world(), true), told = accelerations(testing::world(), false);
@@ -147,6 +167,7 @@ TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
                 expect_near(left.base_acceleration, told.base_acceleration, "base ");
                 expect_near(left.acceleration, told.acceleration, "body ");
                 expect_near(left.alpha, told.alpha, "turning body ");
+                expect_near(halves(left.joint_force), halves(told.joint_force), "joint force ");
                 if (testing::world().rank() > 0) continue;
                 auto const alone = accelerations(*serial_communicator(), true);
                 EXPECT_TRUE(same_bits(alone.joint_acceleration, left.joint_acceleration));

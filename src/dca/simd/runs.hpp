@@ -67,9 +67,12 @@ constexpr int kept_of_run(bool keeps_all) {
     return (parts_of_run - 1) * node_numbers<K> + (keeps_all ? static_cast<int>(longest_run) * passed_numbers<K> : 0);
 }
 
-/// Of a run that goes by its inertias: its hinges and its end.
-inline constexpr int hinge_numbers = static_cast<int>(sizeof(ReleasedHinge<double>) / sizeof(double));
-inline constexpr int end_numbers = static_cast<int>(sizeof(RunsEnd<double>) / sizeof(double));
+/// Of a run that goes by its inertias: its hinges, with the angular velocity outboard of each, and its end, with the last body's
+/// orientation.
+inline constexpr int released_numbers = static_cast<int>(sizeof(ReleasedHinge<double>) / sizeof(double));
+inline constexpr int hinge_numbers = released_numbers + 3;
+inline constexpr int met_numbers = static_cast<int>(sizeof(RunsEnd<double>) / sizeof(double));
+inline constexpr int end_numbers = met_numbers + 9;
 inline constexpr int kept_of_hinged_run = (static_cast<int>(longest_run) - 1) * hinge_numbers + end_numbers;
 template <class Leaf>
 constexpr int kept_of_run_of(bool keeps_all) {

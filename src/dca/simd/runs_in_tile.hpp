@@ -18,8 +18,8 @@ class BodiesInTile {
   public:
     template <class Tile>
     BodiesInTile(Tile& tile, RunWork<Leaf> const& work) {
-        loads_.force = tile.in(work.loads.force);
         if constexpr (Leaf::beads) {
+            loads_.force = tile.in(work.loads.force);
             group_.inverse_mass = tile.in(work.group.inverse_mass);
             at_.position = tile.in(work.configuration.position, true);
             loads_.velocity = tile.in(work.loads.velocity, true);
@@ -30,13 +30,31 @@ class BodiesInTile {
             if constexpr (Frames::in_joints) at_.axes2 = tile.in(work.configuration.axes2);
             if constexpr (Frames::on_links) at_.direction = tile.in(work.configuration.direction, true);
             if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
-            loads_.torque = tile.in(work.loads.torque);
-            loads_.omega = tile.in(work.loads.omega);
+            loads_.hinges.given = work.loads.hinges.given;
+            loads_.gyroscopic = work.loads.gyroscopic || loads_.hinges.given;
             loads_.hinge_rate = tile.in(work.loads.hinge_rate);
             if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
-            loads_.gyroscopic = work.loads.gyroscopic;
+            if (!loads_.hinges.given) {
+                loads_.omega = tile.in(work.loads.omega);
+                loads_.torque = tile.in(work.loads.torque);
+                loads_.force = tile.in(work.loads.force);
+                return;
+            }
+            on_way_back = tile.count();
+            HingeLoads const& from = work.loads.hinges;
+            if (from.joint_torque.origin) {
+                constexpr int about_hinge = 2;
+                hinge_torque =
+                    tile.in(ConstView<1>{from.joint_torque.origin + about_hinge * from.joint_torque.pitch, from.joint_torque.pitch, 0});
+            }
+            loads_.hinges.torque = tile.in(from.torque);
+            loads_.hinges.force = tile.in(from.force);
         }
     }
+    // Where hinges' loads are given.
+    ConstView<1> hinge_torque{};
+    int on_way_back = 0;  // numbers that accelerations need, of the tile's
+
     /// Those of a part.
     auto with(Constants<Real> constants) const {
         GroupView group = group_;
@@ -88,8 +106,9 @@ class RunsInTile {
     /// The next item's bodies usually follow, or come before where the way is back.
     void fill(RunsInLanes const& runs, int p, int way) {
         begin_ = {by_runs ? p * part_length : 0};
+        bool const not_all = way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force;
         if (!by_runs)
-            tile_.fill(columns(runs, p), way * bodies_of_item);
+            tile_.fill(columns(runs, p), way * bodies_of_item, not_all ? in_tile_.on_way_back : tile_.count());
         else if (p == (way > 0 ? 0 : parts_of_run - 1))
             tile_.fill(runs.body, way * bodies_of_item);
         if constexpr (constants_of<Leaf> > 0) {
@@ -105,6 +124,8 @@ class RunsInTile {
         else if (p == 0)
             tile_.empty(runs.body, -bodies_of_item);
     }
+
+    ConstView<1> const& hinge_torque() const { return in_tile_.hinge_torque; }
 
     RunWork<Leaf> const& work_;
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
+#include <cstdint>
 #include <vector>
 
 #include "chain/chain_group.hpp"
@@ -31,14 +31,15 @@ class AlignedNumbers {
   public:
     AlignedNumbers() = default;
     explicit AlignedNumbers(std::int64_t count) : storage_(static_cast<std::size_t>(count) + most_lanes) {}
-    double* data() {
-        void* place = storage_.data();
-        std::size_t bytes = storage_.size() * sizeof(double);
-        return static_cast<double*>(std::align(most_lanes * sizeof(double), sizeof(double), place, bytes));
-    }
+    double* data() { return storage_.data() + unaligned(); }
+    double const* data() const { return storage_.data() + unaligned(); }
     std::int64_t bytes() const { return static_cast<std::int64_t>(storage_.size() * sizeof(double)); }
 
   private:
+    std::size_t unaligned() const {
+        std::size_t const at = reinterpret_cast<std::uintptr_t>(storage_.data()) / sizeof(double) % most_lanes;
+        return (most_lanes - at) % most_lanes;
+    }
     LongArray<double> storage_;
 };
 

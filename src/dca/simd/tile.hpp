@@ -115,9 +115,12 @@ class Tile {
         View<K> const here = out(View<K>{view.origin, view.pitch, 0});
         return {here.origin, here.pitch};
     }
-    /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time.
-    void fill(std::int64_t const* first, std::int64_t ahead) {
-        for (int n = 0; n < count_; ++n) {
+    /// How many numbers of a body it reads.
+    int count() const { return count_; }
+    /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time. `count`: numbers, those of views that came
+    /// first.
+    void fill(std::int64_t const* first, std::int64_t ahead, int count) {
+        for (int n = 0; n < count; ++n) {
             double const* const from = source_[n].origin;
             double* const to = place(n);
             for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
@@ -128,6 +131,7 @@ class Tile {
             Real::pick(from + length, first).store(to + length * lanes);
         }
     }
+    void fill(std::int64_t const* first, std::int64_t ahead) { fill(first, ahead, count_); }
     /// As fill.
     void empty(std::int64_t const* first, std::int64_t ahead) {
         for (int n = 0; n < written_; ++n) {

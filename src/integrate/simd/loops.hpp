@@ -80,6 +80,131 @@ class FollowRuns {
     View<3> to_omega_, to_translation_, to_velocity_;
 };
 
+/// Motions of as many runs on hinges, without positions, and what the hinges do.
+template <class Real>
+class FollowHinges {
+    static constexpr int lanes = Real::lanes, part = dca::part_length;
+    using Motions = MotionOf<Real>;
+    using Column = dca::Column<Real>;
+    using Vector3 = Vector<Real, 3>;
+
+  public:
+    FollowHinges(JointLoads const& loads, double const* constants)
+        : scan_(loads.scan),
+          constants_(constants),
+          q_(coordinate(scan_.state.q)),
+          qd_(coordinate(scan_.state.qd)),
+          turn_(tile_.out(scan_.motion.joint_turn)) {
+        BodyLoadsView const& given = loads.given;
+        if (!given.joint_loads) return;
+        load_ = {loads.joint_load.origin + about_hinge * loads.joint_load.pitch, loads.joint_load.pitch, 0};
+        torque_ = coordinate(given.torque);
+        if (given.springs) stiffness_ = coordinate(given.stiffness), rest_ = coordinate(given.rest);
+        if (given.dampers) damping_ = coordinate(given.damping);
+        to_load_ = tile_.out(load_);
+    }
+    FollowHinges(FollowHinges const&) = delete;
+    FollowHinges& operator=(FollowHinges const&) = delete;
+
+    void follow(dca::RunsInLanes const* items, std::int64_t item) {
+        constexpr std::int64_t bodies_of_item = lanes * dca::longest_run;
+        constexpr int block = hinge_constants * part * lanes;
+        dca::RunsInLanes const& runs = items[item];
+        Motions m{};
+        std::int64_t first[lanes];
+        for (int p = 0; p < dca::parts_of_run; ++p) {
+            for (int j = 0; j < lanes; ++j) first[j] = runs.body[j] + p * part;
+            tile_.fill(first, bodies_of_item);
+            double const* const here = constants_ + (item * dca::parts_of_run + p) * block;
+            dca::prefetch<Real>(here, 2 * block, block);
+            dca::Constants<Real> constants{here};
+            auto const axis = constants.template next<3>();
+            auto const frame = constants.template next<4>();
+            for (Column k{0}; k.at < part; ++k.at) {
+                Vector3 const along = read(axis, k);
+                Vector<Real, 1> const q = read(q_, k), qd = read(qd_, k);
+                Of of{from_axis_angle(along, q[0]), {}, to_load_.origin ? torque(k, q, qd) : Vector<Real, 1>{{Real(0)}}};
+                of.motion = {as_quaternion(read(frame, k)) * of.turn, qd[0] * along, Vector3::zero(), Vector3::zero()};
+                if (p == 0 && k.at == 0) {
+                    begin(runs, of);
+                    m = of.motion;
+                } else {
+                    m = compose<false>(m, of.motion);
+                }
+                write(turn_, k, as_vector(of.turn));
+                if (to_load_.origin) write(to_load_, k, of.torque);
+            }
+            tile_.empty(first, bodies_of_item);
+        }
+        m.rotation = normalized(m.rotation);
+        dca::scatter<Real>(m, scan_.whole, runs.slot);
+    }
+
+  private:
+    static constexpr int about_hinge = 2;  // component of JointLoads::joint_load
+    struct Of {
+        Quaternion<Real> turn;
+        Motions motion;
+        Vector<Real, 1> torque;
+    };
+    template <class T, int D>
+    ConstView<1> coordinate(FieldView<T, D> const& view) {
+        return tile_.in(ConstView<1>{view.origin, view.pitch, 0});
+    }
+    /// As JointLoads::set_joint_load.
+    Vector<Real, 1> torque(Column k, Vector<Real, 1> const& q, Vector<Real, 1> const& qd) const {
+        Real along = read(torque_, k)[0];
+        if (stiffness_.origin) along = along - read(stiffness_, k)[0] * (q[0] - read(rest_, k)[0]);
+        if (damping_.origin) along = along - read(damping_, k)[0] * qd[0];
+        return {{along}};
+    }
+    /// Keeps first bodies' motions. Where they begin a chain, on whatever joint, all is known.
+    void begin(dca::RunsInLanes const& runs, Of& of) {
+        constexpr int numbers = static_cast<int>(sizeof(Of) / sizeof(Real)), of_turn = 4;
+        alignas(64) double all[numbers * lanes];
+        bool known = false;
+        for (int j = 0; j < lanes; ++j) {
+            std::int64_t const k = runs.body[j];
+            if (!scan_.joints.is_first[k]) continue;
+            if (!known) dca::store_vectors<Real>(all, of);
+            known = true;
+            auto const take = [&all, j, k](int at, auto const& view, int count) {
+                for (int i = 0; i < count; ++i) all[(at + i) * lanes + j] = view.origin[i * view.pitch + k];
+            };
+            take(0, scan_.motion.joint_turn, of_turn);
+            take(of_turn, scan_.rotation, first_of_omega);
+            take(of_turn + first_of_omega, scan_.omega, 3);
+            if (to_load_.origin) take(numbers - 1, load_, 1);
+        }
+        if (known) dca::load_vectors<Real>(all, of);
+        dca::scatter(scan_.rotation, runs.body, 0, as_vector(of.motion.rotation));
+        dca::scatter(scan_.omega, runs.body, 0, of.motion.omega);
+    }
+    JointScan const& scan_;
+    double const* constants_;
+    dca::Tile<Real, part> tile_;
+    ConstView<1> q_, qd_, torque_, stiffness_, rest_, damping_;
+    View<4> turn_;
+    View<1> load_, to_load_;
+};
+/// As JointScan::set_motion.
+template <class Real>
+void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
+    std::int64_t at[Real::lanes];
+    for (int j = 0; j < Real::lanes; ++j) at[j] = runs.slot[j] * MotionRecords::numbers;
+    auto const pick = []<int D>(double const* origin, std::int64_t pitch, std::int64_t const* from, Vector<Real, D> v) {
+        for (int i = 0; i < D; ++i) v[i] = Real::pick(origin + i * pitch, from);
+        return v;
+    };
+    MotionOf<Real> first{};
+    first.rotation = as_quaternion(pick(s.rotation.origin, s.rotation.pitch, runs.body, Vector<Real, 4>{}));
+    first.omega = pick(s.omega.origin, s.omega.pitch, runs.body, Vector<Real, 3>{});
+    dca::scatter(s.motion.omega, runs.body, 0, compose(pick(s.before.origin + first_of_omega, 1, at, Vector<Real, 3>{}), first));
+    if (s.motion.orients_first_alone) return;  // chains' first ones
+    auto const before = as_quaternion(pick(s.before.origin, 1, at, Vector<Real, 4>{}));
+    dca::scatter(s.motion.orientation, runs.body, 0, as_vector(normalized(before * first.rotation)));
+}
+
 template <class Real, bool positions>
 struct LoopsOf {
     using Bodies = dca::Abreast<Real>;
@@ -89,6 +214,14 @@ struct LoopsOf {
     [[gnu::flatten]] static void follow(JointScan const& scan, dca::RunsInLanes const* runs, std::int64_t begin, std::int64_t end) {
         FollowRuns<Real, positions> lanes(scan);
         for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs[i]);
+    }
+    [[gnu::flatten]] static void follow_hinges(JointLoads const& loads, dca::RunsInLanes const* runs, double const* constants,
+                                               std::int64_t begin, std::int64_t end) {
+        FollowHinges<Real> lanes(loads, constants);
+        for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs, i);
+    }
+    [[gnu::flatten]] static void begin_runs(JointScan const& scan, dca::RunsInLanes const* runs, std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) catena::begin_runs<Real>(scan, runs[i]);
     }
     [[gnu::flatten]] static void set_motion(JointChains const& chains, std::int64_t const* first, std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) chains.template set_motion<positions>(Bodies{first[i]}, false);
@@ -105,7 +238,9 @@ struct LoopsOf {
                                                 std::int64_t begin, std::int64_t end) {
         for (std::int64_t i = begin; i < end; ++i) steps.template advance<positions>(Bodies{first[i]}, stage);
     }
-    static constexpr JointLoops loops() { return {set_relative, follow, set_motion, set_rates, runge_kutta, embedded_stage}; }
+    static constexpr JointLoops loops() {
+        return {set_relative, follow, follow_hinges, begin_runs, set_motion, set_rates, runge_kutta, embedded_stage};
+    }
 };
 
 template <class Real>

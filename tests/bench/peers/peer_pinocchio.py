@@ -36,11 +36,13 @@ def build(chain):
     data = model.createData()
     q, v, tau = (np.concatenate(parts) for parts in (q, [b.qd for b in chain.bodies], [b.torque for b in chain.bodies]))
     pin.forwardKinematics(model, data, q)
+    convention = CONVENTIONS[sys.argv[3]]
+    if not any(np.any(b.wrench_force) or np.any(b.wrench_torque) for b in chain.bodies):
+        return lambda: pin.aba(model, data, q, v, tau, convention)
     external = pin.StdVec_Force()
     external.append(pin.Force.Zero())
     for k, body in enumerate(chain.bodies, start=1):
         external.append(at_joint(data.oMi[k], model.inertias[k], body))
-    convention = CONVENTIONS[sys.argv[3]]
     return lambda: pin.aba(model, data, q, v, tau, external, convention)
 
 

@@ -103,6 +103,7 @@ class Chain {
         Vec3 const torque = row.kind == ball ? body.getMobilizerTransform(state_).R() * vector(row.torque) : vector(row.torque);
         for (int i = 0; i < body.getNumU(state_); ++i) loads_.setOneMobilityForce(state_, body, SimTK::MobilizerUIndex(i), torque[i]);
         Vec3 const arm = body.getBodyRotation(state_) * vector(row.com), force = vector(row.wrench_force);
+        if (force == Vec3(0) && vector(row.wrench_torque) == Vec3(0)) return;  // from the first one on they cost time
         loads_.setOneBodyForce(state_, body, SimTK::SpatialVec(vector(row.wrench_torque) + arm % force, force));
     }
 
