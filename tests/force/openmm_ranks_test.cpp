@@ -1,6 +1,7 @@
 // Forces computed on several ranks are those of the whole System.
 #include <OpenMM.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -18,14 +19,18 @@ class Ranks : public ::testing::Test {
   protected:
     /// What must come of the lists on several ranks: made anew on the way or not, and on some rank without some bead of the scene.
     enum class Lists { last, are_made_anew, are_made_anew_of_all_beads };
+    /// Forces that have Contexts of their own.
+    enum class Layers { none, one };
 
     /// Evaluations along a walk of all beads.
-    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists) {
+    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists, Layers layers = Layers::none) {
         on_ranks([&](Communicator const& communicator) {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
             auto const force = make_openmm_force(spec, beads, communicator);
             auto const whole = make_openmm_force(in_one_context(spec), split(all_beads, 1), *serial);
+            EXPECT_EQ(layers_of(*force), layers == Layers::one ? 1 : 0);
+            EXPECT_EQ(layers_of(*whole), 0);
             auto positions = wound(beads, 3);
             int const evaluations = 5;
             for (int i = 0; i < evaluations; ++i) {
@@ -54,6 +59,11 @@ class Ranks : public ::testing::Test {
         spec.layers = "all";
         return spec;
     }
+    static std::int64_t layers_of(OpenMmForce const& force) {
+        auto const lines = force.description();
+        return std::count_if(lines.begin(), lines.end(),
+                             [](std::string const& line) { return line.find(" in a Context of its own: ") != std::string::npos; });
+    }
     static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole) {
         auto const terms = force.energies(), expected = whole.energies();
         EXPECT_EQ(terms.size(), expected.size());
@@ -71,16 +81,18 @@ class Ranks : public ::testing::Test {
 };
 
 TEST_F(Ranks, Calvados2) {
-    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, Lists::are_made_anew);
+    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, Lists::are_made_anew,
+            Layers::one);
 }
 
 TEST_F(Ranks, Calvados2InABox) {
-    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, Lists::are_made_anew);
+    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, Lists::are_made_anew,
+            Layers::one);
 }
 
 TEST_F(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
     compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1,
-            Lists::are_made_anew_of_all_beads);
+            Lists::are_made_anew_of_all_beads, Layers::one);
 }
 
 /// Nobody has moved but one chain, from far away to the other: its beads were no ghosts.
@@ -106,7 +118,7 @@ TEST_F(Ranks, AChainThatComesFromAfar) {
 TEST_F(Ranks, OnAWorkerThread) {
     OpenMmSpec spec = on_reference();
     spec.path = "host";
-    compare(spec, proteins({random_sequence(150, 9)}), 0.1, Lists::are_made_anew);
+    compare(spec, proteins({random_sequence(150, 9)}), 0.1, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, FewerBeadsThanRanks) {
@@ -132,14 +144,44 @@ TEST_F(Ranks, InOneContext) {
 /// "every.xml": a force between charges is a layer, with exclusions among them.
 TEST_F(Ranks, LayerByLayer) {
     BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
-    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03, Lists::are_made_anew);
+    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03, Lists::are_made_anew, Layers::one);
     BeadSystem const in_box = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
-    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03, Lists::are_made_anew);
+    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, ALayerWithoutBeadsOnSomeRanks) {
-    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1, Lists::are_made_anew);
-    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1, Lists::are_made_anew);  // no layer: no charge
+    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1, Lists::are_made_anew, Layers::one);
+    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1, Lists::are_made_anew, Layers::one);  // of the two ends
+}
+
+/// They are taken off all the same, and their terms stay.
+TEST_F(Ranks, ForcesInWhichNoBeadActsHaveNoLayer) {
+    BeadSystem const all_beads = proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)});
+    auto const system = bare_system(all_beads);
+    auto const add_charges = [&](char const* name, double cutoff, double charge) {
+        auto* pairs = new OpenMM::CustomNonbondedForce("q1*q2*exp(-r)");
+        pairs->addPerParticleParameter("q");
+        pairs->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
+        pairs->setCutoffDistance(cutoff);
+        pairs->setName(name);
+        for (int i = 0; i < 300; ++i) pairs->addParticle({charge});
+        system->addForce(pairs);
+    };
+    add_charges("near", 2, 1);
+    add_charges("far", 4, 0);
+    OpenMmSpec const spec = layer_by_layer(of_system(*system, "no-layer.xml"));
+    compare(spec, all_beads, 0.05, Lists::are_made_anew);
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(all_beads, communicator.size());
+        auto const force = make_openmm_force(spec, beads, communicator);
+        evaluate(*force, beads, communicator.rank(), wound(beads, 3));
+        auto const terms = force->energies();
+        EXPECT_EQ(terms.size(), 2u);
+        EXPECT_EQ(terms.front().name, "near");
+        EXPECT_GT(terms.front().value, 1);
+        EXPECT_EQ(terms.back().name, "far");
+        EXPECT_EQ(terms.back().value, 0);
+    });
 }
 
 TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
@@ -148,7 +190,7 @@ TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
     std::swap(scene.chain_name[0], scene.chain_name[1]);
     OpenMmSpec spec = layer_by_layer(of_system(*every_force(in_system), "layers-order.xml"));
     spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
-    compare(spec, scene, 0.03, Lists::are_made_anew);
+    compare(spec, scene, 0.03, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, BondedForcesAlone) {
