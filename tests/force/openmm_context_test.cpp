@@ -91,5 +91,19 @@ TEST_F(Places, InTheOpenTheMiddleGoesToTheOriginForAWhile) {
     EXPECT_DOUBLE_EQ(x(context, 0), -1);
 }
 
+/// A state that is set, or another copy's frame.
+TEST_F(Places, InTheOpenAreFoundAnewAfterAJump) {
+    ForceContext context(pair(false), platform("CPU"), std::nullopt);
+    auto const set = [&](double first) { context.set_positions(std::vector<Vec3>{{{first, 0, 0}}, {{first + 2, 0, 0}}}, 2); };
+    set(0);
+    set(9);
+    EXPECT_DOUBLE_EQ(x(context, 0), 8);
+    set(11);  // farther than 10 nm from the start
+    EXPECT_DOUBLE_EQ(x(context, 0), -1);
+    set(-50000.25);
+    EXPECT_DOUBLE_EQ(x(context, 0), -1);
+    EXPECT_NEAR(context.forces()[0][0], 4, in_single);
+}
+
 }  // namespace
 }  // namespace catena::testing

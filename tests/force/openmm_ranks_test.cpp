@@ -59,17 +59,26 @@ class Ranks : public ::testing::Test {
         spec.layers = "all";
         return spec;
     }
+    static OpenMmSpec on_cpu() {
+        OpenMmSpec spec = on_reference();
+        spec.platform = "CPU";
+        spec.switch_width = 0.2;  // no jumps where roundings take a pair across a cutoff
+        return spec;
+    }
+    /// Of forces in single precision, relative to the largest: the coordinates of two beads in either Context are rounded by eps `extent`
+    /// each, and overlaps of 0.05 nm make a force change by all of itself.
+    static double in_single(double extent) { return 4 * 0x1p-24 * extent / 0.05; }
     static std::int64_t layers_of(OpenMmForce const& force) {
         auto const lines = force.description();
         return std::count_if(lines.begin(), lines.end(),
                              [](std::string const& line) { return line.find(" in a Context of its own: ") != std::string::npos; });
     }
-    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole) {
+    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole, double tolerance = same) {
         auto const terms = force.energies(), expected = whole.energies();
         EXPECT_EQ(terms.size(), expected.size());
         for (std::size_t i = 0; i < std::min(terms.size(), expected.size()); ++i) {
             EXPECT_EQ(terms[i].name, expected[i].name);
-            EXPECT_NEAR(terms[i].value, expected[i].value, same * std::max(1.0, std::abs(expected[i].value)));
+            EXPECT_NEAR(terms[i].value, expected[i].value, tolerance * std::max(1.0, std::abs(expected[i].value)));
         }
     }
 
@@ -191,6 +200,28 @@ TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
     OpenMmSpec spec = layer_by_layer(of_system(*every_force(in_system), "layers-order.xml"));
     spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
     compare(spec, scene, 0.03, Lists::are_made_anew, Layers::one);
+}
+
+/// A state that is set far away, as energies find them whose last output was long ago.
+TEST_F(Ranks, BeadsThatAreFarAwayAllAtOnce) {
+    BeadSystem const all_beads = proteins({random_sequence(60, 25), random_sequence(50, 26)});
+    double constexpr length = 18;
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(all_beads, communicator.size());
+        auto const serial = serial_communicator();
+        auto const force = make_openmm_force(on_cpu(), beads, communicator);
+        auto const whole = make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
+        auto const start = wound(beads, 3);
+        auto const expected = evaluate(*whole, start);
+        for (double const away : {0.0, 1024.0, -4096.0}) {
+            auto positions = start;
+            for (Vec3& x : positions) x = x + Vec3{{away, -away, 2 * away}};
+            auto const own = evaluate(*force, beads, communicator.rank(), positions);
+            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), in_single(length) * largest(expected))
+                << away << " nm away on " << communicator.size() << " ranks";
+            expect_same_energies(*force, *whole, in_single(length));
+        }
+    });
 }
 
 TEST_F(Ranks, BondedForcesAlone) {
