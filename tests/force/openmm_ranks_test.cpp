@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include "tests/force/beads.hpp"
@@ -14,6 +15,19 @@ namespace {
 
 /// Sums of the same doubles in another order: relative to the largest force.
 double constexpr same = 1e-12;
+
+/// Beads swing about where they started, each at its own pace and by less than makes lists of ghosts anew; chains have gone along each
+/// other for `drifting` steps.
+std::vector<Vec3> swung(BeadSystem const& beads, std::vector<Vec3> positions, int step, int drifting) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> pace(0.01, 0.03), phase(0, 6.28);
+    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
+        for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k) {
+            for (double& x : positions[k].data) x += 0.07 * std::sin(pace(random) * step + phase(random));
+            positions[k][0] += 0.05 * static_cast<double>(c) * drifting;
+        }
+    return positions;
+}
 
 class Ranks : public ::testing::Test {
   protected:
@@ -200,6 +214,41 @@ TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
     OpenMmSpec spec = layer_by_layer(of_system(*every_force(in_system), "layers-order.xml"));
     spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
     compare(spec, scene, 0.03, Lists::are_made_anew, Layers::one);
+}
+
+/// In single precision, that shifts and cells are kept while beads leave the box, and ghosts come and go, adds no more than rounding.
+TEST_F(Ranks, PlacesThatAreKept) {
+    int constexpr quiet = 270, steps = 330, compared_every = 30;  // places are kept for 250 evaluations, unless ghosts change
+    double constexpr edge = 48;
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{edge, 9, 9}}}}) {
+        BeadSystem const all_beads = proteins({random_sequence(60, 25), random_sequence(50, 26), random_sequence(40, 27)}, 1, box);
+        on_ranks([&](Communicator const& communicator) {
+            BeadSystem const beads = split(all_beads, communicator.size());
+            auto const serial = serial_communicator();
+            auto const force = make_openmm_force(on_cpu(), beads, communicator);
+            EXPECT_EQ(layers_of(*force), 1);
+            auto const start = wound(beads, 3);
+            std::int64_t ghosts = 0;
+            for (int step = 0; step <= steps; ++step) {
+                auto const positions = swung(beads, start, step, std::max(0, step - quiet));
+                auto const own = evaluate(*force, beads, communicator.rank(), positions);
+                if (step == quiet && communicator.size() > 1) {
+                    EXPECT_EQ(force->traffic().rebuilds, 1);
+                    ghosts = force->traffic().ghosts;
+                }
+                if (step % compared_every != 0) continue;
+                auto const fresh = make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
+                auto const expected = evaluate(*fresh, positions);
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), in_single(edge) * largest(expected))
+                    << "step " << step << " on " << communicator.size() << " ranks" << (box ? ", in a box" : "");
+                expect_same_energies(*force, *fresh, in_single(edge));
+            }
+            if (communicator.size() == 1) return;
+            EXPECT_GT(force->traffic().rebuilds, 10);
+            EXPECT_LT(force->contexts(), force->traffic().rebuilds);  // their particles were exchanged
+            EXPECT_EQ(communicator.max(force->traffic().ghosts != ghosts ? 1 : 0), 1);
+        });
+    }
 }
 
 /// A state that is set far away, as energies find them whose last output was long ago.
