@@ -34,8 +34,9 @@ class ForceContext {
     std::int64_t size() const { return std::ssize(positions_); }
 
     /// Of its particles, nm, W. Where all may be shifted, the middle of the first `centred` goes to the origin. Shifts and the cells that
-    /// particles are taken from stay for a while: OpenMM takes a particle for one that has moved far where they change, and looks for all
-    /// pairs anew. Platform Reference does so anyway: there they depend on these positions alone.
+    /// particles are taken from stay for a while, unless particles are found far from where they were: OpenMM takes a particle for one that
+    /// has moved far where they change, and looks for all pairs anew. Platform Reference does so anyway: there they depend on these
+    /// positions alone.
     void set_positions(std::span<Vec3 const> positions, std::size_t centred);
     /// Shifts and cells are found anew at the next positions: as in a Context that has just been made.
     void place_anew() { placed_for_ = 0; }
@@ -51,7 +52,8 @@ class ForceContext {
     static constexpr int evaluations_of_a_place = 250, on_reference = 1;
 
     void find_places(std::span<Vec3 const> positions, std::size_t centred);
-    bool has_strayed(OpenMM::Vec3 const& x) const;
+    /// Whether particles are too far from where they were when places were found.
+    bool have_strayed(std::span<Vec3 const> positions, std::size_t centred) const;
 
     std::optional<Vec3> box_;
     Placement placement_;

@@ -1,5 +1,6 @@
-// Forces on beads from OpenMM. One Context a rank, driven by a worker thread or by the caller: begin() hands it positions, finish()
-// takes forces. Not for several threads of a process at once: OpenMM's set-up of expressions is not safe there.
+// Forces on beads from OpenMM. A Context a rank, or one a layer (force/force_layers.hpp), driven by a worker thread or by the caller:
+// begin() hands over positions, finish() takes forces. Not for several threads of a process at once: OpenMM's set-up of expressions is not
+// safe there.
 #pragma once
 
 #include <cstdint>
@@ -92,7 +93,7 @@ class OpenMmForce {
     virtual GhostTraffic traffic() const = 0;
     /// When positions were brought to this rank for the last evaluation.
     virtual Interval last_gathering() const = 0;
-    /// Largest number of particles that this rank's Context has held, ghosts and spares included, and how many Contexts it made.
+    /// Largest number of particles that a Context of this rank has held, ghosts and spares included, and how many Contexts it made.
     virtual std::int64_t largest_context() const = 0;
     virtual std::int64_t contexts() const = 0;
 };

@@ -61,7 +61,8 @@ class LayeredForces final : public RankForces {
         each([&](RankForces const& forces) { due = due || forces.ghosts_are_due(); });
         return due;
     }
-    /// Of all layers together; made anew as often as the lists of one.
+    /// Of all layers together: a bead counts in each in which it is a ghost. Each makes its lists anew when its own beads have moved far:
+    /// `rebuilds` is the most of one.
     GhostTraffic traffic() const override {
         GhostTraffic all;
         each([&](RankForces const& forces) {

@@ -76,6 +76,7 @@ void SplitShare::find_energies(std::span<Vec3 const> own, ForceContext* home, st
     if (!energies_) energies_ = context_of(model_.system, home);
     std::vector<Vec3> of_particles(all.size());
     for (std::size_t i = 0; i < all.size(); ++i) of_particles[particle_of_bead_[bead_at_[i]]] = all[i];
+    energies_->place_anew();  // outputs are far between: no list of pairs is left that could be kept
     energies_->set_positions(of_particles, of_particles.size());
     energies_->find_energies(of_group);
 }

@@ -32,12 +32,13 @@ class WholeForces final : public RankForces {
         communicator_.all_gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)), bytes_of_rank_);
         positions_.resize(all.size());
         for (std::size_t i = 0; i < all.size(); ++i) positions_[particle_[i]] = all[i];
+        are_set_ = false;
     }
 
     void evaluate(std::span<Vec3> own_forces) override {
         if (own_forces.empty()) return;
         check_finite(positions_, number_of_particle_, "the position");
-        context_->set_positions(positions_, positions_.size());
+        set_positions();
         std::vector<Vec3> all;
         for (OpenMM::Vec3 const& f : context_->forces()) all.push_back({{f[0], f[1], f[2]}});
         check_finite(all, number_of_particle_, "OpenMM's force");
@@ -47,7 +48,7 @@ class WholeForces final : public RankForces {
     void find_energies(DevicePath*, std::span<double> of_group) override {
         if (communicator_.rank() != 0) return;
         if (!context_) make_context();
-        if (!positions_.empty()) context_->set_positions(positions_, positions_.size());  // else they are on a GPU
+        if (!positions_.empty() && !are_set_) set_positions();  // where there are none they are on a GPU
         context_->find_energies(of_group);
     }
     std::unique_ptr<DevicePath> device_path(bool overlap) override {
@@ -70,6 +71,11 @@ class WholeForces final : public RankForces {
 
   private:
     void make_context() { context_ = std::make_unique<ForceContext>(model_.system, platform_, box_); }
+    /// Once for those gathered: places last for so many, and a run must not depend on when its energies are asked for.
+    void set_positions() {
+        context_->set_positions(positions_, positions_.size());
+        are_set_ = true;
+    }
 
     OpenMmModel const& model_;
     OpenMmPlatform const& platform_;
@@ -80,6 +86,7 @@ class WholeForces final : public RankForces {
     std::int64_t first_ = 0;
     std::unique_ptr<ForceContext> context_;
     std::vector<Vec3> positions_;  // of particles
+    bool are_set_ = false;         // the Context has them
 };
 
 }  // namespace

@@ -91,5 +91,35 @@ TEST_F(Places, InTheOpenTheMiddleGoesToTheOriginForAWhile) {
     EXPECT_DOUBLE_EQ(x(context, 0), -1);
 }
 
+/// A state that is set, or another copy's frame.
+TEST_F(Places, InTheOpenAreFoundAnewAfterAJump) {
+    ForceContext context(pair(false), platform("CPU"), std::nullopt);
+    auto const set = [&](double first) { context.set_positions(std::vector<Vec3>{{{first, 0, 0}}, {{first + 2, 0, 0}}}, 2); };
+    set(0);
+    set(9);
+    EXPECT_DOUBLE_EQ(x(context, 0), 8);
+    set(11);  // farther than 10 nm from the start
+    EXPECT_DOUBLE_EQ(x(context, 0), -1);
+    set(-50000.25);
+    EXPECT_DOUBLE_EQ(x(context, 0), -1);
+    EXPECT_NEAR(context.forces()[0][0], 4, in_single);
+}
+
+/// A run that writes energies is the run that does not: the same bits, as long as one thread adds up forces.
+TEST(PlacesOfARun, DoNotDependOnWhenEnergiesAreAskedFor) {
+    BeadSystem const beads = proteins({random_sequence(60, 1)});
+    OpenMmSpec spec = on_reference();
+    spec.platform = "CPU";
+    spec.threads = 1;
+    auto const serial = serial_communicator();
+    auto const quiet = make_openmm_force(spec, beads, *serial), asked = make_openmm_force(spec, beads, *serial);
+    auto positions = wound(beads, 3);
+    for (int step = 0; step < 300; ++step) {
+        EXPECT_EQ(difference(evaluate(*asked, positions), evaluate(*quiet, positions)), 0) << step;
+        asked->energies();
+        for (Vec3& x : positions) x[1] += 0.01;
+    }
+}
+
 }  // namespace
 }  // namespace catena::testing

@@ -1,7 +1,9 @@
 // Forces computed on several ranks are those of the whole System.
 #include <OpenMM.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <utility>
 
 #include "tests/force/beads.hpp"
@@ -14,18 +16,35 @@ namespace {
 /// Sums of the same doubles in another order: relative to the largest force.
 double constexpr same = 1e-12;
 
+/// Beads swing about where they started, each at its own pace and by less than makes lists of ghosts anew; chains have gone along each
+/// other for `drifting` steps.
+std::vector<Vec3> swung(BeadSystem const& beads, std::vector<Vec3> positions, int step, int drifting) {
+    std::mt19937_64 random(11);
+    std::uniform_real_distribution<double> pace(0.01, 0.03), phase(0, 6.28);
+    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
+        for (std::int64_t k = beads.chain_offset[c]; k < beads.chain_offset[c + 1]; ++k) {
+            for (double& x : positions[k].data) x += 0.07 * std::sin(pace(random) * step + phase(random));
+            positions[k][0] += 0.05 * static_cast<double>(c) * drifting;
+        }
+    return positions;
+}
+
 class Ranks : public ::testing::Test {
   protected:
     /// What must come of the lists on several ranks: made anew on the way or not, and on some rank without some bead of the scene.
     enum class Lists { last, are_made_anew, are_made_anew_of_all_beads };
+    /// Forces that have Contexts of their own.
+    enum class Layers { none, one };
 
     /// Evaluations along a walk of all beads.
-    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists) {
+    void compare(OpenMmSpec const& spec, BeadSystem const& all_beads, double stride, Lists lists, Layers layers = Layers::none) {
         on_ranks([&](Communicator const& communicator) {
             BeadSystem const beads = split(all_beads, communicator.size());
             auto const serial = serial_communicator();
             auto const force = make_openmm_force(spec, beads, communicator);
             auto const whole = make_openmm_force(in_one_context(spec), split(all_beads, 1), *serial);
+            EXPECT_EQ(layers_of(*force), layers == Layers::one ? 1 : 0);
+            EXPECT_EQ(layers_of(*whole), 0);
             auto positions = wound(beads, 3);
             int const evaluations = 5;
             for (int i = 0; i < evaluations; ++i) {
@@ -54,12 +73,26 @@ class Ranks : public ::testing::Test {
         spec.layers = "all";
         return spec;
     }
-    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole) {
+    static OpenMmSpec on_cpu() {
+        OpenMmSpec spec = on_reference();
+        spec.platform = "CPU";
+        spec.switch_width = 0.2;  // no jumps where roundings take a pair across a cutoff
+        return spec;
+    }
+    /// Of forces in single precision, relative to the largest: the coordinates of two beads in either Context are rounded by eps `extent`
+    /// each, and overlaps of 0.05 nm make a force change by all of itself.
+    static double in_single(double extent) { return 4 * 0x1p-24 * extent / 0.05; }
+    static std::int64_t layers_of(OpenMmForce const& force) {
+        auto const lines = force.description();
+        return std::count_if(lines.begin(), lines.end(),
+                             [](std::string const& line) { return line.find(" in a Context of its own: ") != std::string::npos; });
+    }
+    static void expect_same_energies(OpenMmForce& force, OpenMmForce& whole, double tolerance = same) {
         auto const terms = force.energies(), expected = whole.energies();
         EXPECT_EQ(terms.size(), expected.size());
         for (std::size_t i = 0; i < std::min(terms.size(), expected.size()); ++i) {
             EXPECT_EQ(terms[i].name, expected[i].name);
-            EXPECT_NEAR(terms[i].value, expected[i].value, same * std::max(1.0, std::abs(expected[i].value)));
+            EXPECT_NEAR(terms[i].value, expected[i].value, tolerance * std::max(1.0, std::abs(expected[i].value)));
         }
     }
 
@@ -71,16 +104,18 @@ class Ranks : public ::testing::Test {
 };
 
 TEST_F(Ranks, Calvados2) {
-    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, Lists::are_made_anew);
+    compare(on_reference(), proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)}), 0.1, Lists::are_made_anew,
+            Layers::one);
 }
 
 TEST_F(Ranks, Calvados2InABox) {
-    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, Lists::are_made_anew);
+    compare(on_reference(), proteins({random_sequence(200, 4), random_sequence(20, 5)}, 1, Vec3{{62, 8.5, 9}}), 0.1, Lists::are_made_anew,
+            Layers::one);
 }
 
 TEST_F(Ranks, Calvados2InABoxThatHoldsNoMoreThanTheReach) {
     compare(on_reference(), proteins({random_sequence(27, 7), random_sequence(26, 8)}, 1, Vec3{{8.5, 8.5, 9}}), 0.1,
-            Lists::are_made_anew_of_all_beads);
+            Lists::are_made_anew_of_all_beads, Layers::one);
 }
 
 /// Nobody has moved but one chain, from far away to the other: its beads were no ghosts.
@@ -106,7 +141,7 @@ TEST_F(Ranks, AChainThatComesFromAfar) {
 TEST_F(Ranks, OnAWorkerThread) {
     OpenMmSpec spec = on_reference();
     spec.path = "host";
-    compare(spec, proteins({random_sequence(150, 9)}), 0.1, Lists::are_made_anew);
+    compare(spec, proteins({random_sequence(150, 9)}), 0.1, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, FewerBeadsThanRanks) {
@@ -132,14 +167,44 @@ TEST_F(Ranks, InOneContext) {
 /// "every.xml": a force between charges is a layer, with exclusions among them.
 TEST_F(Ranks, LayerByLayer) {
     BeadSystem const beads = proteins({random_sequence(75, 10), random_sequence(74, 11), random_sequence(35, 12)});
-    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03, Lists::are_made_anew);
+    compare(layer_by_layer(of_system(*every_force(beads), "layers.xml")), beads, 0.03, Lists::are_made_anew, Layers::one);
     BeadSystem const in_box = proteins({random_sequence(75, 13), random_sequence(74, 14), random_sequence(35, 15)}, 1, Vec3{{24, 7, 7}});
-    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03, Lists::are_made_anew);
+    compare(layer_by_layer(of_system(*every_force(in_box), "layers-box.xml")), in_box, 0.03, Lists::are_made_anew, Layers::one);
 }
 
 TEST_F(Ranks, ALayerWithoutBeadsOnSomeRanks) {
-    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1, Lists::are_made_anew);
-    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1, Lists::are_made_anew);  // no layer: no charge
+    compare(layer_by_layer(on_reference()), proteins({"KDKD" + std::string(300, 'A')}), 0.1, Lists::are_made_anew, Layers::one);
+    compare(layer_by_layer(on_reference()), proteins({std::string(60, 'G')}), 0.1, Lists::are_made_anew, Layers::one);  // of the two ends
+}
+
+/// They are taken off all the same, and their terms stay.
+TEST_F(Ranks, ForcesInWhichNoBeadActsHaveNoLayer) {
+    BeadSystem const all_beads = proteins({random_sequence(150, 1), random_sequence(90, 2), random_sequence(60, 3)});
+    auto const system = bare_system(all_beads);
+    auto const add_charges = [&](char const* name, double cutoff, double charge) {
+        auto* pairs = new OpenMM::CustomNonbondedForce("q1*q2*exp(-r)");
+        pairs->addPerParticleParameter("q");
+        pairs->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
+        pairs->setCutoffDistance(cutoff);
+        pairs->setName(name);
+        for (int i = 0; i < 300; ++i) pairs->addParticle({charge});
+        system->addForce(pairs);
+    };
+    add_charges("near", 2, 1);
+    add_charges("far", 4, 0);
+    OpenMmSpec const spec = layer_by_layer(of_system(*system, "no-layer.xml"));
+    compare(spec, all_beads, 0.05, Lists::are_made_anew);
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(all_beads, communicator.size());
+        auto const force = make_openmm_force(spec, beads, communicator);
+        evaluate(*force, beads, communicator.rank(), wound(beads, 3));
+        auto const terms = force->energies();
+        EXPECT_EQ(terms.size(), 2u);
+        EXPECT_EQ(terms.front().name, "near");
+        EXPECT_GT(terms.front().value, 1);
+        EXPECT_EQ(terms.back().name, "far");
+        EXPECT_EQ(terms.back().value, 0);
+    });
 }
 
 TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
@@ -148,7 +213,64 @@ TEST_F(Ranks, LayersOfChainsInAnotherOrderThanTheirParticles) {
     std::swap(scene.chain_name[0], scene.chain_name[1]);
     OpenMmSpec spec = layer_by_layer(of_system(*every_force(in_system), "layers-order.xml"));
     spec.map = {{"A", {0, 19}}, {"B", {20, 79}}};
-    compare(spec, scene, 0.03, Lists::are_made_anew);
+    compare(spec, scene, 0.03, Lists::are_made_anew, Layers::one);
+}
+
+/// In single precision, that shifts and cells are kept while beads leave the box, and ghosts come and go, adds no more than rounding.
+TEST_F(Ranks, PlacesThatAreKept) {
+    int constexpr quiet = 270, steps = 330, compared_every = 30;  // places are kept for 250 evaluations, unless ghosts change
+    double constexpr edge = 48;
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{edge, 9, 9}}}}) {
+        BeadSystem const all_beads = proteins({random_sequence(60, 25), random_sequence(50, 26), random_sequence(40, 27)}, 1, box);
+        on_ranks([&](Communicator const& communicator) {
+            BeadSystem const beads = split(all_beads, communicator.size());
+            auto const serial = serial_communicator();
+            auto const force = make_openmm_force(on_cpu(), beads, communicator);
+            EXPECT_EQ(layers_of(*force), 1);
+            auto const start = wound(beads, 3);
+            std::int64_t ghosts = 0;
+            for (int step = 0; step <= steps; ++step) {
+                auto const positions = swung(beads, start, step, std::max(0, step - quiet));
+                auto const own = evaluate(*force, beads, communicator.rank(), positions);
+                if (step == quiet && communicator.size() > 1) {
+                    EXPECT_EQ(force->traffic().rebuilds, 1);
+                    ghosts = force->traffic().ghosts;
+                }
+                if (step % compared_every != 0) continue;
+                auto const fresh = make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
+                auto const expected = evaluate(*fresh, positions);
+                EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), in_single(edge) * largest(expected))
+                    << "step " << step << " on " << communicator.size() << " ranks" << (box ? ", in a box" : "");
+                expect_same_energies(*force, *fresh, in_single(edge));
+            }
+            if (communicator.size() == 1) return;
+            EXPECT_GT(force->traffic().rebuilds, 10);
+            EXPECT_LT(force->contexts(), force->traffic().rebuilds);  // their particles were exchanged
+            EXPECT_EQ(communicator.max(force->traffic().ghosts != ghosts ? 1 : 0), 1);
+        });
+    }
+}
+
+/// A state that is set far away, as energies find them whose last output was long ago.
+TEST_F(Ranks, BeadsThatAreFarAwayAllAtOnce) {
+    BeadSystem const all_beads = proteins({random_sequence(60, 25), random_sequence(50, 26)});
+    double constexpr length = 18;
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(all_beads, communicator.size());
+        auto const serial = serial_communicator();
+        auto const force = make_openmm_force(on_cpu(), beads, communicator);
+        auto const whole = make_openmm_force(in_one_context(on_cpu()), split(all_beads, 1), *serial);
+        auto const start = wound(beads, 3);
+        auto const expected = evaluate(*whole, start);
+        for (double const away : {0.0, 1024.0, -4096.0}) {
+            auto positions = start;
+            for (Vec3& x : positions) x = x + Vec3{{away, -away, 2 * away}};
+            auto const own = evaluate(*force, beads, communicator.rank(), positions);
+            EXPECT_LE(difference(own, expected, beads.first_of_rank[communicator.rank()]), in_single(length) * largest(expected))
+                << away << " nm away on " << communicator.size() << " ranks";
+            expect_same_energies(*force, *whole, in_single(length));
+        }
+    });
 }
 
 TEST_F(Ranks, BondedForcesAlone) {

@@ -21,6 +21,7 @@ struct Case {
     char const* rest;
     double edge = 20;            // nm, the longest
     bool ghosts_change = false;  // there are beads that a rank does not feel
+    int piece = 1;               // the shortest: numbers of ghosts are multiples of it
 };
 
 /// What one way of computing found, and where it stood then.
@@ -151,6 +152,10 @@ TEST_P(OpenMmOnGpus, AfterManySteps) {
         if (GetParam().ghosts_change) {
             EXPECT_LT(device.traffic.ghosts, device.all.empty() ? INT64_MAX : std::ssize(device.all) - std::ssize(device.own));
         }
+        if (GetParam().piece > 1) {
+            EXPECT_GT(device.traffic.ghosts, 0);
+            EXPECT_EQ(device.traffic.ghosts % GetParam().piece, 0) << device.traffic.ghosts << ": not in pieces";
+        }
         expect_close(device, found(scene_with(precision, false), 400, &device), tolerance(precision));
         expect_close(device, found(scene_with(precision, true), 400, &device), tolerance(precision));
     }
@@ -198,9 +203,11 @@ INSTANTIATE_TEST_SUITE_P(
                            "{name: a, count: 40, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
                            "velocities: thermal}",
                            "box: {periodic: [90, 13, 12]}", 90, true},
+                      // Of 32, 32 and 16 beads; so many chains are dealt whole to three ranks.
                       Case{"in_pieces",
-                           "{name: a, count: 40, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}",
-                           "box: {periodic: [110, 14, 13]}", 110, true},
+                           "{name: a, count: 48, sequence: SEQMDVFMKGLS, model: calvados2, conformation: self_avoiding, velocities: "
+                           "thermal}",
+                           "box: {periodic: [110, 14, 13]}", 110, true, 16},
                       Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""},
                       Case{"held",
                            "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "

@@ -190,6 +190,9 @@ forces: {openmm: {builder: calvados2, map: {a: [0, 2]}}})y",
     {"openmm_path", R"y(chains: [{sequence: GGG, model: calvados2}]
 forces: {openmm: {builder: calvados2, path: remote}})y",
      "`remote` is not a value of `path` (s.yaml: forces.openmm.path, line 2): use one of `auto`, `device`, `host`, `inline`"},
+    {"openmm_layers", R"y(chains: [{sequence: GGG, model: calvados2}]
+forces: {openmm: {builder: calvados2, layers: two}})y",
+     "`two` is not a value of `layers` (s.yaml: forces.openmm.layers, line 2): use one of `auto`, `all`, `none`"},
     {"openmm_in_si", R"y(units: si
 chains: [{generator: {freely_jointed: {beads: 3, length: 1}}}]
 forces: {openmm: {builder: calvados2}})y",

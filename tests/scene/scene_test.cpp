@@ -19,7 +19,7 @@ box: {periodic: [60, 50, 40]}
 forces:
   gravity: [0, 1, 2]
   openmm: {builder: calvados2, temperature: 310, ionic_strength: 0.1, ph: 7.4, switch_width: 0.2, platform: CPU, precision: mixed, threads: 2, device: 1, path: inline,
-           overlap: false, replicate: true, audit: true}
+           overlap: false, layers: none, replicate: true, audit: true}
 dynamics: {integrator: g-baoab, step: 0.01, steps: 1e4, temperature: 300, friction: 0.5, seed: 12345678901234567890, constraint_tolerance: 1e-9}
 solver: {backend: segments, handles: full, threads: 3, refine: 2, gpu_levels: "4,2"}
 output: {every: 10, checkpoint_every: 1000, observables: [energy, radius_of_gyration], joint_forces: true, velocities: true}
@@ -45,6 +45,7 @@ TEST(Scenes, every_section) {
     EXPECT_EQ(o.device, 1);
     EXPECT_EQ(o.path, "inline");
     EXPECT_FALSE(o.overlap);
+    EXPECT_EQ(o.layers, "none");
     EXPECT_TRUE(o.replicate);
     EXPECT_TRUE(o.audit);
     DynamicsSpec const& d = s.dynamics;
@@ -90,6 +91,15 @@ TEST(Scenes, the_force_field_takes_the_temperature_of_the_run) {
     EXPECT_FALSE(parse_scene(chain, "s.yaml").forces.openmm->ph.has_value());
 }
 
+TEST(Scenes, layers_of_forces) {
+    auto const layers = [](std::string const& key) {
+        return parse_scene("chains: [{sequence: GG, model: calvados2}]\nforces: {openmm: {builder: calvados2" + key + "}}", "s.yaml")
+            .forces.openmm->layers;
+    };
+    EXPECT_EQ(layers(""), "auto");
+    for (char const* const value : {"auto", "all", "none"}) EXPECT_EQ(layers(std::string(", layers: ") + value), value);
+}
+
 TEST(Scenes, numbers_are_read_to_the_last_bit) {
     auto const gravity = [](std::string const& x) {
         return parse_scene("chains: [{sequence: G, model: calvados2}]\nforces: {gravity: [" + x + ", 0, 0]}", "s.yaml").forces.gravity[0];
@@ -107,9 +117,10 @@ TEST(Hash, tells_what_decides_the_motion) {
     auto const hash = [](std::vector<std::string> const& overrides) { return parse_scene(sketch, "s.yaml", overrides).hash; };
     std::string const plain = hash({});
     EXPECT_EQ(plain.size(), 32u);
-    for (char const* const same : {"title=other", "dynamics.steps=5", "solver.backend=serial", "solver.threads=1", "output.every=7",
-                                   "output.observables=[energy]", "forces.openmm.platform=Reference", "forces.openmm.threads=1",
-                                   "forces.openmm.path=host", "forces.openmm.replicate=false", "forces.openmm.audit=false"})
+    for (char const* const same :
+         {"title=other", "dynamics.steps=5", "solver.backend=serial", "solver.threads=1", "output.every=7", "output.observables=[energy]",
+          "forces.openmm.platform=Reference", "forces.openmm.threads=1", "forces.openmm.path=host", "forces.openmm.layers=all",
+          "forces.openmm.replicate=false", "forces.openmm.audit=false"})
         EXPECT_EQ(hash({same}), plain) << same;
     for (char const* const other :
          {"dynamics.step=0.011", "dynamics.seed=2", "dynamics.friction=0.4", "dynamics.temperature=301", "dynamics.integrator=rattle",
