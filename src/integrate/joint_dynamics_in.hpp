@@ -121,7 +121,8 @@ class JointDynamicsIn final : public JointDynamics {
         has_matrices_ = true;
     }
     void solve() override {
-        if (std::exchange(leaves_loads_, false)) leaves_motions_ ? update(false) : set_loads();
+        bool const finds_motions = may_follow_hinges();
+        if (std::exchange(leaves_loads_, false)) finds_motions ? update(false) : set_loads();
         set_carried_loads();
         solver_->solve(loads(), found(false));
         exchange_ends();
@@ -235,7 +236,14 @@ class JointDynamicsIn final : public JointDynamics {
         leaves_loads_ = leaves_loads;
         has_matrices_ = false;
         if constexpr (has_lanes)
-            if (leaves_loads_ && follows_hinges()) return follow_hinges();
+            if (may_follow_hinges()) {
+                if (lanes_ && solver_->follows_hinges())
+                    follow_hinges();
+                else
+                    update(false);
+                has_orientations_ = false;  // as on ranks that follow: to find them is collective
+                return;
+            }
         update(false);
     }
     void update(bool again) {
@@ -275,7 +283,7 @@ class JointDynamicsIn final : public JointDynamics {
         leaves_motions_ = true;
         JointChains c = chains();
         c.scan.motion.orients_first_alone = !needs_orientations_;
-        has_orientations_ = relative_ = false;
+        relative_ = false;
         lanes_->each_outside(
             space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
             [c](std::int64_t k) { c.template set_relative<false>(k); });
@@ -373,11 +381,9 @@ class JointDynamicsIn final : public JointDynamics {
     bool leaves_torques() const {
         return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged && !group_.carried_in_scene;
     }
-    /// Where nothing acts by bodies' positions. The lanes are those of the solver's.
-    bool follows_hinges() const {
-        if constexpr (has_lanes) return lanes_ && !needs_positions_ && solver_->follows_hinges();
-        return false;
-    }
+    /// Whether a rank may follow_hinges(): where nothing acts by bodies' positions. The same on all ranks, not all of which have lanes for
+    /// it; these are those of the solver's.
+    bool may_follow_hinges() const { return has_lanes && leaves_loads_ && !needs_positions_; }
     AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
     /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
     /// accelerations instead, where that is enough.

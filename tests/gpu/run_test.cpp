@@ -29,7 +29,7 @@ TEST_P(GpuRun, EndsInTheBitsOfTheHost) {
     run(world, "restarted", 20, "", Backend::cuda);
     run(world, "restarted", 40, "restarted/checkpoint.h5", Backend::cuda);
     if (world.rank() != 0) return;
-    run(*serial_communicator(), "host", 40, "", Backend::segments);
+    run(*serial_communicator(), "host", 40, "", Backend::segments, true);
     ASSERT_FALSE(arrays("host").empty());
     EXPECT_EQ(arrays("all"), arrays("host"));
     EXPECT_EQ(arrays("restarted"), arrays("host"));

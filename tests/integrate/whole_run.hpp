@@ -30,8 +30,9 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         if (catena::testing::world().rank() == 0) std::filesystem::remove_all(folder_, ignored);
         catena::testing::world().barrier();
     }
+    /// `one_by_one`: not in vectors.
     nlohmann::json run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
-                       Backend backend = Backend::automatic) {
+                       Backend backend = Backend::automatic, bool one_by_one = false) {
         RunOptions options;
         options.output = folder_ + "/" + name;
         options.steps = steps;
@@ -39,6 +40,7 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         options.quiet = true;
         Scene scene = parse_scene(GetParam().text, "scene.yaml");
         scene.solver.backend = backend;
+        if (one_by_one) scene.solver.simd = SimdLevel::off;
         nlohmann::json const summary = run_simulation(std::move(scene), communicator, options);
         EXPECT_TRUE(summary["valid"].get<bool>());
         if (backend != Backend::automatic && communicator.rank() == 0) {

@@ -21,6 +21,9 @@ bool has_enough_runs(ChainGroup const& group) {
     return runs >= 3;
 }
 
+/// So many left over of a level take less time one after the other.
+constexpr std::size_t few_merges = 3;
+
 }  // namespace
 
 RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, bool read_neighbours) {
@@ -47,22 +50,25 @@ std::vector<LevelDealtOut> deal_out_levels(ChainGroup const& group, int lanes) {
     std::vector<LevelDealtOut> all;
     for (std::vector<Merge> const& level : group.schedule.levels) {
         LevelDealtOut& dealt = all.emplace_back(LevelDealtOut{{}, {{}}});
-        int lane = lanes;
+        std::vector<Merge> alike;
         for (Merge const& m : level) {
-            if (!rounds_as_vectors() || group.restricted_of_joint[static_cast<std::size_t>(m.joint)] != group.directions) {
-                dealt.others.front().push_back(m);
-                continue;
-            }
-            if (lane == lanes) {
-                dealt.items.emplace_back();
-                lane = 0;
-            }
+            bool const goes = rounds_as_vectors() && group.restricted_of_joint[static_cast<std::size_t>(m.joint)] == group.directions;
+            (goes ? alike : dealt.others.front()).push_back(m);
+        }
+        std::size_t const left_over = alike.size() % static_cast<std::size_t>(lanes);
+        if (left_over < few_merges) {
+            dealt.others.front().insert(dealt.others.front().end(), alike.end() - static_cast<std::ptrdiff_t>(left_over), alike.end());
+            alike.resize(alike.size() - left_over);
+        }
+        for (std::size_t i = 0; i < alike.size(); ++i) {
+            std::size_t const lane = i % static_cast<std::size_t>(lanes);
+            if (lane == 0) dealt.items.emplace_back();
             MergesInLanes& item = dealt.items.back();
-            for (int same = lane; same < lanes; ++same) {
+            Merge const& m = alike[i];
+            for (std::size_t same = lane; same < static_cast<std::size_t>(lanes); ++same) {
                 item.inboard[same] = m.inboard, item.outboard[same] = m.outboard, item.slot[same] = m.slot;
                 item.first[same] = m.first, item.joint[same] = m.joint, item.next[same] = m.next;
             }
-            ++lane;
         }
     }
     return all;
