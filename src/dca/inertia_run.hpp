@@ -464,17 +464,25 @@ CATENA_HD Vector<Real, 5> inboard_force(HingedBody<Real> const& body, BodyAccele
     return {{along_force[0], along_force[1], along_force[2], along_torque[0], along_torque[1]}};
 }
 
+/// Of runs side by side, where one begins later than others: none does.
+struct BeginsOnce {
+    template <class Real>
+    CATENA_HD void operator()(int, InertiaRun<Real>&) const {}
+};
 /// A run of `count` bodies, two or more: body(i) is asked for in turn, and after all but the first torque(i), of the hinge inboard of it: a
-/// Real or Undriven. `kept`: put(i, ReleasedHinge) of joint i in the run, and put(RunsEnd), for the way back.
-template <class Real, class Body, class Torque, class Kept>
-CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Body const& body, Torque const& torque, Kept&& kept) {
+/// Real or Undriven. `kept`: put(i, ReleasedHinge) of joint i in the run, and put(RunsEnd), for the way back. `begin(i, run)`: after body i,
+/// but not the last.
+template <class Real, class Body, class Torque, class Kept, class Begin = BeginsOnce>
+CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Body const& body, Torque const& torque, Kept&& kept, Begin&& begin = {}) {
     HingedBody<Real> const begins = body(0);
     InertiaRun<Real> run = begin_run(begins);
+    begin(0, run);
     OutboardHandle<Real> before = outboard_handle(begins);
     CATENA_NO_UNROLL
     for (int i = 1; i < count - 1; ++i) {
         HingedBody<Real> const next = body(i);
         kept.put(i, go_on(run, before, next, torque(i)));
+        begin(i, run);
         before = outboard_handle(next);
     }
     HingedBody<Real> const last = body(count - 1);

@@ -55,7 +55,7 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdL
         bodies_ = {};
         return;
     }
-    runs_ = dca::deal_out_runs(group, lanes, false);
+    runs_ = dca::deal_out_runs(group, lanes, {true, false});
     tree_.emplace(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots);
     if (!hinges) return;
     for (dca::Run const& run : runs_.others) deal_out(group, springs, run.body, run.body + run.count, lanes, outside_);

@@ -285,33 +285,67 @@ TEST(SimdLevels, AreNamedAndRefusedWhereTheyCannotRun) {
         EXPECT_THROW(choose_simd_level(scene, testing::world()), InputError);
 }
 
+constexpr dca::RunsTaken whole{false, false}, of_parts{true, false}, within_chains{false, true};
+
 /// Which runs go side by side depends on the scene alone; lanes that are left over repeat one.
 TEST(SimdLevels, DealOutWholeRuns) {
     auto const alone = serial_communicator();
     Scene const scene = scene_of(chain("revolute", 16 * 12 + 5));
     auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
-    dca::RunsDealtOut dealt = dca::deal_out_runs(*groups.front(), 8, false);
+    dca::RunsDealtOut dealt = dca::deal_out_runs(*groups.front(), 8, whole);
     ASSERT_EQ(dealt.items.size(), 2u);
     EXPECT_EQ(dealt.others.size(), 1u);  // the last, of five bodies
     EXPECT_EQ(dealt.items[0].body[0], 0);
     EXPECT_EQ(dealt.items[1].body[3], 16 * 11);
     EXPECT_EQ(dealt.items[1].body[7], 16 * 11);
-    dealt = dca::deal_out_runs(*groups.front(), 8, true);
+    dealt = dca::deal_out_runs(*groups.front(), 8, within_chains);
     EXPECT_EQ(dealt.others.size(), 2u);  // and the first, which has no neighbour
     EXPECT_EQ(dealt.items[0].body[0], 16);
+}
+
+/// A shorter run has the last columns of its lane, down to a part's bodies.
+TEST(SimdLevels, DealOutShorterRuns) {
+    auto const alone = serial_communicator();
+    for (int const last : {1, 3, 4, 5, 15, 16}) {
+        Scene const scene = scene_of(chain("revolute", 16 * 3 + last));
+        auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
+        dca::RunsDealtOut const dealt = dca::deal_out_runs(*groups.front(), 8, of_parts);
+        bool const taken = last >= 4;
+        ASSERT_EQ(dealt.items.size(), 1u);
+        EXPECT_EQ(dealt.others.size(), taken ? 0u : 1u) << last;
+        dca::RunsInLanes const& item = dealt.items.front();
+        EXPECT_EQ(item.short_ones, taken && last < 16) << last;
+        EXPECT_EQ(item.begins[0], 0xff);
+        for (int j = 0; j < 8; ++j) {
+            std::int64_t const run = std::min(j, taken ? 3 : 2);
+            int const skipped = run == 3 ? 16 - last : 0;
+            EXPECT_EQ(item.body[j], 16 * run) << j;
+            EXPECT_EQ(item.skipped[j], skipped) << j;
+            EXPECT_EQ(item.column[j], 16 * run - skipped) << j;
+            EXPECT_EQ(item.begins[skipped] >> j & 1, 1) << j;
+        }
+    }
+    // Not alone in a vector; with others of its kind.
+    auto const left = [&](std::string const& chains) {
+        Scene const scene = scene_of(chains);
+        return dca::deal_out_runs(*make_groups(scene, Axes::joint, Handles::projected, false, *alone).front(), 8, of_parts).others.size();
+    };
+    EXPECT_EQ(left(chain("revolute", 16 * 8 + 5)), 1u);
+    EXPECT_EQ(left(chain("revolute", 16 * 8 + 5) + ", " + chain("revolute", 16 * 8 + 7)), 2u);
+    EXPECT_EQ(left("{count: 3, base: free, generator: {random: {bodies: 133, joint: revolute, seed: 4}}}"), 0u);
 }
 
 /// Nor one whose tip is joined to the ground, nor few.
 TEST(SimdLevels, LeaveJointedTipsAndShortChainsToOthers) {
     auto const alone = serial_communicator();
     Scene const few = scene_of(chain("spherical", 32)), enough = scene_of(chain("spherical", 32) + ", " + chain("spherical", 16));
-    EXPECT_TRUE(dca::deal_out_runs(*make_groups(few, Axes::joint, Handles::projected, false, *alone).front(), 8, false).items.empty());
-    EXPECT_EQ(dca::deal_out_runs(*make_groups(enough, Axes::joint, Handles::projected, false, *alone).front(), 8, false).items.size(), 1u);
+    EXPECT_TRUE(dca::deal_out_runs(*make_groups(few, Axes::joint, Handles::projected, false, *alone).front(), 8, whole).items.empty());
+    EXPECT_EQ(dca::deal_out_runs(*make_groups(enough, Axes::joint, Handles::projected, false, *alone).front(), 8, whole).items.size(), 1u);
     for (bool const jointed : {false, true}) {
         std::string const tip = jointed ? "tip: {joint: {type: spherical}}, " : "";
         Scene const scene = scene_of("{base: fixed, " + tip + "generator: {random: {bodies: 48, joint: spherical, seed: 4}}}");
         auto const groups = make_groups(scene, Axes::joint, Handles::projected, false, *alone);
-        EXPECT_EQ(dca::deal_out_runs(*groups.front(), 8, false).others.size(), jointed ? 1u : 0u);
+        EXPECT_EQ(dca::deal_out_runs(*groups.front(), 8, whole).others.size(), jointed ? 1u : 0u);
     }
 }
 

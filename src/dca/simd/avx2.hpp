@@ -37,6 +37,12 @@ class Real {
     friend Real where_less(Real a, Real b, Real yes, Real no) {
         return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_cmp_pd(a.v_, b.v_, _CMP_LT_OQ)));
     }
+    /// `yes` in the lanes whose bits are set.
+    static Real choose(unsigned which, Real yes, Real no) {
+        __m256i const bits = _mm256_set_epi64x(8, 4, 2, 1);
+        __m256i const chosen = _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(static_cast<long long>(which)), bits), bits);
+        return Real(_mm256_blendv_pd(no.v_, yes.v_, _mm256_castsi256_pd(chosen)));
+    }
     /// Whether one is beyond +-bound.
     friend bool any_above(Real a, double bound) {
         __m256d const size = _mm256_andnot_pd(_mm256_set1_pd(-0.0), a.v_);

@@ -36,6 +36,10 @@ class Real {
     friend Real where_less(Real a, Real b, Real yes, Real no) {
         return Real(_mm512_mask_blend_pd(_mm512_cmp_pd_mask(a.v_, b.v_, _CMP_LT_OQ), no.v_, yes.v_));
     }
+    /// `yes` in the lanes whose bits are set.
+    static Real choose(unsigned which, Real yes, Real no) {
+        return Real(_mm512_mask_blend_pd(static_cast<__mmask8>(which), no.v_, yes.v_));
+    }
     /// Whether one is beyond +-bound.
     friend bool any_above(Real a, double bound) { return _mm512_cmp_pd_mask(_mm512_abs_pd(a.v_), _mm512_set1_pd(bound), _CMP_GT_OQ) != 0; }
 

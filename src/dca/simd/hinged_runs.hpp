@@ -24,6 +24,9 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         Kept kept{*this, runs, place_of(item)};
         Vector3 omega;
         Matrix3 before, from_ground;  // axes of the joint at hand in the body inboard of it; what turns to the body's axes
+        Vector3 first_omega;          // as the first bodies have these
+        Matrix3 first_turn;
+        InertiaRun<Real> begun;
         auto const segment = climb_hinges<Real>(
             count,
             [&](int i) {
@@ -33,13 +36,17 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                 if (!hinges().given) {
                     omega = omega_at(here);
                 } else if (i == 0) {
-                    omega = pick(work_.loads.omega, runs.body);
-                    if (has_wrenches()) from_ground = first_from_ground(runs);
+                    first_omega = omega = pick(work_.loads.omega, runs.body);
+                    if (has_wrenches()) first_turn = from_ground = first_from_ground(runs);
                 } else {
                     Matrix3 const turn = body.turn_from(before);
                     omega = turn * omega + read(bodies_.loads.hinge_rate, here)[0] * body.e1.column(2);
-                    kept.put(i, omega);
                     if (has_wrenches()) from_ground = turn * from_ground;
+                    if (unsigned const begin = runs.begins[i]; begin != 0) {
+                        choose<Real>(begin, first_omega, omega);
+                        if (has_wrenches()) choose<Real>(begin, first_turn, from_ground);
+                    }
+                    kept.put(i, omega);
                 }
                 before = body.e2;
                 set_moving(runs, i, omega, body);
@@ -48,7 +55,14 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                 if (has_wrenches() && i == count - 1) kept.put_orientation(from_ground);
                 return body;
             },
-            [&](int i) { return torque_about(i); }, kept);
+            [&](int i) { return torque_about(i); }, kept,
+            [&](int i, InertiaRun<Real>& run) {
+                if (!runs.short_ones) return;
+                if (i == 0)
+                    begun = run;
+                else if (unsigned const begin = runs.begins[i]; begin != 0)
+                    choose<Real>(begin, begun, run);
+            });
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
     }
@@ -59,6 +73,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         gather<Real>(work_.sweeps.forces, runs.body, first);
         gather<Real>(work_.sweeps.forces, runs.next, next);
         Vector3 omega;
+        Real of_first;  // about their inboard hinges, of the bodies that begin where others go on
         PassedOn passed{next, {}, {}, Real(0)};
         descend_hinges<Real, false>(
             count,
@@ -78,11 +93,21 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                     write(out_.acceleration, here, a.a);
                 }
                 if (out_.hinge_acceleration.origin && i == count - 1) end_at(runs, frame, a);
-                if (out_.joint_force)
-                    write_directions<K>(out_.joint_force, here, i == 0 ? first : pass_on(runs, i, kept, omega, frame, a, passed));
-                if (i == 0) begin_at(runs, frame, a);
+                unsigned const begin = runs.begins[i];
+                if (out_.joint_force) {
+                    Vector<Real, K> force = i == 0 ? first : pass_on(runs, i, kept, omega, frame, a, passed);
+                    if (begin != 0) choose<Real>(begin, first, force);
+                    write_directions<K>(out_.joint_force, here, force);
+                }
+                if (begin == 0) return;
+                of_first = about_inboard_hinge(frame, a);
+                begin_at(runs, begin, a);
+                if (i == 0) turn(runs, 0, of_first);
             },
-            [&](int i, Real const& of_hinge) { turn(runs, i, of_hinge); });
+            [&](int i, Real const& of_hinge) {
+                unsigned const begin = runs.begins[i];
+                turn(runs, i, begin == 0 ? of_hinge : Real::choose(begin, of_first, of_hinge));
+            });
     }
 
   private:
@@ -134,16 +159,14 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         // What is asked for is so many hinges further, in the order of items: the next one's end lies between.
         static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
         double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
-        void watch(int i, unsigned bad) const { note_lost<Real>(all.work_.sweeps, runs.body, i, bad); }
+        void watch(int i, unsigned bad) const {
+            for (int j = 0; bad != 0 && j < lanes; ++j)
+                if (i <= runs.skipped[j]) bad &= ~(1U << j);
+            note_lost<Real>(all.work_.sweeps, runs.column, i, bad);
+        }
     };
     double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
     GroupView const& group() const { return work_.group; }
-    template <class Condition>
-    static bool any(RunsInLanes const& runs, Condition const& of_first_body) {
-        bool found = false;
-        for (int j = 0; j < lanes; ++j) found = found || of_first_body(runs.body[j]);
-        return found;
-    }
     Vector3 omega_at(Column<Real> const& here) const {
         return bodies_.loads.omega.origin ? read(bodies_.loads.omega, here) : Vector3::zero();
     }
@@ -175,7 +198,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         if (i < count - 1) return;
         alignas(64) double next[lanes];
         for (int j = 0; j < lanes; ++j) {
-            std::int64_t const last = runs.body[j] + count - 1;
+            std::int64_t const last = runs.column[j] + count - 1;
             next[j] = group().is_last[last] ? 0.0 : of_joints.origin[2 * of_joints.pitch + last + 1];
         }
         body.torque = body.torque - Real::load(next) * body.e2.column(2);
@@ -215,20 +238,32 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                 for (int n = 0; n < K; ++n) bias[n * lanes + j] = work_.loads.bias.origin[n * work_.loads.bias.pitch + runs.body[j]];
         load_vectors<Real>(bias, body.bias);
     }
-    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate.
+    /// What is wanted of the runs' last and first bodies, as Evaluation::accelerate, in the lanes where it is.
     void end_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) const {
-        scatter(component<Real>(work_.out.hinge_acceleration, 1), runs.body, count, Vector<Real, 1>{{about_outboard_hinge(frame, a)}});
-        if (any(runs, [&](std::int64_t body) { return body + count >= group().size || group().is_last[body + count]; }))
-            scatter_accelerations(runs, count - 1, a);
+        scatter(component<Real>(work_.out.hinge_acceleration, 1), runs.column, count, Vector<Real, 1>{{about_outboard_hinge(frame, a)}});
+        scatter_accelerations(runs.column, count - 1, a, [&](int j) {
+            std::int64_t const next = runs.column[j] + count;
+            return next >= group().size || group().is_last[next];
+        });
     }
-    void begin_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
-        if (out_.hinge_acceleration.origin && any(runs, [&](std::int64_t body) { return group().is_first[body]; }))
-            scatter_accelerations(runs, 0, a);
-        turn(runs, 0, about_inboard_hinge(frame, a));
+    void begin_at(RunsInLanes const& runs, unsigned begin, BodyAcceleration<Real> const& a) const {
+        if (!out_.hinge_acceleration.origin) return;
+        scatter_accelerations(runs.body, 0, a, [&](int j) { return (begin >> j & 1U) != 0 && group().is_first[runs.body[j]]; });
     }
-    void scatter_accelerations(RunsInLanes const& runs, int i, BodyAcceleration<Real> const& a) const {
-        scatter(work_.out.alpha, runs.body, i, a.alpha);
-        scatter(work_.out.acceleration, runs.body, i, a.a);
+    /// Of bodies body[j] + i in the lanes that are wanted(j).
+    template <class Wanted>
+    void scatter_accelerations(std::int64_t const* body, int i, BodyAcceleration<Real> const& a, Wanted const& wanted) const {
+        bool stored = false;
+        alignas(64) double numbers[6 * lanes];
+        for (int j = 0; j < lanes; ++j) {
+            if (!wanted(j)) continue;
+            if (!stored) store_vectors<Real>(numbers, a);
+            stored = true;
+            for (int n = 0; n < 3; ++n) {
+                work_.out.alpha.origin[n * work_.out.alpha.pitch + body[j] + i] = numbers[n * lanes + j];
+                work_.out.acceleration.origin[n * work_.out.acceleration.pitch + body[j] + i] = numbers[(3 + n) * lanes + j];
+            }
+        }
     }
     /// The last that is known of body i of the runs.
     void turn(RunsInLanes const& runs, int i, Real const& of_hinge) {

@@ -10,10 +10,42 @@ namespace catena::dca {
 
 inline constexpr int most_lanes = 8;
 
-/// Runs of `longest_run` bodies, one a lane; in the lanes that are left over the last one again.
+/// Runs, one a lane, of `longest_run` columns; in the lanes that are left over the last one again. A shorter one has the last columns: before
+/// its first body's own that body stands again, and what comes of these is left out.
 struct RunsInLanes {
     std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
+    std::int64_t column[most_lanes];   // where column 0 would be: that of the first body, less skipped
+    int skipped[most_lanes];           // columns, longest_run - part_length at most
+    std::uint8_t begins[longest_run];  // bit j: lane j's run begins in this column; in column 0 all do
+    bool short_ones = false;           // whether any is one
 };
+/// Part p of them: a lane's columns are of bodies first[j] on, its first skipped[j] ones aside, where first[j] stands again.
+template <class Real>
+struct PartInLanes {
+    static constexpr int lanes = Real::lanes;
+    std::int64_t first[lanes];
+    int skipped[lanes];
+    bool short_ones;
+
+    PartInLanes(RunsInLanes const& runs, int p) : short_ones(false) {
+        for (int j = 0; j < lanes; ++j) first[j] = runs.column[j] + p * part_length;
+        if (!runs.short_ones) return;
+        for (int j = 0; j < lanes; ++j) {
+            int const before = runs.skipped[j] - p * part_length;
+            skipped[j] = before < 0 ? 0 : before < part_length ? before : part_length;
+            if (skipped[j] == 0) continue;
+            first[j] = runs.body[j];
+            short_ones = true;
+        }
+    }
+};
+/// In the lanes whose bits are set `yes`, of any record of vectors.
+template <class Real, class Record>
+void choose(unsigned lanes, Record const& yes, Record& all) {
+    auto const* const from = reinterpret_cast<Real const*>(&yes);
+    auto* const to = reinterpret_cast<Real*>(&all);
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) to[n] = Real::choose(lanes, from[n], to[n]);
+}
 
 /// action(view) for all of a group that bodies side by side do not turn over again in every sweep. A bead has too little of it.
 template <class Leaf, class Action>

@@ -108,7 +108,7 @@ class RunsInTile {
         begin_ = {by_runs ? p * part_length : 0};
         bool const not_all = way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force;
         if (!by_runs)
-            tile_.fill(columns(runs, p), way * bodies_of_item, not_all ? in_tile_.on_way_back : tile_.count());
+            tile_.fill(PartInLanes<Real>(runs, p), way * bodies_of_item, not_all ? in_tile_.on_way_back : tile_.count());
         else if (p == (way > 0 ? 0 : parts_of_run - 1))
             tile_.fill(runs.body, way * bodies_of_item);
         if constexpr (constants_of<Leaf> > 0) {
@@ -120,7 +120,7 @@ class RunsInTile {
     }
     void empty(RunsInLanes const& runs, int p) {
         if (!by_runs)
-            tile_.empty(columns(runs, p), -bodies_of_item);
+            tile_.empty(PartInLanes<Real>(runs, p), -bodies_of_item);
         else if (p == 0)
             tile_.empty(runs.body, -bodies_of_item);
     }
@@ -130,14 +130,8 @@ class RunsInTile {
     RunWork<Leaf> const& work_;
 
   private:
-    std::int64_t const* columns(RunsInLanes const& runs, int p) {
-        for (int j = 0; j < lanes; ++j) first_[j] = runs.body[j] + p * part_length;
-        return first_;
-    }
     Tile<Real, by_runs ? longest_run : part_length> tile_;
     BodiesInTile<Real, Leaf> in_tile_;
-    std::int64_t first_[lanes];
-
   protected:
     Bodies bodies_;
     Column<Real> begin_;  // of the part in the tile

@@ -3,35 +3,47 @@
 namespace catena::dca {
 namespace {
 
-bool is_regular(ChainGroup const& group, Run const& run, bool read_neighbours) {
+bool is_regular(ChainGroup const& group, Run const& run, RunsTaken const& taken) {
     std::int64_t const last = run.body + run.count - 1;
-    if (run.count != longest_run || group.has_jointed_tip(last)) return false;
+    if (run.count > longest_run || run.count < (taken.of_parts ? part_length : longest_run) || group.has_jointed_tip(last)) return false;
     auto const at = [](std::int64_t k) { return static_cast<std::size_t>(k); };
-    if (read_neighbours && (group.is_first[at(run.body)] || group.is_last[at(last)])) return false;
+    if (taken.read_neighbours && (group.is_first[at(run.body)] || group.is_last[at(last)])) return false;
     for (std::int64_t k = run.body + 1; k <= last; ++k)
         if (group.restricted_of_joint[at(k)] != group.directions) return false;
     return true;
 }
 
-/// One or two take less time one after the other than a vector with most of its lanes idle. All runs count: ranks know how long others'
-/// chains are, not their joints.
-bool has_enough_runs(ChainGroup const& group) {
-    std::int64_t runs = 0;
-    for (ChainTree const& tree : group.partition.trees) runs += tree.runs;
-    return runs >= 3;
-}
+/// Of all ranks: these know how long others' chains are, not their joints.
+struct RunsOfGroup {
+    std::int64_t whole = 0, shorter = 0;
+    explicit RunsOfGroup(ChainGroup const& group) {
+        for (ChainTree const& tree : group.partition.trees) {
+            std::int64_t const whole_ones = tree.bodies / longest_run;
+            whole += whole_ones;
+            shorter += tree.runs - whole_ones;
+        }
+    }
+    /// One or two take less time one after the other than a vector with most of its lanes idle.
+    bool enough() const { return whole + shorter >= few; }
+    /// And so do shorter ones, unless there are lanes for them beside whole runs.
+    bool shorter_ones_pay() const { return shorter >= few || (whole % most_lanes > 0 && whole % most_lanes + shorter <= most_lanes); }
+
+  private:
+    static constexpr std::int64_t few = 3;
+};
 
 /// So many left over of a level take less time one after the other.
 constexpr std::size_t few_merges = 3;
 
 }  // namespace
 
-RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, bool read_neighbours) {
+RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, RunsTaken const& taken) {
     RunsDealtOut dealt;
     int lane = lanes;
-    bool const enough = has_enough_runs(group);
+    RunsOfGroup const all(group);
+    RunsTaken const pay{taken.of_parts && all.shorter_ones_pay(), taken.read_neighbours};
     for (Run const& run : group.schedule.runs) {
-        if (!enough || !is_regular(group, run, read_neighbours)) {
+        if (!all.enough() || !is_regular(group, run, pay)) {
             dealt.others.push_back(run);
             continue;
         }
@@ -40,9 +52,20 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, bool read_neighbo
             lane = 0;
         }
         RunsInLanes& item = dealt.items.back();
-        for (int same = lane; same < lanes; ++same) item.body[same] = run.body, item.slot[same] = run.slot, item.next[same] = run.next;
+        int const skipped = static_cast<int>(longest_run - run.count);
+        for (int same = lane; same < lanes; ++same) {
+            item.body[same] = run.body, item.slot[same] = run.slot, item.next[same] = run.next;
+            item.column[same] = run.body - skipped, item.skipped[same] = skipped;
+        }
         ++lane;
     }
+    for (RunsInLanes& item : dealt.items)
+        for (int j = 0; j < lanes; ++j) {
+            auto const bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(j));
+            item.begins[0] |= bit;
+            item.begins[item.skipped[j]] |= bit;
+            item.short_ones = item.short_ones || item.skipped[j] > 0;
+        }
     return dealt;
 }
 

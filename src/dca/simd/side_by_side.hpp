@@ -16,10 +16,14 @@ struct RunsDealtOut {
     std::vector<RunsInLanes> items;
     std::vector<Run> others;
 };
-/// A run goes side by side with others if it is as long as runs are, all its own joints carry what handles do, its last body is no jointed
-/// tip and, where bodies `read_neighbours`, it lies within its chain; and if the group has three runs on all ranks: so this is a property
-/// of the scene, not of who holds the run.
-RunsDealtOut deal_out_runs(ChainGroup const&, int lanes, bool read_neighbours);
+/// Which runs may go side by side.
+struct RunsTaken {
+    bool of_parts;         // those too that are shorter than runs are, but not shorter than a part, where that pays
+    bool read_neighbours;  // their bodies do: only those that lie within their chain
+};
+/// A run goes side by side with others if it is as long as RunsTaken says, all its own joints carry what handles do and its last body is no
+/// jointed tip; and if the group has three runs on all ranks: so this is a property of the scene, not of who holds the run.
+RunsDealtOut deal_out_runs(ChainGroup const&, int lanes, RunsTaken const&);
 
 template <class Leaf>
 RunKernels<Leaf> kernels_of(SimdLevel level) {
@@ -56,7 +60,7 @@ AlignedNumbers constants_in_lanes(std::vector<RunsInLanes> const& items, int lan
         for (int p = 0; p < parts_of_run; ++p, part += part_length * numbers * lanes)
             for (int i = 0; i < part_length; ++i)
                 for (int lane = 0; lane < lanes; ++lane) {
-                    body(item.body[lane] + p * part_length + i, of_one.data());
+                    body(std::max(item.body[lane], item.column[lane] + p * part_length + i), of_one.data());
                     for (int n = 0; n < numbers; ++n) part[(n * part_length + i) * lanes + lane] = of_one[static_cast<std::size_t>(n)];
                 }
     return all;
@@ -79,7 +83,7 @@ class SideBySide {
         if (level == SimdLevel::off) return;
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
-        runs_ = deal_out_runs(group, lanes_, Leaf::reads_neighbours);
+        runs_ = deal_out_runs(group, lanes_, {Leaf::by_inertia, Leaf::reads_neighbours});
         keeps_all_ = !Leaf::beads && !Leaf::by_inertia && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
         nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run_of<Leaf>(keeps_all_));
         constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view](std::int64_t k, double* place) {

@@ -4,7 +4,7 @@
 
 #include "dca/places.hpp"
 #include "dca/simd/prefetch.hpp"
-#include "dca/tree.hpp"
+#include "dca/simd/runs.hpp"
 
 namespace catena::dca {
 
@@ -132,6 +132,15 @@ class Tile {
         }
     }
     void fill(std::int64_t const* first, std::int64_t ahead) { fill(first, ahead, count_); }
+    void fill(PartInLanes<Real> const& part, std::int64_t ahead, int count) {
+        fill(part.first, ahead, count);
+        if (!part.short_ones) return;
+        for (int j = 0; j < lanes; ++j)
+            for (int n = 0; n < count && part.skipped[j] > 0; ++n)
+                for (int i = 0; i < length; ++i)
+                    place(n)[i * lanes + j] = source_[n].origin[part.first[j] + (i < part.skipped[j] ? 0 : i - part.skipped[j])];
+    }
+    void fill(PartInLanes<Real> const& part, std::int64_t ahead) { fill(part, ahead, count_); }
     /// As fill.
     void empty(std::int64_t const* first, std::int64_t ahead) {
         for (int n = 0; n < written_; ++n) {
@@ -139,6 +148,14 @@ class Tile {
             for (int i = 0; i < length; i += numbers_of_line)
                 for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], i + first[j] + ahead);
         }
+    }
+    /// But for skipped columns.
+    void empty(PartInLanes<Real> const& part, std::int64_t ahead) {
+        if (!part.short_ones) return empty(part.first, ahead);
+        for (int n = 0; n < written_; ++n)
+            for (int j = 0; j < lanes; ++j)
+                for (int i = part.skipped[j]; i < length; ++i)
+                    target_[n][part.first[j] + i - part.skipped[j]] = place(most - 1 - n)[i * lanes + j];
     }
 
   private:

@@ -37,17 +37,22 @@ class FollowRuns {
     void follow(dca::RunsInLanes const& runs) {
         constexpr std::int64_t bodies_of_item = lanes * dca::longest_run;
         Motions m{};
-        std::int64_t first[lanes];
         for (int p = 0; p < dca::parts_of_run; ++p) {
-            for (int j = 0; j < lanes; ++j) first[j] = runs.body[j] + p * part;
-            tile_.fill(first, bodies_of_item);
+            dca::PartInLanes<Real> const bodies(runs, p);
+            tile_.fill(bodies, bodies_of_item);
             for (Column k{0}; k.at < part; ++k.at) {
-                bool const begins = p == 0 && k.at == 0;
-                m = begins ? load(k) : compose<positions>(m, load(k));
-                if (!begins && joints_.planar) m.omega = joints_.kept_in_plane(read(normal_, k), m.omega);
+                unsigned const begin = runs.begins[p * part + k.at];
+                Motions const own = load(k);
+                if (p == 0 && k.at == 0) {
+                    m = own;
+                } else {
+                    m = compose<positions>(m, own);
+                    if (joints_.planar) m.omega = joints_.kept_in_plane(read(normal_, k), m.omega);
+                    if (begin != 0) dca::choose<Real>(begin, own, m);
+                }
                 store(k, m);
             }
-            tile_.empty(first, bodies_of_item);
+            tile_.empty(bodies, bodies_of_item);
         }
         m.rotation = normalized(m.rotation);
         dca::scatter<Real>(m, whole_, runs.slot);
@@ -111,10 +116,9 @@ class FollowHinges {
         constexpr int block = hinge_constants * part * lanes;
         dca::RunsInLanes const& runs = items[item];
         Motions m{};
-        std::int64_t first[lanes];
         for (int p = 0; p < dca::parts_of_run; ++p) {
-            for (int j = 0; j < lanes; ++j) first[j] = runs.body[j] + p * part;
-            tile_.fill(first, bodies_of_item);
+            dca::PartInLanes<Real> const bodies(runs, p);
+            tile_.fill(bodies, bodies_of_item);
             double const* const here = constants_ + (item * dca::parts_of_run + p) * block;
             dca::prefetch<Real>(here, 2 * block, block);
             dca::Constants<Real> constants{here};
@@ -125,16 +129,20 @@ class FollowHinges {
                 Vector<Real, 1> const q = read(q_, k), qd = read(qd_, k);
                 Of of{from_axis_angle(along, q[0]), {}, to_load_.origin ? torque(k, q, qd) : Vector<Real, 1>{{Real(0)}}};
                 of.motion = {as_quaternion(read(frame, k)) * of.turn, qd[0] * along, Vector3::zero(), Vector3::zero()};
+                unsigned const begin = runs.begins[p * part + k.at];
+                if (begin != 0) take_known(runs, begin, of);
                 if (p == 0 && k.at == 0) {
-                    begin(runs, of);
                     m = of.motion;
+                    dca::scatter(scan_.rotation, runs.body, 0, as_vector(m.rotation));
+                    dca::scatter(scan_.omega, runs.body, 0, m.omega);
                 } else {
                     m = compose<false>(m, of.motion);
+                    if (begin != 0) dca::choose<Real>(begin, of.motion, m);
                 }
                 write(turn_, k, as_vector(of.turn));
                 if (to_load_.origin) write(to_load_, k, of.torque);
             }
-            tile_.empty(first, bodies_of_item);
+            tile_.empty(bodies, bodies_of_item);
         }
         m.rotation = normalized(m.rotation);
         dca::scatter<Real>(m, scan_.whole, runs.slot);
@@ -158,14 +166,14 @@ class FollowHinges {
         if (damping_.origin) along = along - read(damping_, k)[0] * qd[0];
         return {{along}};
     }
-    /// Keeps first bodies' motions. Where they begin a chain, on whatever joint, all is known.
-    void begin(dca::RunsInLanes const& runs, Of& of) {
+    /// Of first bodies, in the lanes `begin`, that begin a chain, on whatever joint.
+    void take_known(dca::RunsInLanes const& runs, unsigned begin, Of& of) {
         constexpr int numbers = static_cast<int>(sizeof(Of) / sizeof(Real)), of_turn = 4;
         alignas(64) double all[numbers * lanes];
         bool known = false;
         for (int j = 0; j < lanes; ++j) {
             std::int64_t const k = runs.body[j];
-            if (!scan_.joints.is_first[k]) continue;
+            if ((begin >> j & 1U) == 0 || !scan_.joints.is_first[k]) continue;
             if (!known) dca::store_vectors<Real>(all, of);
             known = true;
             auto const take = [&all, j, k](int at, auto const& view, int count) {
@@ -177,8 +185,6 @@ class FollowHinges {
             if (to_load_.origin) take(numbers - 1, load_, 1);
         }
         if (known) dca::load_vectors<Real>(all, of);
-        dca::scatter(scan_.rotation, runs.body, 0, as_vector(of.motion.rotation));
-        dca::scatter(scan_.omega, runs.body, 0, of.motion.omega);
     }
     JointScan const& scan_;
     double const* constants_;
