@@ -334,7 +334,7 @@ class DeviceSpace {
             auto const runs = static_cast<std::int64_t>(tree.runs_.size());
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
-                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeAhead>(runs), sweep);
+                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
             launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs), sweep);
         }
         template <class Sweep>

@@ -31,22 +31,15 @@ class BodiesOfTeam {
     int team_;
 };
 /// What a run needs of a body to go on to it.
-struct HingeAhead {
-    dca::HingePassed<double> joint;
-    Vec3 to_hinge, to_centre;
-    double mass;
-    Sym3 inertia;
-    Vec3 torque, force;
-};
-/// And to come back to it.
+using BodyAhead = dca::LoadedBodyInRun<double>;
+/// And to come back from it.
 struct HingeBehind {
-    dca::HingedFrame<double> frame;
-    dca::ReleasedHinge<double> outboard;  // its outboard joint's
+    dca::ReleasedHinge<double> hinge;
+    dca::BodyInRun<double> body;
 };
 
 class HingeTeam {
     using Body = dca::HingedBody<double>;
-    using Outboard = dca::OutboardHandle<double>;
     using Wrench = dca::Wrench<double>;
     static constexpr int bias = 5;  // wrench 0 to 4: `first`; wrench w is that of lane w % 4
 
@@ -57,65 +50,89 @@ class HingeTeam {
 
     /// As dca::climb_hinges(), of dca::longest_run bodies, where the team's first lane keeps; all lanes of the warp come to these.
     template <class BodyOf, class Kept>
-    __device__ dca::BiasedSegment<double, 5> climb(BodyOf const& body, BodiesOfTeam<HingeAhead> const& bodies, Kept& kept) {
+    __device__ dca::BiasedSegment<double, 5> climb(BodyOf const& body, BodiesOfTeam<BodyAhead> const& bodies, Kept& kept) {
         begin(body(0));
-        Outboard before{};  // of the last body that is prepared
+        Prepared last_one{};
         CATENA_NO_UNROLL
         for (int i = 0; i < count - 1; ++i) {
-            if (i % at_once == 0) prepare(body, i, before, bodies);
+            if (i % at_once == 0) prepare(body, i, last_one, bodies);
             if (i == 0) continue;
-            dca::ReleasedHinge<double> const hinge = go_on(bodies.get(i));
-            if (leads()) kept.put(i, hinge);
+            BodyAhead const ahead = bodies.get(i);
+            dca::ReleasedHinge<double> const hinge = go_on(ahead);
+            if (leads()) kept.put(i, hinge, ahead);
         }
         dca::InertiaRun<double> run = whole();
         Body const last = body(count - 1);
         dca::ReleasedHinge<double> hinge;
-        dca::RunsEnd<double> const end = end_run(run, outboard_handle(body(count - 2)), last, hinge, dca::Undriven{});
+        dca::OutboardHandle<double> const before = of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last);
+        dca::RunsEnd<double> const end = end_run(run, before, last, hinge, dca::Undriven{});
         if (leads()) {
             kept.put(count - 1, hinge);
             kept.put(end);
+            kept.put_axes(before.axes);
         }
         return segment_of(run, end, last);
     }
-    /// As dca::descend_hinges(), by every lane.
+    /// As dca::descend_hinges(), by every lane. Precondition: not of all bodies.
     template <class Frame, class Kept, class Accelerate, class Turn>
     __device__ void descend(Frame const& frame, BodiesOfTeam<HingeBehind> const& bodies, Kept const& kept, Vector<double, 5> const& first,
                             Vector<double, 5> const& next, Accelerate const& accelerate, Turn const& turn) const {
-        auto const frame_here = [&](int i) {
-            if (i % at_once == at_once - 1) {
-                __syncwarp();  // the others are read
-                CATENA_NO_UNROLL
-                for (int k = i - own_; k > i - at_once; k -= lanes_of_team)
-                    bodies.put(k, {frame(k), k + 1 < count ? kept.hinge(k + 1) : dca::ReleasedHinge<double>{}});
-                __syncwarp();
-            }
-            return bodies.get(i).frame;
-        };
         struct KeptHere {
             BodiesOfTeam<HingeBehind> const& bodies;
             Kept const& kept;
-            __device__ dca::ReleasedHinge<double> hinge(int i) const { return bodies.get(i - 1).outboard; }
+            __device__ dca::ReleasedHinge<double> hinge(int i) const { return i == count - 1 ? kept.hinge(i) : bodies.get(i).hinge; }
+            __device__ dca::BodyInRun<double> body(int i) const { return bodies.get(i).body; }
             __device__ dca::RunsEnd<double> end() const { return kept.end(); }
+            __device__ Mat3 axes() const { return kept.axes(); }
         } const kept_here{bodies, kept};
-        dca::descend_hinges<double, false>(count, frame_here, kept_here, first, next, accelerate, turn);
+        auto const at = [&](int i, dca::BodyAcceleration<double>&) {
+            if (i != count - 2 && i % at_once != at_once - 1) return;
+            __syncwarp();  // the others are read
+            CATENA_NO_UNROLL
+            for (int k = i - i % at_once + own_; k <= i; k += lanes_of_team)
+                if (k > 0) bodies.put(k, {kept.hinge(k), kept.body(k)});
+            __syncwarp();
+        };
+        dca::descend_hinges<double>(count, false, frame, kept_here, first, next, accelerate, at, turn);
     }
 
   private:
-    static constexpr int count = static_cast<int>(dca::longest_run), at_once = BodiesOfTeam<HingeAhead>::at_once;
+    static constexpr int count = static_cast<int>(dca::longest_run), at_once = BodiesOfTeam<BodyAhead>::at_once;
+    static constexpr int before_last = (count - 2) % lanes_of_team;  // lane that has this body
 
-    /// Bodies from `begin` on. `last`: of the team's first lane, the handle of the one before them, and then of the last of them.
+    /// What the bodies after it want of one, as dca::BodiesOfRun::State.
+    struct Prepared {
+        Mat3 turn, axes2;
+        Vec3 inward;
+    };
+    /// Bodies from `begin` on, of which each lane has the last of its own, `own`.
     template <class BodyOf>
-    __device__ void prepare(BodyOf const& body, int begin, Outboard& last, BodiesOfTeam<HingeAhead> const& bodies) const {
+    __device__ void prepare(BodyOf const& body, int begin, Prepared& own, BodiesOfTeam<BodyAhead> const& bodies) const {
         __syncwarp();  // the others are read
         CATENA_NO_UNROLL
         for (int first = begin; first < begin + at_once; first += lanes_of_team) {
-            Body const own = body(first + own_);
-            Outboard const neighbour = from_lane(outboard_handle(own), leader_ + (own_ + lanes_of_team - 1) % lanes_of_team);
-            Outboard const before = own_ == 0 ? last : neighbour;
-            last = neighbour;
-            bodies.put(first + own_, {joint_between(before, own), before.r, -own.r1, own.mass, own.inertia, own.torque, own.force});
+            Body const here = body(first + own_);
+            int const before = leader_ + (own_ + lanes_of_team - 1) % lanes_of_team;
+            Mat3 const neighbours = from_lane(here.e2, before), of_others = from_last(own.axes2);
+            Mat3 const to_before = here.turn_to(own_ == 0 ? of_others : neighbours);
+            Mat3 turn = first == 0 ? Mat3::identity() : from_last(own.turn);
+            Mat3 mine = turn;
+            CATENA_NO_UNROLL
+            for (int lane = 0; lane < lanes_of_team; ++lane) {
+                if (first + lane > 0) turn = of_lane(turn * to_before, lane);
+                if (lane == own_) mine = turn;
+            }
+            Vec3 const inward = mine * here.inward2;
+            Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
+            bodies.put(first + own_, in_run(here, mine, own_ == 0 ? of_last : inward_before));
+            own = {mine, here.e2, inward};
         }
         __syncwarp();
+    }
+    /// Of the team's last lane.
+    template <class T>
+    __device__ T from_last(T const& value) const {
+        return of_lane(value, lanes_of_team - 1);
     }
     __device__ void begin(Body const& body) {
         all_ = inertia_of(body);
@@ -132,38 +149,29 @@ class HingeTeam {
             for (int i = 0; i < bias; ++i) row_[s][i] = 0;
         }
     }
-    __device__ dca::ReleasedHinge<double> go_on(HingeAhead const& ahead) {
-        dca::HingePassed<double> const& joint = ahead.joint;
+    __device__ dca::ReleasedHinge<double> go_on(BodyAhead const& body) {
         dca::ReleasedHinge<double> h;
-        move_point(all_, ahead.to_hinge);
-        turn_axes(all_, joint.turn);
-        dca::Release<double> const r = release_hinge(all_, joint.axis, h);
+        dca::Release<double> const r = release_hinge(all_, body.axis, h);
         double along[2];
         CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) {
-            move_point(wrench_[s], ahead.to_hinge);
-            turn_axes(wrench_[s], joint.turn);
-            along[s] = release_hinge(wrench_[s], r);
-        }
+        for (int s = 0; s < 2; ++s) along[s] = release_hinge(wrench_[s], r);
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes_of_team], j % lanes_of_team);
         h.bias = of_lane(along[bias / lanes_of_team], bias % lanes_of_team);
         Wrench with_bias = wrench_[1];
-        differ(with_bias, all_, joint);
+        differ(with_bias, all_, body);
         CATENA_UNROLL
         for (int s = 0; s < 2; ++s) {
             gain_row(h, along[s], bias - 1, row_[s], e_[s]);
-            differ(e_[s], wrench_[s], joint);
+            differ(e_[s], wrench_[s], body);
         }
         bool const has_bias = own_ == bias % lanes_of_team;
         if (has_bias) wrench_[1] = with_bias;
         CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) move_point(wrench_[s], ahead.to_centre);
-        Body share;  // what is added of it
-        share.mass = ahead.mass, share.inertia = ahead.inertia, share.torque = ahead.torque, share.force = ahead.force;
-        if (has_bias) add_body(wrench_[1], share);
-        move_point(all_, ahead.to_centre);
-        add_body(all_, share);
+        for (int s = 0; s < 2; ++s) move_point(wrench_[s], body.across);
+        if (has_bias) add_body(wrench_[1], body.torque, body.force, body.centre);
+        move_point(all_, body.across);
+        add_body(all_, body.mass, body.inertia, body.centre);
         return h;
     }
     /// What all lanes have together.
@@ -211,14 +219,14 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(dca::Run const* runs, 
     if (all_lanes(lane, run.count == dca::longest_run && sweep.takes(run))) {
         dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run);
         auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
-        typename Sweep::Segment const segment = team.climb(body, BodiesOfTeam<HingeAhead>(shared_numbers, lane), kept);
+        typename Sweep::Segment const segment = team.climb(body, BodiesOfTeam<BodyAhead>(shared_numbers, lane), kept);
         sweep.s.note(kept.lost());
         if (team.leads()) sweep.store(run.slot, segment);
     } else if (team.leads()) {
         climb_run(sweep, run);
     }
 }
-/// Joint forces, if they are wanted, are found one from the other: by a thread.
+/// What is wanted of every body is found one after the other: by a thread.
 template <class Sweep>
 __global__ void __launch_bounds__(32) descend_runs_by_teams(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     wait_for_launch();
@@ -226,7 +234,7 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(dca::Run const* runs
     std::int64_t const wanted = thread() / lanes_of_team;
     HingeTeam const team(lane, wanted < count);
     dca::Run const run = runs[wanted < count ? wanted : count - 1];
-    bool const whole = run.count == dca::longest_run && !sweep.out.joint_force && sweep.takes(run);
+    bool const whole = run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run);
     if (all_lanes(lane, whole)) {
         dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run);
         auto const frame = [&](int i) { return sweep.s.leaf.hinged_frame(sweep.bodies.loads, run.body + i); };
@@ -247,7 +255,7 @@ template <class Sweep>
 bool go_by_teams(std::int64_t runs) {
     return dca::takes_whole_runs<Sweep> && runs <= most_runs_of_teams;
 }
-/// `T`: what is kept of bodies, HingeAhead on the way up and HingeBehind downwards.
+/// `T`: what is kept of bodies, BodyAhead on the way up and HingeBehind downwards.
 template <class T>
 RunsGrid grid_of_teams(std::int64_t runs) {
     RunsGrid grid = grid_of_runs(runs, lanes_of_team, 32);

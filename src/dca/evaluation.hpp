@@ -79,42 +79,54 @@ struct Resting {
 template <class Sweeps>
 class HingesInJoints {
     using Hinge = ReleasedHinge<double>;
+    using Body = BodyInRun<double>;
     using End = RunsEnd<double>;
-    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_end = sizeof(End) / sizeof(double);
-    static_assert(of_hinge + of_end <= sizeof(typename Sweeps::Node) / sizeof(double));
+    // The last hinge's and the end's numbers lie together, the axes beside the body before: a run of two has none between its ends.
+    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_body = sizeof(Body) / sizeof(double), of_axes = 9;
+    static constexpr int of_end = sizeof(End) / sizeof(double), most = sizeof(typename Sweeps::Node) / sizeof(double);
+    static_assert(of_hinge + of_end <= most && of_hinge + of_body + of_axes <= most);
 
   public:
     CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run) : sweeps_(sweeps), run_(run) {}
     CATENA_HD void put(int i, Hinge const& hinge) {
-        auto const numbers = __builtin_bit_cast(Vector<double, of_hinge>, hinge);
-        CATENA_UNROLL
-        for (int n = 0; n < of_hinge; ++n) number(i, n) = numbers[n];
+        store(i, 0, hinge);
         watch(i, hinge.inverse);
     }
+    CATENA_HD void put(int i, Hinge const& hinge, Body const& body) {
+        put(i, hinge);
+        store(i, of_hinge, body);
+    }
     CATENA_HD void put(End const& end) {
-        int const last = static_cast<int>(run_.count) - 1;
-        auto const numbers = __builtin_bit_cast(Vector<double, of_end>, end);
+        store(last(), of_hinge, end);
         CATENA_UNROLL
-        for (int n = 0; n < of_end; ++n) number(last, of_hinge + n) = numbers[n];
-        CATENA_UNROLL
-        for (int i = 0; i < 6; ++i) watch(last, end.factor(i, i));
+        for (int i = 0; i < 6; ++i) watch(last(), end.factor(i, i));
     }
-    CATENA_HD Hinge hinge(int i) const {
-        Vector<double, of_hinge> numbers;
-        CATENA_UNROLL
-        for (int n = 0; n < of_hinge; ++n) numbers[n] = number(i, n);
-        return __builtin_bit_cast(Hinge, numbers);
+    CATENA_HD void put_axes(Mat3 const& axes) {
+        if (last() > 1) store(last() - 1, of_hinge + of_body, axes);
     }
-    CATENA_HD End end() const {
-        int const last = static_cast<int>(run_.count) - 1;
-        Vector<double, of_end> numbers;
-        CATENA_UNROLL
-        for (int n = 0; n < of_end; ++n) numbers[n] = number(last, of_hinge + n);
-        return __builtin_bit_cast(End, numbers);
-    }
+    CATENA_HD Hinge hinge(int i) const { return load<Hinge>(i, 0); }
+    CATENA_HD Body body(int i) const { return load<Body>(i, of_hinge); }
+    CATENA_HD End end() const { return load<End>(last(), of_hinge); }
+    CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, of_hinge + of_body); }
     CATENA_HD Lost const& lost() const { return lost_; }
 
   private:
+    CATENA_HD int last() const { return static_cast<int>(run_.count) - 1; }
+    template <class T>
+    CATENA_HD void store(int i, int at, T const& value) const {
+        constexpr int count = sizeof(T) / sizeof(double);
+        auto const numbers = __builtin_bit_cast(Vector<double, count>, value);
+        CATENA_UNROLL
+        for (int n = 0; n < count; ++n) number(i, at + n) = numbers[n];
+    }
+    template <class T>
+    CATENA_HD T load(int i, int at) const {
+        constexpr int count = sizeof(T) / sizeof(double);
+        Vector<double, count> numbers;
+        CATENA_UNROLL
+        for (int n = 0; n < count; ++n) numbers[n] = number(i, at + n);
+        return __builtin_bit_cast(T, numbers);
+    }
     CATENA_HD double& number(int i, int n) const { return sweeps_.number_of_node(run_.body + i, n); }
     CATENA_HD void watch(int i, double inverse) {
         if (!is_good(inverse)) lost_.add(run_.body + i);
@@ -169,17 +181,18 @@ struct Evaluation {
     }
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
         HingesInJoints<Sweeps> kept(s, run);
+        auto const body = [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); };
         Segment const segment = climb_hinges<double>(
-            static_cast<int>(run.count), [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); }, [](int) { return Undriven{}; },
-            kept);
+            static_cast<int>(run.count), BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; }, kept);
         s.note(kept.lost());
         return segment;
     }
     CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
         HingesInJoints<Sweeps> const kept(s, run);
         Directions outboard = next;
-        descend_hinges<double, true>(
-            static_cast<int>(run.count), [&](int i) { return s.leaf.hinged_frame(bodies.loads, run.body + i); }, kept, first, next,
+        descend_hinges<double>(
+            static_cast<int>(run.count), goes_by_all(), [&](int i) { return s.leaf.hinged_frame(bodies.loads, run.body + i); }, kept, first,
+            next,
             [&](int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) {
                 std::int64_t const k = run.body + i;
                 accelerate(run, i, frame, a);
@@ -187,8 +200,10 @@ struct Evaluation {
                 outboard = i == 0 ? first : inboard_force(s.leaf.hinged(bodies.loads, k), a, outboard);
                 write_directions<K>(out.joint_force, k, outboard);
             },
-            [&](int i, double of_hinge) { turn(run, i, of_hinge); });
+            [](int, BodyAcceleration<double>&) {}, [&](int i, double of_hinge) { turn(run, i, of_hinge); });
     }
+    /// Whether anything is wanted of each of a run's bodies.
+    CATENA_HD bool goes_by_all() const { return !out.hinge_acceleration.origin || out.joint_force; }
     /// What is wanted of body i of a run on hinges.
     CATENA_HD void accelerate(Run const& run, int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) const {
         std::int64_t const k = run.body + i;

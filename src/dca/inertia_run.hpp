@@ -3,14 +3,14 @@
 //
 // Bodies are taken from the first to the last as in the articulated-body algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008,
 // section 7.2), with what a force at the run's first joint does carried along (Lilly and Orin, Int. J. Robotics Research 10, 1991: extended
-// force propagators), so that the run floats. All of it is about a body's centre of mass and in its axes, of the last body (RunsEnd) about
-// its joint and in that one's:
+// force propagators), so that the run floats. All of it is in the axes of the run's first body and about the outboard handle of the body come
+// to, of the last one (RunsEnd) about its joint and in that one's axes:
 //   {torque, force} = I {alpha, a} + bias - first f1,   a1 = z f1 + first^T {alpha, a} + e,
 // f1 the force at handle 1 along its K = 5 directions (make_handle), a1 the acceleration along them, {torque, force} on the body's
-// outboard side, {alpha, a} its accelerations.
+// outboard side, {alpha, a} its accelerations at that point as if it turned at rest: without omega x (omega x r) of its handles.
 #pragma once
 
-#include "dca/leaf.hpp"
+#include "dca/inertia.hpp"
 #include "dca/moving_beads.hpp"
 
 namespace catena::dca {
@@ -26,8 +26,8 @@ struct HingedFrame {
 
     CATENA_HD Handle<Real, 5> handle1() const { return make_handle<5>(r1, e1, e1); }
     CATENA_HD Handle<Real, 5> handle2() const { return make_handle<5>(r2, e2, e2); }
-    /// Of this body's axes against those of the one before.
-    CATENA_HD Matrix<Real, 3, 3> turn_from(Matrix<Real, 3, 3> const& e2_before) const { return e1 * transpose(e2_before); }
+    /// From this body's axes to those of the one before.
+    CATENA_HD Matrix<Real, 3, 3> turn_to(Matrix<Real, 3, 3> const& e2_before) const { return e2_before * transpose(e1); }
 };
 /// And the way up, with what acts on it, the gyroscopic torque included.
 template <class Real>
@@ -37,13 +37,19 @@ struct HingedBody : HingedFrame<Real> {
     Vector<Real, 3> torque, force;
 };
 
+/// A body within a run and the hinge that the run comes to it by, in the run's axes: what both ways need.
 template <class Real>
-struct SpatialInertia {
-    Symmetric<Real, 3> turning, moving;  // I = {{turning, coupling}, {coupling^T, moving}}
-    Matrix<Real, 3, 3> coupling;
+struct BodyInRun {
+    Vector<Real, 3> axis;             // of the hinge
+    Vector<Real, 3> angular, linear;  // what the accelerations on the hinge's two sides differ by, its own apart
+    Vector<Real, 3> across;           // from handle 1 to handle 2
 };
+/// And the way up.
 template <class Real>
-struct Wrench {
+struct LoadedBodyInRun : BodyInRun<Real> {
+    Vector<Real, 3> centre;  // of mass, from handle 2
+    Real mass;
+    Symmetric<Real, 3> inertia;
     Vector<Real, 3> torque, force;
 };
 template <class Real>
@@ -52,14 +58,6 @@ struct InertiaRun {
     Wrench<Real> bias, first[5];
     Symmetric<Real, 5> z;
     Vector<Real, 5> e;
-};
-/// A hinge when it was released: I along it, its own share's inverse, and the parts that bias and first have in it. At the meeting point,
-/// in the outboard body's axes, of the run's last one in the joint's.
-template <class Real>
-struct ReleasedHinge {
-    Vector<Real, 3> turning, moving;
-    Real inverse, bias;
-    Vector<Real, 5> first;
 };
 /// The end of a run, about its last joint's meeting point and in that joint's axes: the factor (factorize()) of I, first and bias. Rows
 /// force, then torque, that about the hinge last: light bodies on heavy ones have little more than their own inertia there, which then is
@@ -72,106 +70,9 @@ struct RunsEnd {
 };
 template <class Real>
 struct BodyAcceleration {
-    Vector<Real, 3> alpha, a;  // of the centre of mass
+    Vector<Real, 3> alpha, a;  // of the centre of mass, but where another point is named
 };
 
-/// About the point r away.
-template <class Real>
-CATENA_HD void move_point(SpatialInertia<Real>& all, Vector<Real, 3> const& r) {
-    Matrix<Real, 3, 3> moved;
-    CATENA_UNROLL
-    for (int j = 0; j < 3; ++j)
-        moved.set_column(j, all.coupling.column(j) - cross(r, Vector<Real, 3>{{all.moving(0, j), all.moving(1, j), all.moving(2, j)}}));
-    CATENA_UNROLL
-    for (int i = 0; i < 3; ++i) {
-        Vector<Real, 3> const before{{all.coupling(i, 0), all.coupling(i, 1), all.coupling(i, 2)}};
-        Vector<Real, 3> const after{{moved(i, 0), moved(i, 1), moved(i, 2)}};
-        Vector<Real, 3> const along = cross(before, r), across = cross(after, r);
-        CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) all.turning(i, j) = all.turning(i, j) + along[j];
-        CATENA_UNROLL
-        for (int j = i; j < 3; ++j) all.turning(j, i) = all.turning(j, i) + across[j];
-    }
-    all.coupling = moved;
-}
-template <class Real>
-CATENA_HD void move_point(Wrench<Real>& w, Vector<Real, 3> const& r) {
-    w.torque = w.torque - cross(r, w.force);
-}
-/// q s q^T
-template <class Real>
-CATENA_HD Symmetric<Real, 3> turned(Matrix<Real, 3, 3> const& q, Symmetric<Real, 3> const& s) {
-    Matrix<Real, 3, 3> const half = q * full(s);
-    Symmetric<Real, 3> t;
-    CATENA_UNROLL
-    for (int i = 0; i < 3; ++i)
-        CATENA_UNROLL
-        for (int j = 0; j <= i; ++j) t(i, j) = fused(half(i, 2), q(j, 2), fused(half(i, 1), q(j, 1), half(i, 0) * q(j, 0)));
-    return t;
-}
-template <class Real>
-CATENA_HD void turn_axes(SpatialInertia<Real>& all, Matrix<Real, 3, 3> const& q) {
-    all.turning = turned(q, all.turning);
-    all.moving = turned(q, all.moving);
-    all.coupling = q * all.coupling * transpose(q);
-}
-template <class Real>
-CATENA_HD void turn_axes(Wrench<Real>& w, Matrix<Real, 3, 3> const& q) {
-    w = {q * w.torque, q * w.force};
-}
-/// What a hinge that is released takes away, for a unit of what `along` it there is.
-template <class Real>
-struct Release {
-    Vector<Real, 3> axis, turning, moving;
-};
-/// No torque acts about `axis`, through the point that I is about, from here on. Of ReleasedHinge all but what the wrenches have.
-template <class Real>
-CATENA_HD Release<Real> release_hinge(SpatialInertia<Real>& all, Vector<Real, 3> const& axis, ReleasedHinge<Real>& h) {
-    h.turning = all.turning * axis;
-    h.moving = transposed_times(all.coupling, axis);
-    h.inverse = Real(1) / dot(axis, h.turning);
-    Release<Real> const r{axis, h.inverse * h.turning, h.inverse * h.moving};
-    CATENA_UNROLL
-    for (int i = 0; i < 3; ++i)
-        CATENA_UNROLL
-        for (int j = 0; j < 3; ++j) {
-            if (j <= i) all.turning(i, j) = less_product(h.turning[i], r.turning[j], all.turning(i, j));
-            if (j <= i) all.moving(i, j) = less_product(h.moving[i], r.moving[j], all.moving(i, j));
-            all.coupling(i, j) = less_product(h.turning[i], r.moving[j], all.coupling(i, j));
-        }
-    return r;
-}
-template <class Real>
-CATENA_HD void take_away(Wrench<Real>& w, Release<Real> const& r, Real const& along) {
-    w = {plus_scaled(w.torque, -along, r.turning), plus_scaled(w.force, -along, r.moving)};
-}
-/// Returns what the wrench had along the hinge.
-template <class Real>
-CATENA_HD Real release_hinge(Wrench<Real>& w, Release<Real> const& r) {
-    Real const along = dot(r.axis, w.torque);
-    take_away(w, r, along);
-    return along;
-}
-/// What a hinge does about its axis on the body outboard of it: nothing, or a torque, which then is in no body's own.
-struct Undriven {};
-template <class Real>
-CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Undriven) {
-    return release_hinge(bias, r);
-}
-template <class Real>
-CATENA_HD Real release_driven(Wrench<Real>& bias, Release<Real> const& r, Real const& torque) {
-    Real const along = dot(r.axis, bias.torque) + torque;
-    take_away(bias, r, along);
-    return along;
-}
-template <class Real>
-CATENA_HD Real left_along_hinge(Undriven) {
-    return Real(0);
-}
-template <class Real>
-CATENA_HD Real left_along_hinge(Real const& torque) {
-    return -torque;
-}
 /// What the run's accelerations at its first joint gain by a hinge: row j of z, up to its diagonal, and of e.
 template <class Real>
 CATENA_HD void gain_row(ReleasedHinge<Real> const& h, Real const& first, int j, Real (&row)[5], Real& e) {
@@ -182,43 +83,25 @@ CATENA_HD void gain_row(ReleasedHinge<Real> const& h, Real const& first, int j, 
     e = less_product(share, h.bias, e);
 }
 
-/// A joint that a run goes on by: from the one body's axes to those in which it goes on, and what the accelerations on its two sides differ
-/// by, the hinge's own apart.
+/// By what accelerations on the hinge's two sides differ: the bias's share. `all`: released.
 template <class Real>
-struct HingePassed {
-    Matrix<Real, 3, 3> turn;
-    Vector<Real, 3> axis, angular, linear;
-};
-/// The bias's share of that. `all`: released.
-template <class Real>
-CATENA_HD void differ(Wrench<Real>& bias, SpatialInertia<Real> const& all, HingePassed<Real> const& joint) {
-    bias.torque = bias.torque - (all.turning * joint.angular + all.coupling * joint.linear);
-    bias.force = bias.force - (transposed_times(all.coupling, joint.angular) + all.moving * joint.linear);
+CATENA_HD void differ(Wrench<Real>& bias, SpatialInertia<Real> const& all, BodyInRun<Real> const& body) {
+    bias.torque = bias.torque - (all.turning * body.angular + all.coupling * body.linear);
+    bias.force = bias.force - (transposed_times(all.coupling, body.angular) + all.moving * body.linear);
 }
 /// And that of e, by `first` of its row.
 template <class Real>
-CATENA_HD void differ(Real& e, Wrench<Real> const& first, HingePassed<Real> const& joint) {
-    e = e - (dot(first.torque, joint.angular) + dot(first.force, joint.linear));
+CATENA_HD void differ(Real& e, Wrench<Real> const& first, BodyInRun<Real> const& body) {
+    e = e - (dot(first.torque, body.angular) + dot(first.force, body.linear));
 }
-/// To the hinge, and past it.
+/// Past the hinge inboard of `body`.
 template <class Real, class Torque>
-CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, Vector<Real, 3> const& to_hinge, HingePassed<Real> const& joint,
-                                         Torque const& torque) {
+CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, BodyInRun<Real> const& body, Torque const& torque) {
     ReleasedHinge<Real> h;
-    move_point(run.inertia, to_hinge);
-    turn_axes(run.inertia, joint.turn);
-    Release<Real> const r = release_hinge(run.inertia, joint.axis, h);
-    auto const bring = [&](Wrench<Real>& w) {
-        move_point(w, to_hinge);
-        turn_axes(w, joint.turn);
-    };
-    bring(run.bias);
+    Release<Real> const r = release_hinge(run.inertia, body.axis, h);
     h.bias = release_driven(run.bias, r, torque);
     CATENA_UNROLL
-    for (int j = 0; j < 5; ++j) {
-        bring(run.first[j]);
-        h.first[j] = release_hinge(run.first[j], r);
-    }
+    for (int j = 0; j < 5; ++j) h.first[j] = release_hinge(run.first[j], r);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) {
         Real row[5];
@@ -231,27 +114,18 @@ CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, Vector<Real, 3> 
     return h;
 }
 template <class Real>
-CATENA_HD void differ(InertiaRun<Real>& run, HingePassed<Real> const& joint) {
-    differ(run.bias, run.inertia, joint);
+CATENA_HD void differ(InertiaRun<Real>& run, BodyInRun<Real> const& body) {
+    differ(run.bias, run.inertia, body);
     CATENA_UNROLL
-    for (int j = 0; j < 5; ++j) differ(run.e[j], run.first[j], joint);
-}
-/// A body more at the point that I is about.
-template <class Real>
-CATENA_HD void add_body(SpatialInertia<Real>& all, HingedBody<Real> const& body) {
-    all.turning = all.turning + body.inertia;
-    CATENA_UNROLL
-    for (int i = 0; i < 3; ++i) all.moving(i, i) = all.moving(i, i) + body.mass;
-}
-template <class Real>
-CATENA_HD void add_body(Wrench<Real>& bias, HingedBody<Real> const& body) {
-    bias = {bias.torque - body.torque, bias.force - body.force};
+    for (int j = 0; j < 5; ++j) differ(run.e[j], run.first[j], body);
 }
 /// Of one body: its `first` along direction j, and e of that row.
 template <class Real>
 CATENA_HD Wrench<Real> first_of(HingedBody<Real> const& body, int j) {
     Matrix<Real, 3, 5> const torque = body.handle1().torque;
-    return {torque.column(j), j < 3 ? body.e1.column(j) : Vector<Real, 3>::zero()};
+    Wrench<Real> first{torque.column(j), j < 3 ? body.e1.column(j) : Vector<Real, 3>::zero()};
+    move_point(first, body.r2);
+    return first;
 }
 template <class Real>
 CATENA_HD Real row_of_first(HingedBody<Real> const& body, int j) {
@@ -260,13 +134,13 @@ CATENA_HD Real row_of_first(HingedBody<Real> const& body, int j) {
 template <class Real>
 CATENA_HD SpatialInertia<Real> inertia_of(HingedBody<Real> const& body) {
     SpatialInertia<Real> all{Symmetric<Real, 3>::zero(), Symmetric<Real, 3>::zero(), Matrix<Real, 3, 3>::zero()};
-    add_body(all, body);
+    add_body(all, body.mass, body.inertia, -body.r2);
     return all;
 }
 template <class Real>
 CATENA_HD Wrench<Real> bias_of(HingedBody<Real> const& body) {
     Wrench<Real> bias{Vector<Real, 3>::zero(), Vector<Real, 3>::zero()};
-    add_body(bias, body);
+    add_body(bias, body.torque, body.force, -body.r2);
     return bias;
 }
 template <class Real>
@@ -285,59 +159,62 @@ CATENA_HD Handle<Real, 5> handle2_of_end(HingedFrame<Real> const& last) {
     Matrix<Real, 3, 3> const axes = transposed_times(last.e1, last.e2);
     return make_handle<5>(transposed_times(last.e1, last.r2 - last.r1), axes, axes);
 }
-/// Outboard handle of the body before: what going on needs of it.
+/// `body` in the run's axes, to which `turn` leads from its own; `inward`: omega x (omega x r) at handle 2 of the one before, in the run's.
+template <class Real>
+CATENA_HD LoadedBodyInRun<Real> in_run(HingedBody<Real> const& body, Matrix<Real, 3, 3> const& turn, Vector<Real, 3> const& inward) {
+    using Vector3 = Vector<Real, 3>;
+    Vector3 const angular = body.bias[3] * body.e1.column(0) + body.bias[4] * body.e1.column(1);
+    Vector3 const linear = body.inward1 + body.e1 * Vector3{{body.bias[0], body.bias[1], body.bias[2]}};
+    return {{turn * body.e1.column(2), -(turn * angular), inward - turn * linear, turn * (body.r2 - body.r1)},
+            -(turn * body.r2),
+            body.mass,
+            turned(turn, body.inertia),
+            turn * body.torque,
+            turn * body.force};
+}
+/// Goes on to a body that is not the last of the run; what it returns is for the way back.
+template <class Real, class Torque>
+CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, LoadedBodyInRun<Real> const& body, Torque const& torque) {
+    ReleasedHinge<Real> const hinge = pass_hinge(run, body, torque);
+    differ(run, body);
+    move_point(run.inertia, body.across);
+    move_point(run.bias, body.across);
+    CATENA_UNROLL
+    for (int j = 0; j < 5; ++j) move_point(run.first[j], body.across);
+    add_body(run.inertia, body.mass, body.inertia, body.centre);
+    add_body(run.bias, body.torque, body.force, body.centre);
+    return hinge;
+}
+/// The outboard handle of the body before the last one, in the run's axes.
 template <class Real>
 struct OutboardHandle {
-    Vector<Real, 3> r, inward;
     Matrix<Real, 3, 3> axes;
+    Vector<Real, 3> inward;
 };
+/// The run's last hinge, in its own axes; `inward`: of the handle inboard of it, in these too.
 template <class Real>
-CATENA_HD OutboardHandle<Real> outboard_handle(HingedFrame<Real> const& body) {
-    return {body.r2, body.inward2, body.e2};
-}
-/// The joint between `before` and `body`, in `body`'s axes.
-template <class Real>
-CATENA_HD HingePassed<Real> joint_between(OutboardHandle<Real> const& before, HingedFrame<Real> const& body) {
-    Matrix<Real, 3, 3> const turn = body.turn_from(before.axes);
-    return {turn, body.e1.column(2), -(body.bias[3] * body.e1.column(0) + body.bias[4] * body.e1.column(1)),
-            turn * before.inward - body.inward1 - body.e1 * Vector<Real, 3>{{body.bias[0], body.bias[1], body.bias[2]}}};
-}
-/// In its own.
-template <class Real>
-CATENA_HD HingePassed<Real> last_joint(OutboardHandle<Real> const& before, HingedFrame<Real> const& last) {
+CATENA_HD BodyInRun<Real> last_in_run(HingedFrame<Real> const& last, Vector<Real, 3> const& inward) {
     using Vector3 = Vector<Real, 3>;
-    return {transpose(before.axes), Vector3{{Real(0), Real(0), Real(1)}}, Vector3{{-last.bias[3], -last.bias[4], Real(0)}},
-            transposed_times(before.axes, before.inward) -
-                (transpose(last.e1) * last.inward1 + Vector3{{last.bias[0], last.bias[1], last.bias[2]}})};
-}
-/// Goes on to `body`, the one after `before` and not the last of the run; what it returns is for the way back.
-template <class Real, class Torque>
-CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& body,
-                                    Torque const& torque) {
-    HingePassed<Real> const joint = joint_between(before, body);
-    ReleasedHinge<Real> const hinge = pass_hinge(run, before.r, joint, torque);
-    differ(run, joint);
-    Vector<Real, 3> const to_centre = -body.r1;
-    move_point(run.inertia, to_centre);
-    move_point(run.bias, to_centre);
-    CATENA_UNROLL
-    for (int j = 0; j < 5; ++j) move_point(run.first[j], to_centre);
-    add_body(run.inertia, body);
-    add_body(run.bias, body);
-    return hinge;
+    return {Vector3{{Real(0), Real(0), Real(1)}}, Vector3{{-last.bias[3], -last.bias[4], Real(0)}},
+            inward - (transposed_times(last.e1, last.inward1) + Vector3{{last.bias[0], last.bias[1], last.bias[2]}}), Vector3::zero()};
 }
 
 template <class Real>
 CATENA_HD Vector<Real, 6> six_of(Vector<Real, 3> const& force, Vector<Real, 3> const& torque) {
     return {{force[0], force[1], force[2], torque[0], torque[1], torque[2]}};
 }
-/// Goes on to `last`, the last body, in the joint's axes; `hinge` as go_on(), in these axes too.
+/// Goes on to `last`, the last body, in the joint's axes; `hinge`: for the way back, in these axes too.
 template <class Real, class Torque>
 CATENA_HD RunsEnd<Real> end_run(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& last,
                                 ReleasedHinge<Real>& hinge, Torque const& torque) {
     using Vector3 = Vector<Real, 3>;
-    HingePassed<Real> const joint = last_joint(before, last);
-    hinge = pass_hinge(run, before.r, joint, torque);
+    Matrix<Real, 3, 3> const turn = transpose(before.axes);
+    turn_axes(run.inertia, turn);
+    turn_axes(run.bias, turn);
+    CATENA_UNROLL
+    for (int j = 0; j < 5; ++j) turn_axes(run.first[j], turn);
+    BodyInRun<Real> const joint = last_in_run(last, turn * before.inward);
+    hinge = pass_hinge(run, joint, torque);
     CATENA_UNROLL
     for (int j = 0; j < 3; ++j) run.inertia.turning(2, j) = run.inertia.coupling(2, j) = Real(0);  // not what rounding left there
     CATENA_UNROLL
@@ -408,36 +285,32 @@ CATENA_HD BiasedSegment<Real, 5> segment_of(InertiaRun<Real> const& run, RunsEnd
     return s;
 }
 
-/// Of the last body, from the forces at the run's first joint and at the one after it.
+/// Of the last body at its joint and in that one's axes, from the forces at the run's first joint and at the one after it.
 template <class Real>
 CATENA_HD BodyAcceleration<Real> last_acceleration(RunsEnd<Real> const& end, HingedFrame<Real> const& last, Vector<Real, 5> const& first,
                                                    Vector<Real, 5> const& next) {
-    using Vector3 = Vector<Real, 3>;
     Handle<Real, 5> const h = handle2_of_end(last);
     Vector<Real, 6> const wrench = end.first * first - (six_of(push(h, next), moment(h, next)) + end.bias);
     Vector<Real, 6> const y = solve_upper(end.factor, solve_lower(end.factor, wrench));
-    Vector3 const alpha = last.e1 * Vector3{{y[3], y[4], y[5]}};
-    return {alpha, last.e1 * Vector3{{y[0], y[1], y[2]}} - cross(alpha, last.r1)};
+    return {{{y[3], y[4], y[5]}}, {{y[0], y[1], y[2]}}};
 }
-/// Of `before`, from that of `body` and the force at the run's first joint; `of_hinge`: of `body` against it, about the hinge between them.
-/// `at_end`: `body` is the last of the run.
-template <bool at_end, class Real>
-CATENA_HD BodyAcceleration<Real> go_back(ReleasedHinge<Real> const& hinge, HingedFrame<Real> const& before, HingedFrame<Real> const& body,
-                                         BodyAcceleration<Real> const& of_body, Vector<Real, 5> const& first, Real& of_hinge) {
-    using Vector3 = Vector<Real, 3>;
-    // Along the joint's axes: what the inboard side has, and the hinge's own.
-    Vector3 turning = transposed_times(body.e1, of_body.alpha);
-    Vector3 moving = transposed_times(body.e1, of_body.a + (cross(of_body.alpha, body.r1) + body.inward1));
-    turning = turning + Vector3{{body.bias[3], body.bias[4], Real(0)}};
-    moving = moving + Vector3{{body.bias[0], body.bias[1], body.bias[2]}};
-    Vector3 const linear = moving - transposed_times(before.e2, before.inward2);
-    Vector3 const turned = at_end ? turning : body.e1 * turning, moved = at_end ? linear : body.e1 * linear;
-    Real const own = dot(hinge.turning, turned) + (dot(hinge.moving, moved) + (hinge.bias - dot(hinge.first, first)));
-    of_hinge = own * hinge.inverse;
-    turning[2] = less_product(own, hinge.inverse, turning[2]);
-    BodyAcceleration<Real> a{before.e2 * turning, {}};
-    a.a = before.e2 * linear - cross(a.alpha, before.r2);
-    return a;
+/// Back past a hinge: from `a` on its outboard side at the meeting point to its inboard side, by the force at the run's first joint.
+/// Returns the outboard body's acceleration against the other about the hinge.
+template <class Real>
+CATENA_HD Real pass_back(ReleasedHinge<Real> const& hinge, BodyInRun<Real> const& body, Vector<Real, 5> const& first,
+                         BodyAcceleration<Real>& a) {
+    a = {a.alpha - body.angular, a.a - body.linear};
+    Real const own = dot(hinge.turning, a.alpha) + (dot(hinge.moving, a.a) + (hinge.bias - dot(hinge.first, first)));
+    Real const of_hinge = own * hinge.inverse;
+    a.alpha = plus_scaled(a.alpha, -of_hinge, body.axis);
+    return of_hinge;
+}
+/// Of a body, in axes to which `turn` leads from its own, from its handle `r` to its centre of mass, in its own.
+template <class Real>
+CATENA_HD BodyAcceleration<Real> own_acceleration(Matrix<Real, 3, 3> const& turn, Vector<Real, 3> const& r,
+                                                  BodyAcceleration<Real> const& at_handle) {
+    Vector<Real, 3> const alpha = transposed_times(turn, at_handle.alpha);
+    return {alpha, transposed_times(turn, at_handle.a) - cross(alpha, r)};
 }
 /// Of a body about the hinges inboard and outboard of it.
 template <class Real>
@@ -466,56 +339,98 @@ CATENA_HD Vector<Real, 5> inboard_force(HingedBody<Real> const& body, BodyAccele
 
 /// Of runs side by side, where one begins later than others: none does.
 struct BeginsOnce {
-    template <class Real>
-    CATENA_HD void operator()(int, InertiaRun<Real>&) const {}
+    template <class Real, class Bodies>
+    CATENA_HD void operator()(int, InertiaRun<Real>&, Bodies&) const {}
 };
-/// A run of `count` bodies, two or more: body(i) is asked for in turn, and after all but the first torque(i), of the hinge inboard of it: a
-/// Real or Undriven. `kept`: put(i, ReleasedHinge) of joint i in the run, and put(RunsEnd), for the way back. `begin(i, run)`: after body i,
-/// but not the last.
-template <class Real, class Body, class Torque, class Kept, class Begin = BeginsOnce>
-CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Body const& body, Torque const& torque, Kept&& kept, Begin&& begin = {}) {
-    HingedBody<Real> const begins = body(0);
-    InertiaRun<Real> run = begin_run(begins);
-    begin(0, run);
-    OutboardHandle<Real> before = outboard_handle(begins);
+/// The bodies of a run on the way up, which turns them to its axes; body(i) is asked for in turn.
+template <class Real, class Body>
+class BodiesOfRun {
+  public:
+    CATENA_HD explicit BodiesOfRun(Body const& body) : body_(body) {}
+    CATENA_HD_IN_PLACE HingedBody<Real> first() {
+        HingedBody<Real> const b = body_(0);
+        state = {Matrix<Real, 3, 3>::identity(), b.e2, b.inward2};
+        return b;
+    }
+    CATENA_HD_IN_PLACE LoadedBodyInRun<Real> next(int i) {
+        HingedBody<Real> const b = body_(i);
+        state.turn = state.turn * b.turn_to(state.axes2);
+        LoadedBodyInRun<Real> const in_axes = in_run(b, state.turn, state.inward);
+        state.axes2 = b.e2;
+        state.inward = state.turn * b.inward2;
+        return in_axes;
+    }
+    /// In its own axes.
+    CATENA_HD_IN_PLACE HingedBody<Real> last(int i) { return body_(i); }
+    CATENA_HD OutboardHandle<Real> before_last() const { return {state.turn * state.axes2, state.inward}; }
+
+    /// Of the body come to.
+    struct State {
+        Matrix<Real, 3, 3> turn, axes2;
+        Vector<Real, 3> inward;
+    } state;
+
+  private:
+    Body const& body_;
+};
+
+/// A run of `count` bodies, two or more: `bodies` as BodiesOfRun; after all but the first torque(i), of the hinge inboard of it: a Real or
+/// Undriven. `kept`: for the way back put(i, ReleasedHinge, BodyInRun) of those between the first and the last, put(i, ReleasedHinge) of the
+/// last, put(RunsEnd), and put_axes() of the last hinge, in the run's axes. `begin(i, run, bodies)`: after body i, but not the last.
+template <class Real, class Bodies, class Torque, class Kept, class Begin = BeginsOnce>
+CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Bodies&& bodies, Torque const& torque, Kept&& kept, Begin&& begin = {}) {
+    InertiaRun<Real> run = begin_run(bodies.first());
+    begin(0, run, bodies);
     CATENA_NO_UNROLL
     for (int i = 1; i < count - 1; ++i) {
-        HingedBody<Real> const next = body(i);
-        kept.put(i, go_on(run, before, next, torque(i)));
-        begin(i, run);
-        before = outboard_handle(next);
+        LoadedBodyInRun<Real> const body = bodies.next(i);
+        kept.put(i, go_on(run, body, torque(i)), body);
+        begin(i, run, bodies);
     }
-    HingedBody<Real> const last = body(count - 1);
+    OutboardHandle<Real> const before = bodies.before_last();
+    HingedBody<Real> const last = bodies.last(count - 1);
     ReleasedHinge<Real> hinge;
     RunsEnd<Real> const end = end_run(run, before, last, hinge, torque(count - 1));
     kept.put(count - 1, hinge);
     kept.put(end);
+    kept.put_axes(before.axes);
     return segment_of(run, end, last);
 }
-/// And back from the forces at the run's first joint and at the one after it: frame(i) is asked for from the last body to the first,
-/// accelerate(i, frame(i), BodyAcceleration) of each follows it, and turn(i, its relative acceleration) of the hinge inboard of it when the next frame
-/// is known. `kept`: hinge(i) and end(). `ahead`: a frame is asked for one body earlier, so that reading it stands in nobody's way.
-template <class Real, bool ahead, class Frame, class Kept, class Accelerate, class Turn>
-CATENA_HD_IN_PLACE void descend_hinges(int count, Frame const& frame, Kept const& kept, Vector<Real, 5> const& first,
-                                       Vector<Real, 5> const& next, Accelerate&& accelerate, Turn&& turn) {
-    HingedFrame<Real> body = frame(count - 1), before, after;
-    BodyAcceleration<Real> a = last_acceleration(kept.end(), body, first, next);
-    accelerate(count - 1, body, a);
-    before = frame(count - 2);
-    if (ahead && count > 2) after = frame(count - 3);
-    Real of_hinge;
-    a = go_back<true>(kept.hinge(count - 1), before, body, a, first, of_hinge);
-    turn(count - 1, of_hinge);
-    accelerate(count - 2, before, a);
+/// And back from the forces at the run's first joint and at the one after it. `kept`: hinge(i), body(i), end() and axes(). frame(i) is
+/// asked for of the last two bodies and the first, and with `all` of every body in turn, from the last to the first:
+/// accelerate(i, frame(i), BodyAcceleration) of these but the last but one follows it; at(i, acceleration), which it may change, of every
+/// body but the last at its handle 2 in the run's axes; turn(i, its relative acceleration) of every hinge.
+template <class Real, class Frame, class Kept, class Accelerate, class At, class Turn>
+CATENA_HD_IN_PLACE void descend_hinges(int count, bool all, Frame const& frame, Kept const& kept, Vector<Real, 5> const& first,
+                                       Vector<Real, 5> const& next, Accelerate&& accelerate, At&& at, Turn&& turn) {
+    BodyAcceleration<Real> a;
+    Matrix<Real, 3, 3> axes;  // of the joint outboard of the next body, in the run's axes
+    {
+        HingedFrame<Real> const last = frame(count - 1);
+        a = last_acceleration(kept.end(), last, first, next);
+        accelerate(count - 1, last, own_acceleration(transpose(last.e1), last.r1, a));
+        HingedFrame<Real> const before = frame(count - 2);
+        Real const of_hinge = pass_back(kept.hinge(count - 1), last_in_run(last, transposed_times(before.e2, before.inward2)), first, a);
+        turn(count - 1, of_hinge);
+        axes = count > 2 ? kept.axes() : before.e2;
+        a = {axes * a.alpha, axes * a.a};
+    }
     CATENA_NO_UNROLL
     for (int i = count - 2; i > 0; --i) {
-        body = before;
-        before = ahead ? after : frame(i - 1);
-        if (ahead && i > 1) after = frame(i - 2);
-        a = go_back<false>(kept.hinge(i), before, body, a, first, of_hinge);
-        turn(i, of_hinge);
-        accelerate(i - 1, before, a);
+        at(i, a);
+        if (all) {
+            HingedFrame<Real> const body = frame(i);
+            Matrix<Real, 3, 3> const to_run = axes * transpose(body.e2);
+            accelerate(i, body, own_acceleration(to_run, body.r2, a));
+            axes = to_run * body.e1;
+        }
+        BodyInRun<Real> const body = kept.body(i);
+        a.a = a.a - cross(a.alpha, body.across);
+        turn(i, pass_back(kept.hinge(i), body, first, a));
     }
+    at(0, a);
+    HingedFrame<Real> const begins = frame(0);
+    accelerate(0, begins, BodyAcceleration<Real>{a.alpha, a.a - cross(a.alpha, begins.r2)});
 }
 
 }  // namespace catena::dca

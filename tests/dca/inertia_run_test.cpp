@@ -16,17 +16,30 @@ using Body = HingedBody<double>;
 /// In memory of its own.
 struct KeptHinges {
     std::vector<ReleasedHinge<double>> hinges;
+    std::vector<BodyInRun<double>> bodies;
     RunsEnd<double> at_end;
+    Mat3 last_axes;
 
+    explicit KeptHinges(std::size_t n) : hinges(n), bodies(n) {}
     void put(int i, ReleasedHinge<double> const& hinge) { hinges[static_cast<std::size_t>(i)] = hinge; }
+    void put(int i, ReleasedHinge<double> const& hinge, BodyInRun<double> const& body) {
+        put(i, hinge);
+        bodies[static_cast<std::size_t>(i)] = body;
+    }
     void put(RunsEnd<double> const& end) { at_end = end; }
+    void put_axes(Mat3 const& axes) { last_axes = axes; }
     ReleasedHinge<double> const& hinge(int i) const { return hinges[static_cast<std::size_t>(i)]; }
+    BodyInRun<double> const& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
     RunsEnd<double> const& end() const { return at_end; }
+    Mat3 const& axes() const { return last_axes; }
 };
+template <class Torque>
+BiasedSegment<double, 5> climb(std::vector<Body> const& b, Torque const& torque, KeptHinges& kept) {
+    auto const body = [&](int i) { return b[static_cast<std::size_t>(i)]; };
+    return climb_hinges<double>(static_cast<int>(b.size()), BodiesOfRun<double, decltype(body)>(body), torque, kept);
+}
 BiasedSegment<double, 5> climb(std::vector<Body> const& b, KeptHinges& kept) {
-    kept.hinges.resize(b.size());
-    return climb_hinges<double>(
-        static_cast<int>(b.size()), [&](int i) { return b[static_cast<std::size_t>(i)]; }, [](int) { return Undriven{}; }, kept);
+    return climb(b, [](int) { return Undriven{}; }, kept);
 }
 
 struct Draw {
@@ -111,7 +124,7 @@ TEST_P(InertiaRuns, AreTheSegmentsOfTheirBodies) {
             append(joined.matrix, next.matrix, 5, joint);
             append(joined.bias, next.bias, joint, offset);
         }
-        KeptHinges kept;
+        KeptHinges kept(b.size());
         auto const [matrix, bias] = climb(b, kept);
         Difference z11, z22, z12, biases;
         for (int i = 0; i < 5; ++i) {
@@ -140,18 +153,18 @@ TEST_P(InertiaRuns, GiveTheirBodiesAccelerations) {
         Draw draw{std::mt19937_64(seed + 100)};
         Vector<double, 5> first, next;
         for (int i = 0; i < 5; ++i) first[i] = draw(-2, 2), next[i] = draw(-2, 2);
-        KeptHinges kept;
+        KeptHinges kept(b.size());
         climb(b, kept);
         std::vector<BodyAcceleration<double>> a(b.size());
         std::vector<double> about_hinge(b.size());
         Vector<double, 5> inboard = next;
-        descend_hinges<double, false>(
-            n, [&](int i) -> HingedFrame<double> { return b[static_cast<std::size_t>(i)]; }, kept, first, next,
+        descend_hinges<double>(
+            n, true, [&](int i) -> HingedFrame<double> { return b[static_cast<std::size_t>(i)]; }, kept, first, next,
             [&](int i, HingedFrame<double> const&, BodyAcceleration<double> const& of_body) {
                 a[static_cast<std::size_t>(i)] = of_body;
                 inboard = inboard_force(b[static_cast<std::size_t>(i)], of_body, inboard);
             },
-            [&](int i, double of_hinge) { about_hinge[static_cast<std::size_t>(i)] = of_hinge; });
+            [](int, BodyAcceleration<double>&) {}, [&](int i, double of_hinge) { about_hinge[static_cast<std::size_t>(i)] = of_hinge; });
 
         Difference begins;
         for (int i = 0; i < 5; ++i) begins.add(inboard[i], first[i]);
@@ -198,13 +211,9 @@ TEST_P(InertiaRuns, TakeHingesTorques) {
             pushed[k].torque = pushed[k].torque + torque[k] * b[k].e1.column(2);
             pushed[k - 1].torque = pushed[k - 1].torque - torque[k] * b[k - 1].e2.column(2);
         }
-        KeptHinges expected, found;
+        KeptHinges expected(b.size()), found(b.size());
         auto const of_pushed = climb(pushed, expected).bias;
-        found.hinges.resize(b.size());
-        auto const driven =
-            climb_hinges<double>(
-                n, [&](int i) { return b[static_cast<std::size_t>(i)]; }, [&](int i) { return torque[static_cast<std::size_t>(i)]; }, found)
-                .bias;
+        auto const driven = climb(b, [&](int i) { return torque[static_cast<std::size_t>(i)]; }, found).bias;
         Difference biases, hinges;
         for (int i = 0; i < 5; ++i) {
             biases.add(driven.b1[i], of_pushed.b1[i]);

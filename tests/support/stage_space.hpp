@@ -156,7 +156,7 @@ class StageSpace : public HostSpace {
                 if (cuda::kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
                     ++seen.teams;
                     return over_runs(cuda::kernels::climb_runs_by_teams<Sweep>,
-                                     cuda::kernels::grid_of_teams<cuda::kernels::HingeAhead>(runs), sweep);
+                                     cuda::kernels::grid_of_teams<cuda::kernels::BodyAhead>(runs), sweep);
                 }
             over_runs(cuda::kernels::climb_runs<Sweep>, cuda::kernels::grid_of_climb<Sweep>(runs), sweep);
         }

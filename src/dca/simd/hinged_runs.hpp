@@ -11,7 +11,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
     static constexpr int numbers_of_hinge = hinge_numbers * lanes;
     using Base = RunsInTile<Real, Leaf>;
-    using Base::work_, Base::bodies_, Base::out_, Base::fill, Base::empty, Base::hinge_torque;
+    using Base::work_, Base::bodies_, Base::joint_frame_, Base::out_, Base::fill, Base::empty, Base::in_tile;
     static_assert(sizeof(ReleasedHinge<Real>) == released_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == met_numbers * sizeof(Real));
     using Vector3 = Vector<Real, 3>;
     using Matrix3 = Matrix<Real, 3, 3>;
@@ -20,51 +20,21 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     explicit HingedRunsSideBySide(RunWork<Leaf> const& work) : Base(work) {}
 
     void climb(std::int64_t item) {
-        RunsInLanes const& runs = work_.runs[item];
-        Kept kept{*this, runs, place_of(item)};
-        Vector3 omega;
-        Matrix3 before, from_ground;  // axes of the joint at hand in the body inboard of it; what turns to the body's axes
-        Vector3 first_omega;          // as the first bodies have these
-        Matrix3 first_turn;
-        InertiaRun<Real> begun;
-        auto const segment = climb_hinges<Real>(
-            count,
-            [&](int i) {
+        if (hinges().given) {
+            FollowedBodies bodies(*this, item);
+            climb(item, bodies);
+        } else {
+            auto const body = [this, &runs = work_.runs[item]](int i) {
                 if (i % part_length == 0) fill(runs, i / part_length, 1);
                 Column<Real> const here{i % part_length};
-                auto body = bodies_.leaf.hinged_at_rest(bodies_.loads, here);
-                if (!hinges().given) {
-                    omega = omega_at(here);
-                } else if (i == 0) {
-                    first_omega = omega = pick(work_.loads.omega, runs.body);
-                    if (has_wrenches()) first_turn = from_ground = first_from_ground(runs);
-                } else {
-                    Matrix3 const turn = body.turn_from(before);
-                    omega = turn * omega + read(bodies_.loads.hinge_rate, here)[0] * body.e1.column(2);
-                    if (has_wrenches()) from_ground = turn * from_ground;
-                    if (unsigned const begin = runs.begins[i]; begin != 0) {
-                        choose<Real>(begin, first_omega, omega);
-                        if (has_wrenches()) choose<Real>(begin, first_turn, from_ground);
-                    }
-                    kept.put(i, omega);
-                }
-                before = body.e2;
-                set_moving(runs, i, omega, body);
-                bodies_.leaf.add_gyroscopic(bodies_.loads, omega, body);
-                push(runs, i, from_ground, body);
-                if (has_wrenches() && i == count - 1) kept.put_orientation(from_ground);
-                return body;
-            },
-            [&](int i) { return torque_about(i); }, kept,
-            [&](int i, InertiaRun<Real>& run) {
-                if (!runs.short_ones) return;
-                if (i == 0)
-                    begun = run;
-                else if (unsigned const begin = runs.begins[i]; begin != 0)
-                    choose<Real>(begin, begun, run);
-            });
-        scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
-        scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
+                auto b = bodies_.leaf.hinged_at_rest(bodies_.loads, here);
+                Vector3 const omega = omega_at(here);
+                set_moving(runs, i, omega, b);
+                bodies_.leaf.add_gyroscopic(bodies_.loads, omega, b);
+                return b;
+            };
+            climb(item, BodiesOfRun<Real, decltype(body)>(body));
+        }
     }
     void descend(std::int64_t item) {
         RunsInLanes const& runs = work_.runs[item];
@@ -73,12 +43,13 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         gather<Real>(work_.sweeps.forces, runs.body, first);
         gather<Real>(work_.sweeps.forces, runs.next, next);
         Vector3 omega;
-        Real of_first;  // about their inboard hinges, of the bodies that begin where others go on
         PassedOn passed{next, {}, {}, Real(0)};
-        descend_hinges<Real, false>(
-            count,
+        BodyAcceleration<Real> of_late;  // first bodies, in the lanes where others go on after them
+        int part = parts_of_run;
+        descend_hinges<Real>(
+            count, goes_by_all(),
             [&](int i) {
-                if (i % part_length == part_length - 1) fill(runs, i / part_length, -1);
+                if (i / part_length != part) fill(runs, part = i / part_length, -1);
                 Column<Real> const here{i % part_length};
                 omega = !hinges().given ? omega_at(here) : i == 0 ? pick(work_.loads.omega, runs.body) : kept.omega(i);
                 auto frame = bodies_.leaf.frame_at_rest(here);
@@ -92,22 +63,26 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                     write(out_.alpha, here, a.alpha);
                     write(out_.acceleration, here, a.a);
                 }
-                if (out_.hinge_acceleration.origin && i == count - 1) end_at(runs, frame, a);
-                unsigned const begin = runs.begins[i];
                 if (out_.joint_force) {
                     Vector<Real, K> force = i == 0 ? first : pass_on(runs, i, kept, omega, frame, a, passed);
-                    if (begin != 0) choose<Real>(begin, first, force);
+                    if (runs.begins[i] != 0) choose<Real>(runs.begins[i], first, force);
                     write_directions<K>(out_.joint_force, here, force);
                 }
-                if (begin == 0) return;
-                of_first = about_inboard_hinge(frame, a);
-                begin_at(runs, begin, a);
-                if (i == 0) turn(runs, 0, of_first);
+                if (!out_.hinge_acceleration.origin) {
+                    if (i > 0) return;
+                    empty(runs, 0);
+                    scatter_accelerations(runs.body, 0, a, [&](int j) { return (runs.late >> j & 1) != 0; });
+                } else if (i == 0) {
+                    begin_at(runs, frame, a);
+                } else if (i == count - 1) {
+                    end_at(runs, frame, a);
+                }
             },
-            [&](int i, Real const& of_hinge) {
-                unsigned const begin = runs.begins[i];
-                turn(runs, i, begin == 0 ? of_hinge : Real::choose(begin, of_first, of_hinge));
-            });
+            [&](int i, BodyAcceleration<Real>& a) {
+                if (runs.late == 0 || runs.begins[i] == 0) return;
+                i > 0 ? choose<Real>(runs.begins[i], a, of_late) : choose<Real>(runs.late, of_late, a);
+            },
+            [&](int i, Real const& of_hinge) { turn(runs, i, of_hinge); });
     }
 
   private:
@@ -124,40 +99,43 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             store_vectors<Real>(kept, hinge);
             watch(i, hinge.inverse.not_positive());
         }
-        /// Outboard of joint i.
-        void put(int i, Vector3 const& omega) { store_vectors<Real>(of_hinge(i) + released_numbers * lanes, omega); }
-        Vector3 omega(int i) const {
-            Vector3 omega;
-            load_vectors<Real>(of_hinge(i) + released_numbers * lanes, omega);
-            return omega;
+        void put(int i, ReleasedHinge<Real> const& hinge, BodyInRun<Real> const& body) {
+            put(i, hinge);
+            store_vectors<Real>(of_hinge(i) + released_numbers * lanes, body);
         }
-        void put_orientation(Matrix3 const& from_ground) { store_vectors<Real>(place + met_numbers * lanes, from_ground); }
-        Matrix3 orientation() const {
-            Matrix3 from_ground;
-            load_vectors<Real>(place + met_numbers * lanes, from_ground);
-            return from_ground;
-        }
+        /// Outboard of joint i, in the body's axes.
+        void put(int i, Vector3 const& omega) { store_vectors<Real>(of_hinge(i) + at_omega, omega); }
+        void put_axes(Matrix3 const& axes) { store_vectors<Real>(place + met_numbers * lanes, axes); }
+        /// What turns to the last body's axes.
+        void put_orientation(Matrix3 const& from_ground) { store_vectors<Real>(place + at_orientation, from_ground); }
+        Vector3 omega(int i) const { return load<Vector3>(of_hinge(i) + at_omega); }
+        Matrix3 axes() const { return load<Matrix3>(place + met_numbers * lanes); }
+        Matrix3 orientation() const { return load<Matrix3>(place + at_orientation); }
         void put(RunsEnd<Real> const& end) {
             store_vectors<Real>(place, end);
             for (int i = 0; i < 6; ++i) watch(count - 1, end.factor(i, i).not_positive());
         }
         ReleasedHinge<Real> hinge(int i) const {
-            ReleasedHinge<Real> h;
             double const* const kept = of_hinge(i);
             prefetch<Real>(kept, -ahead * numbers_of_hinge - (i > ahead ? 0 : numbers_of_end), numbers_of_hinge);
-            load_vectors<Real>(kept, h);
-            return h;
+            return load<ReleasedHinge<Real>>(kept);
         }
+        BodyInRun<Real> body(int i) const { return load<BodyInRun<Real>>(of_hinge(i) + released_numbers * lanes); }
         RunsEnd<Real> end() const {
-            RunsEnd<Real> e;
             prefetch<Real>(place, -kept_of_hinged_run * lanes, met_numbers * lanes);
-            load_vectors<Real>(place, e);
-            return e;
+            return load<RunsEnd<Real>>(place);
         }
 
       private:
         // What is asked for is so many hinges further, in the order of items: the next one's end lies between.
         static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
+        static constexpr int at_omega = (released_numbers + passed_body_numbers) * lanes, at_orientation = (met_numbers + 9) * lanes;
+        template <class Record>
+        static Record load(double const* from) {
+            Record record;
+            load_vectors<Real>(from, record);
+            return record;
+        }
         double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
         void watch(int i, unsigned bad) const {
             for (int j = 0; bad != 0 && j < lanes; ++j)
@@ -165,6 +143,114 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             note_lost<Real>(all.work_.sweeps, runs.column, i, bad);
         }
     };
+    /// As BodiesOfRun, of runs whose hinges' loads are given: what moves is found in the runs' axes from what moves before.
+    class FollowedBodies {
+      public:
+        FollowedBodies(HingedRunsSideBySide& all, std::int64_t item)
+            : all_(all), runs_(all.work_.runs[item]), kept_{all, runs_, all.place_of(item)} {}
+        HingedBody<Real> first() {
+            all_.fill(runs_, 0, 1);
+            auto body = leaf().hinged_at_rest(all_.bodies_.loads, Column<Real>{0});
+            Vector3 const omega = pick(all_.work_.loads.omega, runs_.body);
+            if (all_.has_wrenches()) from_ground_ = all_.first_from_ground(runs_);
+            all_.set_moving(runs_, 0, omega, body);
+            leaf().add_gyroscopic(all_.bodies_.loads, omega, body);
+            all_.push(runs_, 0, from_ground_, body);
+            state = {Quaternion<Real>{Real(1), Real(0), Real(0), Real(0)}, omega, body.inward2};
+            return body;
+        }
+        LoadedBodyInRun<Real> next(int i) {
+            if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
+            Column<Real> const here{i % part_length};
+            GroupView const& own = leaf().group();
+            BodiesInTile<Real, Leaf> const& in_tile = all_.in_tile();
+            state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(in_tile.rotation, here)));
+            turn_ = to_matrix(state.turn);
+            auto const axes1 = read(own.axes1, here);
+            Vector3 const axis = turn_ * Vector3{{axes1[3], axes1[4], axes1[5]}}, r1 = turn_ * read(own.r1, here), r2 = turn_ * read(own.r2, here);
+            Real const rate = read(in_tile.hinge_rate, here)[0];
+            LoadedBodyInRun<Real> body{{axis, rate * cross(state.omega, axis), {}, r2 - r1},
+                                       -r2,
+                                       read(own.mass, here)[0],
+                                       turned(turn_, as_symmetric(read(own.inertia, here))),
+                                       {},
+                                       Vector3::zero()};
+            state.omega = plus_scaled(state.omega, rate, axis);
+            Real const square = dot(state.omega, state.omega);
+            auto const inward = [&](Vector3 const& r) { return plus_scaled(dot(state.omega, r) * state.omega, -square, r); };
+            body.linear = state.inward - inward(r1);
+            state.inward = inward(r2);
+            body.torque = -cross(state.omega, body.inertia * state.omega);
+            if (all_.has_wrenches()) {
+                body.torque = body.torque + from_ground_ * read(all_.hinges().torque, here);
+                body.force = from_ground_ * read(all_.hinges().force, here);
+            }
+            if (i >= count - 2 || all_.goes_by_all()) keep_omega(i);
+            return body;
+        }
+        HingedBody<Real> last(int i) {
+            Column<Real> const here{i % part_length};
+            auto body = leaf().hinged_at_rest(all_.bodies_.loads, here);
+            Matrix3 const turn = axes_ * transpose(body.e1);
+            Vector3 const omega = transposed_times(turn, state.omega) + read(all_.in_tile().hinge_rate, here)[0] * body.e1.column(2);
+            all_.set_moving(runs_, i, omega, body);
+            leaf().add_gyroscopic(all_.bodies_.loads, omega, body);
+            Matrix3 from_ground;
+            if (all_.has_wrenches()) {
+                from_ground = transposed_times(turn, from_ground_);
+                kept_.put_orientation(from_ground);
+            }
+            all_.push(runs_, i, from_ground, body);
+            kept_.put(i, omega);
+            return body;
+        }
+        OutboardHandle<Real> before_last() {
+            axes_ = turn_ * axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
+            return {axes_, state.inward};
+        }
+        struct State {
+            Quaternion<Real> turn;
+            Vector3 omega, inward;
+        } state;
+
+      private:
+        static_assert((count - 2) / part_length == (count - 1) / part_length);
+        Leaf const& leaf() const { return all_.bodies_.leaf; }
+        /// In the body's axes.
+        void keep_omega(int i) {
+            Vector3 omega = transposed_times(turn_, state.omega);
+            if (runs_.begins[i] != 0) choose<Real>(runs_.begins[i], first_omega(), omega);
+            kept_.put(i, omega);
+        }
+        Vector3 first_omega() const { return pick(all_.work_.loads.omega, runs_.body); }
+        HingedRunsSideBySide& all_;
+        RunsInLanes const& runs_;
+        Kept kept_;
+        Matrix3 turn_, axes_, from_ground_;  // of the body come to; of the last hinge; what turns to the run's axes
+    };
+    template <class Bodies>
+    void climb(std::int64_t item, Bodies&& bodies) {
+        RunsInLanes const& runs = work_.runs[item];
+        InertiaRun<Real> begun;
+        typename std::remove_reference_t<Bodies>::State first;
+        auto const segment =
+            climb_hinges<Real>(count, bodies, [&](int i) { return torque_about(i); }, Kept{*this, runs, place_of(item)},
+                               [&](int i, InertiaRun<Real>& run, auto& all) {
+                                   if (runs.late == 0 || runs.begins[i] == 0) return;
+                                   if (i == 0) {
+                                       begun = run;
+                                       first = all.state;
+                                   } else {
+                                       choose<Real>(runs.begins[i], begun, run);
+                                       choose<Real>(runs.begins[i], first, all.state);
+                                   }
+                               });
+        scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
+        scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
+    }
+    /// As Evaluation.
+    bool goes_by_all() const { return !out_.hinge_acceleration.origin || out_.joint_force; }
+
     double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
     GroupView const& group() const { return work_.group; }
     Vector3 omega_at(Column<Real> const& here) const {
@@ -184,7 +270,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         return transpose(to_matrix(as_quaternion(numbers)));
     }
     /// Of the hinge inboard of body i, within the run.
-    Real torque_about(int i) const { return hinge_torque().origin ? read(hinge_torque(), Column<Real>{i % part_length})[0] : Real(0); }
+    Real torque_about(int i) const { return in_tile().hinge_torque.origin ? read(in_tile().hinge_torque, Column<Real>{i % part_length})[0] : Real(0); }
     /// What acts on body i from outside and by the joints at the runs' ends, where hinges' loads are given.
     void push(RunsInLanes const& runs, int i, Matrix3 const& from_ground, HingedBody<Real>& body) const {
         if (has_wrenches()) {
@@ -192,7 +278,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             body.torque = body.torque + from_ground * read(hinges().torque, here);
             body.force = body.force + from_ground * read(hinges().force, here);
         }
-        if (!hinge_torque().origin) return;
+        if (!in_tile().hinge_torque.origin) return;
         ConstView<3> const& of_joints = work_.loads.hinges.joint_torque;
         if (i == 0) body.torque = body.torque + body.e1 * pick(of_joints, runs.body);
         if (i < count - 1) return;
@@ -246,9 +332,11 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             return next >= group().size || group().is_last[next];
         });
     }
-    void begin_at(RunsInLanes const& runs, unsigned begin, BodyAcceleration<Real> const& a) const {
-        if (!out_.hinge_acceleration.origin) return;
-        scatter_accelerations(runs.body, 0, a, [&](int j) { return (begin >> j & 1U) != 0 && group().is_first[runs.body[j]]; });
+    void begin_at(RunsInLanes const& runs, HingedFrame<Real> const& frame, BodyAcceleration<Real> const& a) {
+        scatter_accelerations(runs.body, 0, a, [&](int j) { return group().is_first[runs.body[j]] != 0; });
+        Real const about = about_inboard_hinge(frame, a);
+        turn(runs, 0, about);
+        if (runs.late != 0) scatter(component<Real>(work_.out.hinge_acceleration, 0), runs.body, 0, Vector<Real, 1>{{about}});
     }
     /// Of bodies body[j] + i in the lanes that are wanted(j).
     template <class Wanted>

@@ -17,7 +17,7 @@ struct RunsInLanes {
     std::int64_t column[most_lanes];   // where column 0 would be: that of the first body, less skipped
     int skipped[most_lanes];           // columns, longest_run - part_length at most
     std::uint8_t begins[longest_run];  // bit j: lane j's run begins in this column; in column 0 all do
-    bool short_ones = false;           // whether any is one
+    std::uint8_t late;                 // bit j: lane j's is a shorter one
 };
 /// Part p of them: a lane's columns are of bodies first[j] on, its first skipped[j] ones aside, where first[j] stands again.
 template <class Real>
@@ -29,7 +29,7 @@ struct PartInLanes {
 
     PartInLanes(RunsInLanes const& runs, int p) : short_ones(false) {
         for (int j = 0; j < lanes; ++j) first[j] = runs.column[j] + p * part_length;
-        if (!runs.short_ones) return;
+        if (runs.late == 0) return;
         for (int j = 0; j < lanes; ++j) {
             int const before = runs.skipped[j] - p * part_length;
             skipped[j] = before < 0 ? 0 : before < part_length ? before : part_length;
@@ -73,9 +73,12 @@ consteval int count_constants() {
     each_constant<Leaf>(group, [&count]<int D>(ConstView<D> const&) { count += D; });
     return count;
 }
+/// Of its inboard joint's frame against the body before, where bodies go by their hinges.
+template <class Leaf>
+inline constexpr int frame_constants = Leaf::by_inertia ? 4 : 0;
 /// Numbers a body.
 template <class Leaf>
-inline constexpr int constants_of = count_constants<Leaf>();
+inline constexpr int constants_of = count_constants<Leaf>() + frame_constants<Leaf>;
 
 template <class Leaf>
 struct RunWork {
@@ -99,12 +102,13 @@ constexpr int kept_of_run(bool keeps_all) {
     return (parts_of_run - 1) * node_numbers<K> + (keeps_all ? static_cast<int>(longest_run) * passed_numbers<K> : 0);
 }
 
-/// Of a run that goes by its inertias: its hinges, with the angular velocity outboard of each, and its end, with the last body's
-/// orientation.
+/// Of a run that goes by its inertias: its hinges with the bodies outboard of them, of which the way back wants some angular velocities; and
+/// its end, with the last hinge's axes and the last body's orientation.
 inline constexpr int released_numbers = static_cast<int>(sizeof(ReleasedHinge<double>) / sizeof(double));
-inline constexpr int hinge_numbers = released_numbers + 3;
+inline constexpr int passed_body_numbers = static_cast<int>(sizeof(BodyInRun<double>) / sizeof(double));
+inline constexpr int hinge_numbers = released_numbers + passed_body_numbers + 3;
 inline constexpr int met_numbers = static_cast<int>(sizeof(RunsEnd<double>) / sizeof(double));
-inline constexpr int end_numbers = met_numbers + 9;
+inline constexpr int end_numbers = met_numbers + 9 + 9;
 inline constexpr int kept_of_hinged_run = (static_cast<int>(longest_run) - 1) * hinge_numbers + end_numbers;
 template <class Leaf>
 constexpr int kept_of_run_of(bool keeps_all) {

@@ -25,14 +25,14 @@ class BodiesInTile {
             loads_.velocity = tile.in(work.loads.velocity, true);
         } else {
             using Frames = typename Leaf::Frames;
-            at_.rotation = tile.in(work.configuration.rotation);
+            rotation = at_.rotation = tile.in(work.configuration.rotation);
             at_.r2 = tile.in(work.configuration.r2);
             if constexpr (Frames::in_joints) at_.axes2 = tile.in(work.configuration.axes2);
             if constexpr (Frames::on_links) at_.direction = tile.in(work.configuration.direction, true);
             if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
             loads_.hinges.given = work.loads.hinges.given;
             loads_.gyroscopic = work.loads.gyroscopic || loads_.hinges.given;
-            loads_.hinge_rate = tile.in(work.loads.hinge_rate);
+            hinge_rate = loads_.hinge_rate = tile.in(work.loads.hinge_rate);
             if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
             if (!loads_.hinges.given) {
                 loads_.omega = tile.in(work.loads.omega);
@@ -51,8 +51,9 @@ class BodiesInTile {
             loads_.hinges.force = tile.in(from.force);
         }
     }
+    ConstView<4> rotation{};
     // Where hinges' loads are given.
-    ConstView<1> hinge_torque{};
+    ConstView<1> hinge_torque{}, hinge_rate{};
     int on_way_back = 0;  // numbers that accelerations need, of the tile's
 
     /// Those of a part.
@@ -116,6 +117,8 @@ class RunsInTile {
             double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
             prefetch<Real>(here, 2 * way * block, block);
             bodies_ = in_tile_.with({here});
+            if constexpr (frame_constants<Leaf> > 0)
+                joint_frame_ = Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>) * part_length * lanes}.template next<4>();
         }
     }
     void empty(RunsInLanes const& runs, int p) {
@@ -125,7 +128,7 @@ class RunsInTile {
             tile_.empty(runs.body, -bodies_of_item);
     }
 
-    ConstView<1> const& hinge_torque() const { return in_tile_.hinge_torque; }
+    BodiesInTile<Real, Leaf> const& in_tile() const { return in_tile_; }
 
     RunWork<Leaf> const& work_;
 
@@ -135,6 +138,7 @@ class RunsInTile {
   protected:
     Bodies bodies_;
     Column<Real> begin_;  // of the part in the tile
+    ConstView<4> joint_frame_{};  // as frame_constants
     AccelerationsView out_{};
 };
 

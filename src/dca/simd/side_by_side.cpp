@@ -64,7 +64,7 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, RunsTaken const& 
             auto const bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(j));
             item.begins[0] |= bit;
             item.begins[item.skipped[j]] |= bit;
-            item.short_ones = item.short_ones || item.skipped[j] > 0;
+            if (item.skipped[j] > 0) item.late |= bit;
         }
     return dealt;
 }
