@@ -27,7 +27,7 @@ struct HingedFrame {
     CATENA_HD Handle<Real, 5> handle1() const { return make_handle<5>(r1, e1, e1); }
     CATENA_HD Handle<Real, 5> handle2() const { return make_handle<5>(r2, e2, e2); }
     /// From this body's axes to those of the one before.
-    CATENA_HD Matrix<Real, 3, 3> turn_to(Matrix<Real, 3, 3> const& e2_before) const { return e2_before * transpose(e1); }
+    CATENA_HD Matrix<Real, 3, 3> turn_to(Matrix<Real, 3, 3> const& e2_before) const { return orthogonal(e2_before * transpose(e1)); }
 };
 /// And the way up, with what acts on it, the gyroscopic torque included.
 template <class Real>

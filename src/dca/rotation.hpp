@@ -41,15 +41,24 @@ CATENA_HD Quaternion<Real> normalized(Quaternion<Real> const& q) {
     Real const s = Real(1) / sqrt(squared_norm(q));
     return {s * q.w, s * q.x, s * q.y, s * q.z};
 }
-/// The rotation matrix R_AB of Q_AB; q need not be normalised to the last bit: the scale is divided out.
+/// The rotation matrix R_AB of Q_AB; s = 2 / |q|^2.
 template <class Real>
-CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q) {
-    Real const s = Real(2) / squared_norm(q);
+CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q, Real const& s) {
     Real const xs = q.x * s, ys = q.y * s, zs = q.z * s;
     Real const wx = q.w * xs, wy = q.w * ys, wz = q.w * zs, xx = q.x * xs, yy = q.y * ys, zz = q.z * zs;
     // Sums and differences of the same products, left to the compiler: gcc 12 contracts them where it vectorises, -ffp-contract=off or not.
     return {{Real(1) - (yy + zz), fused(q.x, ys, -wz), fused(q.x, zs, wy), fused(q.x, ys, wz), Real(1) - (xx + zz), fused(q.y, zs, -wx),
              fused(q.x, zs, -wy), fused(q.y, zs, wx), Real(1) - (xx + yy)}};
+}
+/// q need not be normalised to the last bit: the scale is divided out.
+template <class Real>
+CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q) {
+    return to_matrix(q, Real(2) / squared_norm(q));
+}
+/// The same of one whose norm is 1 but for rounding.
+template <class Real>
+CATENA_HD Matrix<Real, 3, 3> to_matrix_of_unit(Quaternion<Real> const& q) {
+    return to_matrix(q, Real(4) - Real(2) * squared_norm(q));
 }
 /// Rotation by `angle` about the unit vector `axis` (right-hand rule).
 template <class Real>
@@ -85,6 +94,17 @@ CATENA_HD Quaternion<Real> to_quaternion(Matrix<Real, 3, 3> const& r) {
     if (r(1, 1) >= r(2, 2))
         return normalized(Quaternion<Real>{r(0, 2) - r(2, 0), r(0, 1) + r(1, 0), Real(1) - r(0, 0) + r(1, 1) - r(2, 2), r(1, 2) + r(2, 1)});
     return normalized(Quaternion<Real>{r(1, 0) - r(0, 1), r(0, 2) + r(2, 0), r(1, 2) + r(2, 1), Real(1) - r(0, 0) - r(1, 1) + r(2, 2)});
+}
+
+/// A rotation that is one but for rounding, without what makes it none: r (3 - r^T r) / 2.
+template <class Real>
+CATENA_HD Matrix<Real, 3, 3> orthogonal(Matrix<Real, 3, 3> const& r) {
+    Symmetric<Real, 3> half;
+    CATENA_UNROLL
+    for (int i = 0; i < 3; ++i)
+        CATENA_UNROLL
+        for (int j = 0; j <= i; ++j) half(i, j) = Real(i == j ? 1.5 : 0) - Real(0.5) * dot(r.column(i), r.column(j));
+    return r * full(half);
 }
 
 }  // namespace catena

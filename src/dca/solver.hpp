@@ -92,9 +92,9 @@ struct ConfigurationView {
 /// force. A view without origin means zero.
 struct HingeLoads {
     bool given = false;
-    /// What joints do along their free directions, on body k along the axes of its inboard joint (of hinges: 0, 0, the torque about it);
-    /// [0, size].
+    /// What joints do along their free directions, on body k along the axes of its inboard joint, of hinges about the last one; [0, size].
     ConstView<3> joint_torque;
+    static constexpr int about_hinge = 2;  // component
     ConstView<3> torque, force;  // from outside, about the centre of mass, W
     ConstView<4> orientation;    // where these are: of first bodies, quaternion of B in W
 };

@@ -284,6 +284,7 @@ class JointDynamicsIn final : public JointDynamics {
         JointChains c = chains();
         c.scan.motion.orients_first_alone = !needs_orientations_;
         relative_ = false;
+        // Where bodies meet is as fixed as it was at first: on hinges. Of first bodies, on whatever joint, set_relative() finds it.
         lanes_->each_outside(
             space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
             [c](std::int64_t k) { c.template set_relative<false>(k); });
@@ -306,10 +307,10 @@ class JointDynamicsIn final : public JointDynamics {
     void embedded_stage(EmbeddedStage const&);
     template <bool positions>
     void verlet_move(double h) {
-        space_.for_each(group_.size, [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) {
-            s.template verlet_move<positions>(k, h, time);
-        });
-        relative_ = true;
+        JointSteps const s = steps();
+        space_.for_each(group_.size,
+                        [s, h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template verlet_move<positions>(k, h, time); });
+        relative_ = !s.chains.left.motions;
     }
     template <bool positions>
     void drift(double h) {

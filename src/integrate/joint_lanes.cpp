@@ -51,11 +51,11 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdL
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);
     deal_out(group, springs, 0, group.size, lanes, bodies_);
+    runs_ = dca::deal_out_runs(group, lanes, {true, false});
     if (!any()) {
         bodies_ = {};
         return;
     }
-    runs_ = dca::deal_out_runs(group, lanes, {true, false});
     tree_.emplace(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots);
     if (!hinges) return;
     for (dca::Run const& run : runs_.others) deal_out(group, springs, run.body, run.body + run.count, lanes, outside_);

@@ -42,8 +42,8 @@ class JointLanes {
     JointLanes(JointLanes&&) = default;
     JointLanes& operator=(JointLanes&&) = default;
 
-    /// Whether any bodies go side by side. Precondition of all that follows.
-    bool any() const { return !bodies_.first.empty(); }
+    /// Whether any bodies or runs go side by side. Precondition of all that follows.
+    bool any() const { return !bodies_.first.empty() || !runs_.items.empty(); }
     /// some(loops, first, begin, end) for those, one(k) for the others.
     template <class Space, class Some, class One>
     void each(Space const& space, bool positions, Some const& some, One const& one) const {

@@ -93,7 +93,7 @@ struct JointSteps {
             state.base_velocity.store(p, plus_scaled(v, h, a));
         }
         chains.joints().follow_course(state, k, time);
-        chains.set_relative<positions>(k);
+        if (!chains.left.motions) chains.set_relative<positions>(k);
     }
     /// Velocities from the mean of the accelerations before and after the move.
     CATENA_HD void verlet_finish(std::int64_t k, double h) const {

@@ -51,7 +51,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             [&](int i) {
                 if (i / part_length != part) fill(runs, part = i / part_length, -1);
                 Column<Real> const here{i % part_length};
-                omega = !hinges().given ? omega_at(here) : i == 0 ? pick(work_.loads.omega, runs.body) : kept.omega(i);
+                omega = !hinges().given ? omega_at(here) : i == 0 ? pick<Real>(work_.loads.omega, runs.body) : kept.omega(i);
                 auto frame = bodies_.leaf.frame_at_rest(here);
                 set_moving(runs, i, omega, frame);
                 return frame;
@@ -151,7 +151,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         HingedBody<Real> first() {
             all_.fill(runs_, 0, 1);
             auto body = leaf().hinged_at_rest(all_.bodies_.loads, Column<Real>{0});
-            Vector3 const omega = pick(all_.work_.loads.omega, runs_.body);
+            Vector3 const omega = pick<Real>(all_.work_.loads.omega, runs_.body);
             if (all_.has_wrenches()) from_ground_ = all_.first_from_ground(runs_);
             all_.set_moving(runs_, 0, omega, body);
             leaf().add_gyroscopic(all_.bodies_.loads, omega, body);
@@ -165,7 +165,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             GroupView const& own = leaf().group();
             BodiesInTile<Real, Leaf> const& in_tile = all_.in_tile();
             state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(in_tile.rotation, here)));
-            turn_ = to_matrix(state.turn);
+            turn_ = to_matrix_of_unit(state.turn);
             auto const axes1 = read(own.axes1, here);
             Vector3 const axis = turn_ * Vector3{{axes1[3], axes1[4], axes1[5]}}, r1 = turn_ * read(own.r1, here), r2 = turn_ * read(own.r2, here);
             Real const rate = read(in_tile.hinge_rate, here)[0];
@@ -222,7 +222,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             if (runs_.begins[i] != 0) choose<Real>(runs_.begins[i], first_omega(), omega);
             kept_.put(i, omega);
         }
-        Vector3 first_omega() const { return pick(all_.work_.loads.omega, runs_.body); }
+        Vector3 first_omega() const { return pick<Real>(all_.work_.loads.omega, runs_.body); }
         HingedRunsSideBySide& all_;
         RunsInLanes const& runs_;
         Kept kept_;
@@ -256,18 +256,10 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     Vector3 omega_at(Column<Real> const& here) const {
         return bodies_.loads.omega.origin ? read(bodies_.loads.omega, here) : Vector3::zero();
     }
-    static Vector3 pick(ConstView<3> const& view, std::int64_t const* body) {
-        Vector3 v;
-        for (int n = 0; n < 3; ++n) v[n] = Real::pick(view.origin + n * view.pitch, body);
-        return v;
-    }
     HingeLoads const& hinges() const { return bodies_.loads.hinges; }
     bool has_wrenches() const { return hinges().torque.origin; }
     Matrix3 first_from_ground(RunsInLanes const& runs) const {
-        ConstView<4> const& all = work_.loads.hinges.orientation;
-        Vector<Real, 4> numbers;
-        for (int n = 0; n < 4; ++n) numbers[n] = Real::pick(all.origin + n * all.pitch, runs.body);
-        return transpose(to_matrix(as_quaternion(numbers)));
+        return transpose(to_matrix(as_quaternion(pick<Real>(work_.loads.hinges.orientation, runs.body))));
     }
     /// Of the hinge inboard of body i, within the run.
     Real torque_about(int i) const { return in_tile().hinge_torque.origin ? read(in_tile().hinge_torque, Column<Real>{i % part_length})[0] : Real(0); }
@@ -280,12 +272,12 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         if (!in_tile().hinge_torque.origin) return;
         ConstView<3> const& of_joints = work_.loads.hinges.joint_torque;
-        if (i == 0) body.torque = body.torque + body.e1 * pick(of_joints, runs.body);
+        if (i == 0) body.torque = body.torque + body.e1 * pick<Real>(of_joints, runs.body);
         if (i < count - 1) return;
         alignas(64) double next[lanes];
         for (int j = 0; j < lanes; ++j) {
             std::int64_t const last = runs.column[j] + count - 1;
-            next[j] = group().is_last[last] ? 0.0 : of_joints.origin[2 * of_joints.pitch + last + 1];
+            next[j] = group().is_last[last] ? 0.0 : of_joints.at(last + 1, HingeLoads::about_hinge);
         }
         body.torque = body.torque - Real::load(next) * body.e2.column(2);
     }

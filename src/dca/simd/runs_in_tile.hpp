@@ -43,9 +43,8 @@ class BodiesInTile {
             on_way_back = tile.count();
             HingeLoads const& from = work.loads.hinges;
             if (from.joint_torque.origin) {
-                constexpr int about_hinge = 2;
-                hinge_torque =
-                    tile.in(ConstView<1>{from.joint_torque.origin + about_hinge * from.joint_torque.pitch, from.joint_torque.pitch, 0});
+                ConstView<3> const& all = from.joint_torque;
+                hinge_torque = tile.in(ConstView<1>{all.origin + HingeLoads::about_hinge * all.pitch, all.pitch, 0});
             }
             loads_.hinges.torque = tile.in(from.torque);
             loads_.hinges.force = tile.in(from.force);

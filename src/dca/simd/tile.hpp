@@ -42,6 +42,13 @@ void scatter(View<D> const& view, std::int64_t const* body, int further, Vector<
         for (int j = 0; j < Real::lanes; ++j) view.origin[i * view.pitch + body[j] + further] = of_lane[j];
     }
 }
+/// And from bodies body[j].
+template <class Real, int D>
+Vector<Real, D> pick(ConstView<D> const& view, std::int64_t const* body) {
+    Vector<Real, D> v;
+    for (int i = 0; i < D; ++i) v[i] = Real::pick(view.origin + i * view.pitch, body);
+    return v;
+}
 template <int K, class Real>
 CATENA_HD Vector<Real, K> read_directions(ConstDirectionsView const& view, Column<Real> const& c) {
     return read(ConstView<K>{view.origin, view.pitch, 0}, c);

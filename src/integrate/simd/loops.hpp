@@ -102,7 +102,7 @@ class FollowHinges {
           turn_(tile_.out(scan_.motion.joint_turn)) {
         BodyLoadsView const& given = loads.given;
         if (!given.joint_loads) return;
-        load_ = {loads.joint_load.origin + about_hinge * loads.joint_load.pitch, loads.joint_load.pitch, 0};
+        load_ = {loads.joint_load.origin + HingeLoads::about_hinge * loads.joint_load.pitch, loads.joint_load.pitch, 0};
         torque_ = coordinate(given.torque);
         if (given.springs) stiffness_ = coordinate(given.stiffness), rest_ = coordinate(given.rest);
         if (given.dampers) damping_ = coordinate(given.damping);
@@ -149,7 +149,6 @@ class FollowHinges {
     }
 
   private:
-    static constexpr int about_hinge = 2;  // component of JointLoads::joint_load
     struct Of {
         Quaternion<Real> turn;
         Motions motion;
@@ -198,16 +197,13 @@ template <class Real>
 void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
     std::int64_t at[Real::lanes];
     for (int j = 0; j < Real::lanes; ++j) at[j] = runs.slot[j] * MotionRecords::numbers;
-    auto const pick = []<int D>(double const* origin, std::int64_t pitch, std::int64_t const* from, Vector<Real, D> v) {
-        for (int i = 0; i < D; ++i) v[i] = Real::pick(origin + i * pitch, from);
-        return v;
-    };
     MotionOf<Real> first{};
-    first.rotation = as_quaternion(pick(s.rotation.origin, s.rotation.pitch, runs.body, Vector<Real, 4>{}));
-    first.omega = pick(s.omega.origin, s.omega.pitch, runs.body, Vector<Real, 3>{});
-    dca::scatter(s.motion.omega, runs.body, 0, compose(pick(s.before.origin + first_of_omega, 1, at, Vector<Real, 3>{}), first));
+    first.rotation = as_quaternion(dca::pick<Real>(ConstView<4>(s.rotation), runs.body));
+    first.omega = dca::pick<Real>(ConstView<3>(s.omega), runs.body);
+    auto const omega_before = dca::pick<Real>(ConstView<3>{s.before.origin + first_of_omega, 1, 0}, at);
+    dca::scatter(s.motion.omega, runs.body, 0, compose(omega_before, first));
     if (s.motion.orients_first_alone) return;  // chains' first ones
-    auto const before = as_quaternion(pick(s.before.origin, 1, at, Vector<Real, 4>{}));
+    auto const before = as_quaternion(dca::pick<Real>(ConstView<4>{s.before.origin, 1, 0}, at));
     dca::scatter(s.motion.orientation, runs.body, 0, as_vector(normalized(before * first.rotation)));
 }
 
