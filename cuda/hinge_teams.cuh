@@ -64,7 +64,8 @@ class HingeTeam {
         dca::InertiaRun<double> run = whole();
         Body const last = body(count - 1);
         dca::ReleasedHinge<double> hinge;
-        dca::OutboardHandle<double> const before = of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last);
+        dca::OutboardHandle<double> const before =
+            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last);
         dca::RunsEnd<double> const end = end_run(run, before, last, hinge, dca::Undriven{});
         if (leads()) {
             kept.put(count - 1, hinge);

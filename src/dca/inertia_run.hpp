@@ -3,8 +3,8 @@
 //
 // Bodies are taken from the first to the last as in the articulated-body algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008,
 // section 7.2), with what a force at the run's first joint does carried along (Lilly and Orin, Int. J. Robotics Research 10, 1991: extended
-// force propagators), so that the run floats. All of it is in the axes of the run's first body and about the outboard handle of the body come
-// to, of the last one (RunsEnd) about its joint and in that one's axes:
+// force propagators), so that the run floats. All of it is in the axes of the run's first body and about the outboard handle of the body
+// come to, of the last one (RunsEnd) about its joint and in that one's axes:
 //   {torque, force} = I {alpha, a} + bias - first f1,   a1 = z f1 + first^T {alpha, a} + e,
 // f1 the force at handle 1 along its K = 5 directions (make_handle), a1 the acceleration along them, {torque, force} on the body's
 // outboard side, {alpha, a} its accelerations at that point as if it turned at rest: without omega x (omega x r) of its handles.

@@ -50,6 +50,7 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdL
     for (bool const positions : {false, true})
         loops_[positions ? 1 : 0] = level == SimdLevel::avx512 ? avx512_joint_loops(positions) : avx2_joint_loops(positions);
     int const lanes = lanes_of(level);
+    asks_ahead_ = dca::asks_ahead(group);
     deal_out(group, springs, 0, group.size, lanes, bodies_);
     runs_ = dca::deal_out_runs(group, lanes, {true, false});
     if (!any()) {
@@ -61,7 +62,7 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdL
     for (dca::Run const& run : runs_.others) deal_out(group, springs, run.body, run.body + run.count, lanes, outside_);
     for (dca::RunsInLanes const& item : runs_.items)
         for (int lane = 0; lane < lanes; ++lane)
-            if (group.is_first[static_cast<std::size_t>(item.body[lane])] && (lane == 0 || item.body[lane] != item.body[lane - 1]))
+            if (group.is_first[static_cast<std::size_t>(item.body[lane])] && (lane == 0 || item.body[lane] != item.body[0]))
                 outside_.others.push_back(item.body[lane]);
     constants_ = dca::constants_in_lanes(runs_.items, lanes, hinge_constants, [&group](std::int64_t k, double* place) {
         auto const axes = group.axes1[k];

@@ -12,21 +12,30 @@
 
 namespace catena {
 
-/// For the bodies at first[i], first[i] + 1, ... that fill a vector, i in [begin, end). With or without positions, as JointChains says.
+/// Those at first[i], first[i] + 1, ... fill a vector. `asks_ahead`: as dca::asks_ahead().
+struct BodiesAbreast {
+    std::int64_t const* first;
+    bool asks_ahead;
+};
+struct RunsAbreast {
+    dca::RunsInLanes const* items;
+    bool asks_ahead;
+};
+/// For i in [begin, end) of these. With or without positions, as JointChains says.
 struct JointLoops {
-    void (*set_relative)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
+    void (*set_relative)(JointChains const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
     /// JointScan::follow of the runs of items [begin, end), whose wholes it shows.
-    void (*follow)(JointScan const&, dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end);
+    void (*follow)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
     /// The same of runs on hinges from their coordinates: turns and torques of their joints, wholes, and motions against the bodies inboard
     /// of them of first bodies alone. Of chains' first bodies all but the wholes is known. `constants`: hinge_constants of every body, as
     /// RunWork::constants.
-    void (*follow_hinges)(JointLoads const&, dca::RunsInLanes const* items, double const* constants, std::int64_t begin, std::int64_t end);
+    void (*follow_hinges)(JointLoads const&, RunsAbreast const&, double const* constants, std::int64_t begin, std::int64_t end);
     /// After the scan, angular velocities of these runs' first bodies.
-    void (*begin_runs)(JointScan const&, dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end);
-    void (*set_motion)(JointChains const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
-    void (*set_rates)(JointChains const&, RatesView const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
-    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
-    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, std::int64_t const* first, std::int64_t begin, std::int64_t end);
+    void (*begin_runs)(JointScan const&, RunsAbreast const&, std::int64_t begin, std::int64_t end);
+    void (*set_motion)(JointChains const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
+    void (*set_rates)(JointChains const&, RatesView const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
+    void (*runge_kutta)(JointSteps const&, RungeKuttaStage const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
+    void (*embedded_stage)(EmbeddedSteps const&, EmbeddedStage const&, BodiesAbreast const&, std::int64_t begin, std::int64_t end);
 };
 /// The hinge's axis, and the rotation of its meeting frame.
 inline constexpr int hinge_constants = 7;
@@ -44,7 +53,7 @@ class JointLanes {
 
     /// Whether any bodies or runs go side by side. Precondition of all that follows.
     bool any() const { return !bodies_.first.empty() || !runs_.items.empty(); }
-    /// some(loops, first, begin, end) for those, one(k) for the others.
+    /// some(loops, bodies, begin, end) for those, one(k) for the others.
     template <class Space, class Some, class One>
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
         each_of(bodies_, space, positions, some, one);
@@ -54,8 +63,7 @@ class JointLanes {
     template <class Space>
     void follow(Space const& space, bool positions, JointScan const& scan) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
-        over_runs(space,
-                  [&](dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end) { loops.follow(scan, items, begin, end); });
+        over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) { loops.follow(scan, runs, begin, end); });
     }
     HostSpace::ScanTree const& tree() const { return *tree_; }
 
@@ -69,15 +77,14 @@ class JointLanes {
     /// After set_relative() of those outside.
     template <class Space>
     void follow_hinges(Space const& space, JointLoads const& loads) const {
-        over_runs(space, [&](dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end) {
-            loops_[0].follow_hinges(loads, items, constants_.data(), begin, end);
+        over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+            loops_[0].follow_hinges(loads, runs, constants_.data(), begin, end);
         });
     }
     template <class Space>
     void begin_runs(Space const& space, JointScan const& scan) const {
-        over_runs(space, [&](dca::RunsInLanes const* items, std::int64_t begin, std::int64_t end) {
-            loops_[0].begin_runs(scan, items, begin, end);
-        });
+        over_runs(space,
+                  [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) { loops_[0].begin_runs(scan, runs, begin, end); });
     }
 
   private:
@@ -87,16 +94,18 @@ class JointLanes {
     template <class Space, class Some, class One>
     void each_of(Bodies const& bodies, Space const& space, bool positions, Some const& some, One const& one) const {
         JointLoops const& loops = loops_[positions ? 1 : 0];
-        space.over_ranges(std::ssize(bodies.first), 2,
-                          [&](std::int64_t begin, std::int64_t end) { some(loops, bodies.first.data(), begin, end); });
+        space.over_ranges(std::ssize(bodies.first), 2, [&](std::int64_t begin, std::int64_t end) {
+            some(loops, BodiesAbreast{bodies.first.data(), asks_ahead_}, begin, end);
+        });
         space.over(std::span(bodies.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
     template <class Space, class Action>
     void over_runs(Space const& space, Action const& action) const {
         space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),
-                          [&](std::int64_t begin, std::int64_t end) { action(runs_.items.data(), begin, end); });
+                          [&](std::int64_t begin, std::int64_t end) { action({runs_.items.data(), asks_ahead_}, begin, end); });
     }
     JointLoops loops_[2]{};
+    bool asks_ahead_ = false;
     dca::RunsDealtOut runs_;
     std::optional<HostSpace::ScanTree> tree_;
     Bodies bodies_, outside_;

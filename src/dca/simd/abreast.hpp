@@ -10,8 +10,9 @@ template <class Real_>
 struct Abreast {
     using Real = Real_;
     std::int64_t first = 0;
-    friend Abreast operator+(Abreast a, int by) { return {a.first + by}; }
-    friend Abreast operator-(Abreast a, int by) { return {a.first - by}; }
+    bool asks_ahead = false;
+    friend Abreast operator+(Abreast a, int by) { return {a.first + by, a.asks_ahead}; }
+    friend Abreast operator-(Abreast a, int by) { return {a.first - by, a.asks_ahead}; }
 };
 
 /// Loops go along the bodies in vectors: what lies so far ahead of one is asked for with it.
@@ -20,7 +21,7 @@ inline constexpr int ahead_of_bodies = 64;
 template <class T, int D, class Real>
 Real read(FieldView<T, D> const& view, Abreast<Real> const& bodies, int component) {
     auto const* const place = view.origin + component * view.pitch + bodies.first;
-    prefetch<Real>(place, ahead_of_bodies);
+    if (bodies.asks_ahead) prefetch<Real>(place, ahead_of_bodies);
     return Real::load_anywhere(place);
 }
 template <class T, int D, class Real>
@@ -35,7 +36,7 @@ void write(View<D> const& view, Abreast<Real> const& bodies, Vector<Real, D> con
     CATENA_UNROLL
     for (int i = 0; i < D; ++i) {
         double* const place = view.origin + i * view.pitch + bodies.first;
-        prefetch_to_write<Real>(place, ahead_of_bodies);
+        if (bodies.asks_ahead) prefetch_to_write<Real>(place, ahead_of_bodies);
         value[i].store_anywhere(place);
     }
 }

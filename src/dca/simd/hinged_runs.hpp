@@ -94,8 +94,8 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         void put(int i, ReleasedHinge<Real> const& hinge) {
             double* const kept = of_hinge(i);
             int const further = ahead * numbers_of_hinge + (i + ahead < count ? 0 : numbers_of_end);
-            prefetch_to_write<Real>(kept, further, numbers_of_hinge);
-            if (i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
+            if (asks_ahead()) prefetch_to_write<Real>(kept, further, numbers_of_hinge);
+            if (asks_ahead() && i == count / 2) prefetch_to_write<Real>(place, 0, numbers_of_end);
             store_vectors<Real>(kept, hinge);
             watch(i, hinge.inverse.not_positive());
         }
@@ -117,12 +117,12 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         ReleasedHinge<Real> hinge(int i) const {
             double const* const kept = of_hinge(i);
-            prefetch<Real>(kept, -ahead * numbers_of_hinge - (i > ahead ? 0 : numbers_of_end), numbers_of_hinge);
+            if (asks_ahead()) prefetch<Real>(kept, -ahead * numbers_of_hinge - (i > ahead ? 0 : numbers_of_end), numbers_of_hinge);
             return load<ReleasedHinge<Real>>(kept);
         }
         BodyInRun<Real> body(int i) const { return load<BodyInRun<Real>>(of_hinge(i) + released_numbers * lanes); }
         RunsEnd<Real> end() const {
-            prefetch<Real>(place, -kept_of_hinged_run * lanes, met_numbers * lanes);
+            if (asks_ahead()) prefetch<Real>(place, -kept_of_hinged_run * lanes, met_numbers * lanes);
             return load<RunsEnd<Real>>(place);
         }
 
@@ -136,6 +136,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             load_vectors<Real>(from, record);
             return record;
         }
+        bool asks_ahead() const { return all.work_.asks_ahead; }
         double* of_hinge(int i) const { return place + end_numbers * lanes + (i - 1) * numbers_of_hinge; }
         void watch(int i, unsigned bad) const {
             for (int j = 0; bad != 0 && j < lanes; ++j)
@@ -167,26 +168,23 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(in_tile.rotation, here)));
             turn_ = to_matrix_of_unit(state.turn);
             auto const axes1 = read(own.axes1, here);
-            Vector3 const axis = turn_ * Vector3{{axes1[3], axes1[4], axes1[5]}}, r1 = turn_ * read(own.r1, here), r2 = turn_ * read(own.r2, here);
+            Vector3 const axis = turn_ * Vector3{{axes1[3], axes1[4], axes1[5]}}, r1 = turn_ * read(own.r1, here),
+                          r2 = turn_ * read(own.r2, here);
             Real const rate = read(in_tile.hinge_rate, here)[0];
-            LoadedBodyInRun<Real> body{{axis, rate * cross(state.omega, axis), {}, r2 - r1},
-                                       -r2,
-                                       read(own.mass, here)[0],
-                                       turned(turn_, as_symmetric(read(own.inertia, here))),
-                                       {},
-                                       Vector3::zero()};
+            Vector3 const angular = rate * cross(state.omega, axis);
             state.omega = plus_scaled(state.omega, rate, axis);
             Real const square = dot(state.omega, state.omega);
             auto const inward = [&](Vector3 const& r) { return plus_scaled(dot(state.omega, r) * state.omega, -square, r); };
-            body.linear = state.inward - inward(r1);
+            Vector3 const linear = state.inward - inward(r1);
             state.inward = inward(r2);
-            body.torque = -cross(state.omega, body.inertia * state.omega);
+            Symmetric<Real, 3> const inertia = turned(turn_, as_symmetric(read(own.inertia, here)));
+            Vector3 torque = cross(inertia * state.omega, state.omega), force = Vector3::zero();
             if (all_.has_wrenches()) {
-                body.torque = body.torque + from_ground_ * read(all_.hinges().torque, here);
-                body.force = from_ground_ * read(all_.hinges().force, here);
+                torque = torque + from_ground_ * read(all_.hinges().torque, here);
+                force = from_ground_ * read(all_.hinges().force, here);
             }
             if (i >= count - 2 || all_.goes_by_all()) keep_omega(i);
-            return body;
+            return {{axis, angular, linear, r2 - r1}, -r2, read(own.mass, here)[0], inertia, torque, force};
         }
         HingedBody<Real> last(int i) {
             Column<Real> const here{i % part_length};
@@ -233,18 +231,18 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         RunsInLanes const& runs = work_.runs[item];
         InertiaRun<Real> begun;
         typename std::remove_reference_t<Bodies>::State first;
-        auto const segment =
-            climb_hinges<Real>(count, bodies, [&](int i) { return torque_about(i); }, Kept{*this, runs, place_of(item)},
-                               [&](int i, InertiaRun<Real>& run, auto& all) {
-                                   if (runs.late == 0 || runs.begins[i] == 0) return;
-                                   if (i == 0) {
-                                       begun = run;
-                                       first = all.state;
-                                   } else {
-                                       choose<Real>(runs.begins[i], begun, run);
-                                       choose<Real>(runs.begins[i], first, all.state);
-                                   }
-                               });
+        auto const segment = climb_hinges<Real>(
+            count, bodies, [&](int i) { return torque_about(i); }, Kept{*this, runs, place_of(item)},
+            [&](int i, InertiaRun<Real>& run, auto& all) {
+                if (runs.late == 0 || runs.begins[i] == 0) return;
+                if (i == 0) {
+                    begun = run;
+                    first = all.state;
+                } else {
+                    choose<Real>(runs.begins[i], begun, run);
+                    choose<Real>(runs.begins[i], first, all.state);
+                }
+            });
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
     }
@@ -262,7 +260,9 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         return transpose(to_matrix(as_quaternion(pick<Real>(work_.loads.hinges.orientation, runs.body))));
     }
     /// Of the hinge inboard of body i, within the run.
-    Real torque_about(int i) const { return in_tile().hinge_torque.origin ? read(in_tile().hinge_torque, Column<Real>{i % part_length})[0] : Real(0); }
+    Real torque_about(int i) const {
+        return in_tile().hinge_torque.origin ? read(in_tile().hinge_torque, Column<Real>{i % part_length})[0] : Real(0);
+    }
     /// What acts on body i from outside and by the joints at the runs' ends, where hinges' loads are given.
     void push(RunsInLanes const& runs, int i, Matrix3 const& from_ground, HingedBody<Real>& body) const {
         if (has_wrenches()) {

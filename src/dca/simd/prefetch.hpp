@@ -1,5 +1,5 @@
 // Memory asked for before its turn comes: a sweep goes along more arrays than a processor foresees by itself. Not into the nearest cache,
-// which the work of the moment fills.
+// which the work of the moment fills; and only where caches lack it (asks_ahead()): else asking takes a tenth of the time.
 #pragma once
 
 #include <cstdint>

@@ -6,16 +6,30 @@
 
 namespace catena::dca {
 
+/// Of a record's numbers: unrolled as a whole, so that they need not lie in memory before.
+#define CATENA_UNROLL_RECORD _Pragma("GCC unroll 128")
+
 /// Vectors one after the other.
 template <class Real, class Record>
 void store_vectors(double* to, Record const& record) {
     auto const* const values = reinterpret_cast<Real const*>(&record);
+    CATENA_UNROLL_RECORD
     for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n].store(to + n * Real::lanes);
 }
 template <class Real, class Record>
 void load_vectors(double const* from, Record& record) {
     auto* const values = reinterpret_cast<Real*>(&record);
+    CATENA_UNROLL_RECORD
     for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) values[n] = Real::load(from + n * Real::lanes);
+}
+
+/// In the lanes whose bits are set `yes`, of all vectors.
+template <class Real, class Record>
+void choose(unsigned lanes, Record const& yes, Record& all) {
+    auto const* const from = reinterpret_cast<Real const*>(&yes);
+    auto* const to = reinterpret_cast<Real*>(&all);
+    CATENA_UNROLL_RECORD
+    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) to[n] = Real::choose(lanes, from[n], to[n]);
 }
 
 /// action(n) for numbers n to n + 3, which together are all of `count`; some twice where they are not a multiple of four.

@@ -10,8 +10,8 @@ namespace catena::dca {
 
 inline constexpr int most_lanes = 8;
 
-/// Runs, one a lane, of `longest_run` columns; in the lanes that are left over the last one again. A shorter one has the last columns: before
-/// its first body's own that body stands again, and what comes of these is left out.
+/// Runs, one a lane, of `longest_run` columns; in the lanes that are left over the first one again. A shorter one has the last columns:
+/// before its first body's own that body stands again, and what comes of these is left out.
 struct RunsInLanes {
     std::int64_t body[most_lanes], slot[most_lanes], next[most_lanes];
     std::int64_t column[most_lanes];   // where column 0 would be: that of the first body, less skipped
@@ -39,13 +39,6 @@ struct PartInLanes {
         }
     }
 };
-/// In the lanes whose bits are set `yes`, of any record of vectors.
-template <class Real, class Record>
-void choose(unsigned lanes, Record const& yes, Record& all) {
-    auto const* const from = reinterpret_cast<Real const*>(&yes);
-    auto* const to = reinterpret_cast<Real*>(&all);
-    for (int n = 0; n < static_cast<int>(sizeof(Record) / sizeof(Real)); ++n) to[n] = Real::choose(lanes, from[n], to[n]);
-}
 
 /// action(view) for all of a group that bodies side by side do not turn over again in every sweep. A bead has too little of it.
 template <class Leaf, class Action>
@@ -91,6 +84,7 @@ struct RunWork {
     double const* constants = nullptr;  // [part of an item of `runs`][number][body][lane]
     double* nodes = nullptr;            // kept_of_run_of<Leaf> vectors for every item, from climb to descend
     bool keeps_all = false;             // of every body too, or joints between parts alone, the others being eliminated again
+    bool asks_ahead = false;            // as asks_ahead()
 };
 /// Vectors of a joint between segments, and of what a body passes on to the way down.
 template <int K>
@@ -102,8 +96,8 @@ constexpr int kept_of_run(bool keeps_all) {
     return (parts_of_run - 1) * node_numbers<K> + (keeps_all ? static_cast<int>(longest_run) * passed_numbers<K> : 0);
 }
 
-/// Of a run that goes by its inertias: its hinges with the bodies outboard of them, of which the way back wants some angular velocities; and
-/// its end, with the last hinge's axes and the last body's orientation.
+/// Of a run that goes by its inertias: its hinges with the bodies outboard of them, of which the way back wants some angular velocities;
+/// and its end, with the last hinge's axes and the last body's orientation.
 inline constexpr int released_numbers = static_cast<int>(sizeof(ReleasedHinge<double>) / sizeof(double));
 inline constexpr int passed_body_numbers = static_cast<int>(sizeof(BodyInRun<double>) / sizeof(double));
 inline constexpr int hinge_numbers = released_numbers + passed_body_numbers + 3;
@@ -125,6 +119,7 @@ struct MergeWork {
     TreeSweeps<Leaf> const& sweeps;
     MergesInLanes const* merges;
     double* nodes;  // node_numbers<K> vectors an item, from climb to descend
+    bool asks_ahead;
 };
 
 /// For items [begin, end) of RunWork::runs. climb: from the bodies to the runs' slots, matrices and biases at once; descend: from the

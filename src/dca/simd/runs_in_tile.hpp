@@ -93,7 +93,8 @@ class RunsInTile {
   protected:
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
 
-    explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
+    explicit RunsInTile(RunWork<Leaf> const& work)
+        : work_(work), tile_(work.asks_ahead), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
         if (View<2> const& of_hinges = work.out.hinge_acceleration; of_hinges.origin) {
             View<1> const first = tile_.out(component<Real>(of_hinges, 0));
             out_.hinge_acceleration = {first.origin, first.pitch, first.size};  // the other component goes straight to its place
@@ -114,10 +115,10 @@ class RunsInTile {
         if constexpr (constants_of<Leaf> > 0) {
             constexpr int block = constants_of<Leaf> * part_length * lanes;
             double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            prefetch<Real>(here, 2 * way * block, block);
+            if (work_.asks_ahead) prefetch<Real>(here, 2 * way * block, block);
             bodies_ = in_tile_.with({here});
             if constexpr (frame_constants<Leaf> > 0)
-                joint_frame_ = Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>) * part_length * lanes}.template next<4>();
+                joint_frame_ = Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>)*part_length * lanes}.template next<4>();
         }
     }
     void empty(RunsInLanes const& runs, int p) {
@@ -134,9 +135,10 @@ class RunsInTile {
   private:
     Tile<Real, by_runs ? longest_run : part_length> tile_;
     BodiesInTile<Real, Leaf> in_tile_;
+
   protected:
     Bodies bodies_;
-    Column<Real> begin_;  // of the part in the tile
+    Column<Real> begin_;          // of the part in the tile
     ConstView<4> joint_frame_{};  // as frame_constants
     AccelerationsView out_{};
 };

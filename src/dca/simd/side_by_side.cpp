@@ -37,6 +37,12 @@ constexpr std::size_t few_merges = 3;
 
 }  // namespace
 
+bool asks_ahead(ChainGroup const& group) {
+    // Measured with a cache of 32 MiB: 16,384 bodies take a tenth less without, 32,768 half as much again.
+    constexpr std::int64_t of_body = 1200, of_bead = 300, kept = std::int64_t{24} << 20;
+    return group.size * (group.beads ? of_bead : of_body) > kept;
+}
+
 RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, RunsTaken const& taken) {
     RunsDealtOut dealt;
     int lane = lanes;
@@ -53,9 +59,9 @@ RunsDealtOut deal_out_runs(ChainGroup const& group, int lanes, RunsTaken const& 
         }
         RunsInLanes& item = dealt.items.back();
         int const skipped = static_cast<int>(longest_run - run.count);
-        for (int same = lane; same < lanes; ++same) {
-            item.body[same] = run.body, item.slot[same] = run.slot, item.next[same] = run.next;
-            item.column[same] = run.body - skipped, item.skipped[same] = skipped;
+        for (int j = lane; j < (lane == 0 ? lanes : lane + 1); ++j) {
+            item.body[j] = run.body, item.slot[j] = run.slot, item.next[j] = run.next;
+            item.column[j] = run.body - skipped, item.skipped[j] = skipped;
         }
         ++lane;
     }

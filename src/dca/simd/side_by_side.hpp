@@ -16,6 +16,9 @@ struct RunsDealtOut {
     std::vector<RunsInLanes> items;
     std::vector<Run> others;
 };
+/// Whether this rank's bodies are more than caches keep from one sweep to the next.
+bool asks_ahead(ChainGroup const&);
+
 /// Which runs may go side by side.
 struct RunsTaken {
     bool of_parts;         // those too that are shorter than runs are, but not shorter than a part, where that pays
@@ -83,6 +86,7 @@ class SideBySide {
         if (level == SimdLevel::off) return;
         lanes_ = lanes_of(level);
         kernels_ = kernels_of<Leaf>(level);
+        asks_ahead_ = asks_ahead(group);
         runs_ = deal_out_runs(group, lanes_, {Leaf::by_inertia, Leaf::reads_neighbours});
         keeps_all_ = !Leaf::beads && !Leaf::by_inertia && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
         nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run_of<Leaf>(keeps_all_));
@@ -113,6 +117,7 @@ class SideBySide {
         work.constants = constants_.data();
         work.nodes = nodes_.data();
         work.keeps_all = keeps_all_;
+        work.asks_ahead = asks_ahead_;
         space.over_ranges(items(), lanes_, [&](std::int64_t begin, std::int64_t end) { kernels_.climb(work, begin, end); });
     }
     template <class Space>
@@ -131,12 +136,12 @@ class SideBySide {
   private:
     template <class Space, class Kernel>
     void over_level(Space const& space, TreeSweeps<Leaf> const& sweeps, std::size_t l, Kernel const& kernel) {
-        MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data()};
+        MergeWork<Leaf> const work{sweeps, levels_[l].items.data(), merge_nodes_[l].data(), asks_ahead_};
         space.over_ranges(std::ssize(levels_[l].items), 2, [&](std::int64_t begin, std::int64_t end) { kernel(work, begin, end); });
     }
     RunKernels<Leaf> kernels_{};
     int lanes_ = 1;
-    bool keeps_all_ = false;
+    bool keeps_all_ = false, asks_ahead_ = false;
     RunsDealtOut runs_;
     std::vector<LevelDealtOut> levels_;
     AlignedNumbers nodes_, constants_;

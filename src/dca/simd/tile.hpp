@@ -94,6 +94,7 @@ class Tile {
     static constexpr int lanes = Real::lanes, columns = length + 2, most = 64;
 
   public:
+    explicit Tile(bool asks_ahead) : asks_ahead_(asks_ahead) {}
     /// The same view of the tile; none of none. `neighbours`: columns -1 and `length` too.
     template <int D>
     ConstView<D> in(ConstView<D> view, bool neighbours = false) {
@@ -131,7 +132,7 @@ class Tile {
             double const* const from = source_[n].origin;
             double* const to = place(n);
             for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
-            for (int i = 0; i < length; i += numbers_of_line)
+            for (int i = 0; asks_ahead_ && i < length; i += numbers_of_line)
                 for (int j = 0; j < lanes; ++j) prefetch<Real>(from, i + first[j] + ahead);
             if (!source_[n].neighbours) continue;
             Real::pick(from - 1, first).store(to - lanes);
@@ -152,7 +153,7 @@ class Tile {
     void empty(std::int64_t const* first, std::int64_t ahead) {
         for (int n = 0; n < written_; ++n) {
             for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
-            for (int i = 0; i < length; i += numbers_of_line)
+            for (int i = 0; asks_ahead_ && i < length; i += numbers_of_line)
                 for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], i + first[j] + ahead);
         }
     }
@@ -172,6 +173,7 @@ class Tile {
         double const* origin;
         bool neighbours;
     };
+    bool asks_ahead_;
     int count_ = 0, written_ = 0;
     Source source_[most];
     double* target_[most];

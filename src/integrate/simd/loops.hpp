@@ -16,9 +16,10 @@ class FollowRuns {
     using Column = dca::Column<Real>;
 
   public:
-    explicit FollowRuns(JointScan const& s)
+    FollowRuns(JointScan const& s, bool asks_ahead)
         : joints_(s.joints),
           whole_(s.whole),
+          tile_(asks_ahead),
           rotation_(tile_.in(ConstView<4>(s.rotation))),
           omega_(tile_.in(ConstView<3>(s.omega))),
           to_rotation_(tile_.out(s.rotation)),
@@ -94,9 +95,11 @@ class FollowHinges {
     using Vector3 = Vector<Real, 3>;
 
   public:
-    FollowHinges(JointLoads const& loads, double const* constants)
+    FollowHinges(JointLoads const& loads, double const* constants, bool asks_ahead)
         : scan_(loads.scan),
           constants_(constants),
+          asks_ahead_(asks_ahead),
+          tile_(asks_ahead),
           q_(coordinate(scan_.state.q)),
           qd_(coordinate(scan_.state.qd)),
           turn_(tile_.out(scan_.motion.joint_turn)) {
@@ -120,7 +123,7 @@ class FollowHinges {
             dca::PartInLanes<Real> const bodies(runs, p);
             tile_.fill(bodies, bodies_of_item);
             double const* const here = constants_ + (item * dca::parts_of_run + p) * block;
-            dca::prefetch<Real>(here, 2 * block, block);
+            if (asks_ahead_) dca::prefetch<Real>(here, 2 * block, block);
             dca::Constants<Real> constants{here};
             auto const axis = constants.template next<3>();
             auto const frame = constants.template next<4>();
@@ -187,6 +190,7 @@ class FollowHinges {
     }
     JointScan const& scan_;
     double const* constants_;
+    bool asks_ahead_;
     dca::Tile<Real, part> tile_;
     ConstView<1> q_, qd_, torque_, stiffness_, rest_, damping_;
     View<4> turn_;
@@ -210,35 +214,36 @@ void begin_runs(JointScan const& s, dca::RunsInLanes const& runs) {
 template <class Real, bool positions>
 struct LoopsOf {
     using Bodies = dca::Abreast<Real>;
-    [[gnu::flatten]] static void set_relative(JointChains const& chains, std::int64_t const* first, std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.template set_relative<positions>(Bodies{first[i]});
+    [[gnu::flatten]] static void set_relative(JointChains const& chains, BodiesAbreast const& bodies, std::int64_t begin,
+                                              std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) chains.template set_relative<positions>(Bodies{bodies.first[i], bodies.asks_ahead});
     }
-    [[gnu::flatten]] static void follow(JointScan const& scan, dca::RunsInLanes const* runs, std::int64_t begin, std::int64_t end) {
-        FollowRuns<Real, positions> lanes(scan);
-        for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs[i]);
+    [[gnu::flatten]] static void follow(JointScan const& scan, RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+        FollowRuns<Real, positions> lanes(scan, runs.asks_ahead);
+        for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items[i]);
     }
-    [[gnu::flatten]] static void follow_hinges(JointLoads const& loads, dca::RunsInLanes const* runs, double const* constants,
+    [[gnu::flatten]] static void follow_hinges(JointLoads const& loads, RunsAbreast const& runs, double const* constants,
                                                std::int64_t begin, std::int64_t end) {
-        FollowHinges<Real> lanes(loads, constants);
-        for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs, i);
+        FollowHinges<Real> lanes(loads, constants, runs.asks_ahead);
+        for (std::int64_t i = begin; i < end; ++i) lanes.follow(runs.items, i);
     }
-    [[gnu::flatten]] static void begin_runs(JointScan const& scan, dca::RunsInLanes const* runs, std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) catena::begin_runs<Real>(scan, runs[i]);
+    [[gnu::flatten]] static void begin_runs(JointScan const& scan, RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) catena::begin_runs<Real>(scan, runs.items[i]);
     }
-    [[gnu::flatten]] static void set_motion(JointChains const& chains, std::int64_t const* first, std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.template set_motion<positions>(Bodies{first[i]}, false);
+    [[gnu::flatten]] static void set_motion(JointChains const& chains, BodiesAbreast const& bodies, std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i < end; ++i) chains.template set_motion<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, false);
     }
-    [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out, std::int64_t const* first, std::int64_t begin,
+    [[gnu::flatten]] static void set_rates(JointChains const& chains, RatesView const& out, BodiesAbreast const& bodies, std::int64_t begin,
                                            std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) chains.set_rates(Bodies{first[i]}, out);
+        for (std::int64_t i = begin; i < end; ++i) chains.set_rates(Bodies{bodies.first[i], bodies.asks_ahead}, out);
     }
-    [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage, std::int64_t const* first,
+    [[gnu::flatten]] static void runge_kutta(JointSteps const& steps, RungeKuttaStage const& stage, BodiesAbreast const& bodies,
                                              std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) steps.template runge_kutta<positions>(Bodies{first[i]}, stage);
+        for (std::int64_t i = begin; i < end; ++i) steps.template runge_kutta<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, stage);
     }
-    [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps, EmbeddedStage const& stage, std::int64_t const* first,
+    [[gnu::flatten]] static void embedded_stage(EmbeddedSteps const& steps, EmbeddedStage const& stage, BodiesAbreast const& bodies,
                                                 std::int64_t begin, std::int64_t end) {
-        for (std::int64_t i = begin; i < end; ++i) steps.template advance<positions>(Bodies{first[i]}, stage);
+        for (std::int64_t i = begin; i < end; ++i) steps.template advance<positions>(Bodies{bodies.first[i], bodies.asks_ahead}, stage);
     }
     static constexpr JointLoops loops() {
         return {set_relative, follow, follow_hinges, begin_runs, set_motion, set_rates, runge_kutta, embedded_stage};
