@@ -12,14 +12,14 @@ namespace catena::cuda::kernels {
 constexpr int lanes_of_team = 4;
 constexpr std::int64_t most_runs_of_teams = 16384;  // more keep a GPU busy with a thread each
 
-/// Some of a run's bodies in turn, for each of a warp's teams.
+/// Bodies of a run, for each of a warp's teams: so many at a time as `T` says.
 template <class T>
 class BodiesOfTeam {
     static constexpr int teams = 32 / lanes_of_team;
     using Records = PackedRecords<T, numbers_of<T>>;
 
   public:
-    static constexpr int at_once = 8;  // more would leave less room for other warps
+    static constexpr int at_once = T::at_once;
     static_assert(at_once % lanes_of_team == 0 && dca::longest_run % at_once == 0);
     static constexpr std::size_t numbers = Records::size(teams * at_once);
     __device__ BodiesOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes_of_team) {}
@@ -31,9 +31,12 @@ class BodiesOfTeam {
     int team_;
 };
 /// What a run needs of a body to go on to it.
-using BodyAhead = dca::LoadedBodyInRun<double>;
+struct BodyAhead : dca::LoadedBodyInRun<double> {
+    static constexpr int at_once = static_cast<int>(dca::longest_run);  // found before what the way up needs takes the registers
+};
 /// And to come back from it.
 struct HingeBehind {
+    static constexpr int at_once = 8;  // more would leave less room for other warps
     dca::ReleasedHinge<double> hinge;
     dca::BodyInRun<double> body;
 };
@@ -51,12 +54,10 @@ class HingeTeam {
     /// As dca::climb_hinges(), of dca::longest_run bodies, where the team's first lane keeps; all lanes of the warp come to these.
     template <class BodyOf, class Kept>
     __device__ dca::BiasedSegment<double, 5> climb(BodyOf const& body, BodiesOfTeam<BodyAhead> const& bodies, Kept& kept) {
+        Prepared const last_one = prepare(body, bodies);
         begin(body(0));
-        Prepared last_one{};
         CATENA_NO_UNROLL
-        for (int i = 0; i < count - 1; ++i) {
-            if (i % at_once == 0) prepare(body, i, last_one, bodies);
-            if (i == 0) continue;
+        for (int i = 1; i < count - 1; ++i) {
             BodyAhead const ahead = bodies.get(i);
             dca::ReleasedHinge<double> const hinge = go_on(ahead);
             if (leads()) kept.put(i, hinge, ahead);
@@ -87,6 +88,7 @@ class HingeTeam {
             __device__ Mat3 axes() const { return kept.axes(); }
         } const kept_here{bodies, kept};
         auto const at = [&](int i, dca::BodyAcceleration<double>&) {
+            constexpr int at_once = HingeBehind::at_once;
             if (i != count - 2 && i % at_once != at_once - 1) return;
             __syncwarp();  // the others are read
             CATENA_NO_UNROLL
@@ -98,7 +100,7 @@ class HingeTeam {
     }
 
   private:
-    static constexpr int count = static_cast<int>(dca::longest_run), at_once = BodiesOfTeam<BodyAhead>::at_once;
+    static constexpr int count = static_cast<int>(dca::longest_run);
     static constexpr int before_last = (count - 2) % lanes_of_team;  // lane that has this body
 
     /// What the bodies after it want of one, as dca::BodiesOfRun::State.
@@ -106,12 +108,12 @@ class HingeTeam {
         Mat3 turn, axes2;
         Vec3 inward;
     };
-    /// Bodies from `begin` on, of which each lane has the last of its own, `own`.
+    /// All bodies; returns the last of the lane's own.
     template <class BodyOf>
-    __device__ void prepare(BodyOf const& body, int begin, Prepared& own, BodiesOfTeam<BodyAhead> const& bodies) const {
-        __syncwarp();  // the others are read
+    __device__ Prepared prepare(BodyOf const& body, BodiesOfTeam<BodyAhead> const& bodies) const {
+        Prepared own{};
         CATENA_NO_UNROLL
-        for (int first = begin; first < begin + at_once; first += lanes_of_team) {
+        for (int first = 0; first < count; first += lanes_of_team) {
             Body const here = body(first + own_);
             int const before = leader_ + (own_ + lanes_of_team - 1) % lanes_of_team;
             Mat3 const neighbours = from_lane(here.e2, before), of_others = from_last(own.axes2);
@@ -125,10 +127,11 @@ class HingeTeam {
             }
             Vec3 const inward = mine * here.inward2;
             Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
-            bodies.put(first + own_, in_run(here, mine, own_ == 0 ? of_last : inward_before));
+            bodies.put(first + own_, {in_run(here, mine, own_ == 0 ? of_last : inward_before)});
             own = {mine, here.e2, inward};
         }
         __syncwarp();
+        return own;
     }
     /// Of the team's last lane.
     template <class T>

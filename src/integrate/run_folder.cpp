@@ -142,10 +142,11 @@ void RunFolder::put(std::span<Frame const> parts) {
 
 void RunFolder::end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables) {
     with_frames([&] { trajectory_->end(tip_forces); });
-    on_disk([&] {
-        throw_kept();
-        observables_->write(step_, time_, observables);
-    });
+    if (communicator_.rank() == 0) keeping_failure([&] { observables_->write(step_, time_, observables); });
+}
+
+void RunFolder::check() {
+    on_disk([&] { throw_kept(); });
 }
 
 void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system, ChainSystem::OwnState const& own) {

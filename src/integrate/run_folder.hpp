@@ -34,6 +34,8 @@ class RunFolder {
     void begin(std::int64_t step, double time);
     void put(std::span<Frame const> parts);
     void end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables);
+    /// Throws what failed since begin(), where that is not collective. Collective.
+    void check();
     /// With the arrays of bodies that ranks have of the system.
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
     /// Closes the tables, writes summary, timeline and report.

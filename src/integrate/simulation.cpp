@@ -135,9 +135,28 @@ class Run {
     }
     ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }
 
+    /// On one rank, of many bodies, the frame is written by a thread of its own while steps go on, until something else is to be written.
     void output(std::int64_t n, double error) {
+        end_frame();
         Observed now = at_start_ ? std::move(*at_start_) : observed();
         if (!now.bodies) now.bodies = own_bodies();
+        std::vector<Vector<double, 6>> at_tips;
+        if (scene_.output.joint_forces)
+            for (TipForce const& tip : system_.tip_forces()) at_tips.push_back(tip.wrench);
+        bool const beside = communicator_.size() == 1 && scene_.bodies() >= worth_a_thread;
+        // Where no thread is to be had, it waits for end_frame().
+        frame_ = std::async(beside ? std::launch::async | std::launch::deferred : std::launch::deferred,
+                            [this, n, error, now = std::move(now), at_tips = std::move(at_tips)] { write(n, error, now, at_tips); });
+        if (!beside) end_frame();
+    }
+    /// The frame that is being written, if one is. Throws what it failed by.
+    void end_frame() {
+        if (!frame_.valid()) return;
+        frame_.get();
+        folder_->check();
+    }
+    /// Collective; on one rank no message is sent.
+    void write(std::int64_t n, double error, Observed const& now, std::vector<Vector<double, 6>> const& at_tips) {
         folder_->begin(n, time(n));
         observables_->begin();
         bool const together = folder_->frames_way().collective;
@@ -151,9 +170,6 @@ class Run {
             added.get();
         });
         if (together) put_own(*now.bodies);
-        std::vector<Vector<double, 6>> at_tips;
-        if (scene_.output.joint_forces)
-            for (TipForce const& tip : system_.tip_forces()) at_tips.push_back(tip.wrench);
         if (root_) last_row_ = observables_->row(now.terms, error);
         folder_->end(at_tips, last_row_);
     }
@@ -210,6 +226,7 @@ class Run {
     }
 
     void checkpoint(std::int64_t n) {
+        end_frame();
         Checkpoint c;
         c.step = n;
         c.time = time(n);
@@ -339,6 +356,7 @@ class Run {
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0;
     int stopped_by_ = 0;
+    std::future<void> frame_;  // last: it ends before what it uses
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Memory asked for before its turn comes: a sweep goes along more arrays than a processor foresees by itself. Not into the nearest cache,
-// which the work of the moment fills; and only where caches lack it (asks_ahead()): else asking takes a tenth of the time.
+// Memory asked for before its turn comes: a sweep goes along more arrays than a processor foresees by itself. Only where caches lack it
+// (asks_ahead()): else asking takes a tenth of the time.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ void const* place_ahead(double const* array, std::int64_t ahead) {
 
 template <class Real>
 void prefetch(double const* array, std::int64_t ahead) {
-    __builtin_prefetch(place_ahead<Real>(array, ahead), 0, 2);
+    __builtin_prefetch(place_ahead<Real>(array, ahead), 0, 3);
 }
 template <class Real>
 void prefetch_to_write(double const* array, std::int64_t ahead) {

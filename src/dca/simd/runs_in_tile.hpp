@@ -109,7 +109,8 @@ class RunsInTile {
         begin_ = {by_runs ? p * part_length : 0};
         bool const not_all = way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force;
         if (!by_runs)
-            tile_.fill(PartInLanes<Real>(runs, p), way * bodies_of_item, not_all ? in_tile_.on_way_back : tile_.count());
+            tile_.fill(PartInLanes<Real>(runs, p), ahead_of_part<Real>(p, way * bodies_of_item),
+                       not_all ? in_tile_.on_way_back : tile_.count());
         else if (p == (way > 0 ? 0 : parts_of_run - 1))
             tile_.fill(runs.body, way * bodies_of_item);
         if constexpr (constants_of<Leaf> > 0) {
@@ -123,7 +124,7 @@ class RunsInTile {
     }
     void empty(RunsInLanes const& runs, int p) {
         if (!by_runs)
-            tile_.empty(PartInLanes<Real>(runs, p), -bodies_of_item);
+            tile_.empty(PartInLanes<Real>(runs, p), ahead_of_part<Real>(p, -bodies_of_item));
         else if (p == 0)
             tile_.empty(runs.body, -bodies_of_item);
     }

@@ -88,6 +88,13 @@ struct Constants {
     }
 };
 
+/// How far ahead of part p to ask, of every other one: a line of the cache has two parts.
+template <class Real>
+constexpr std::int64_t ahead_of_part(int p, std::int64_t ahead) {
+    static_assert(2 * part_length == numbers_of_line);
+    return p % 2 == 0 ? ahead : 0;
+}
+
 /// Of `length` bodies of each run.
 template <class Real, int length>
 class Tile {
@@ -125,14 +132,14 @@ class Tile {
     }
     /// How many numbers of a body it reads.
     int count() const { return count_; }
-    /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time. `count`: numbers, those of views that came
+    /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time (0: nothing). `count`: numbers, those of views that came
     /// first.
     void fill(std::int64_t const* first, std::int64_t ahead, int count) {
         for (int n = 0; n < count; ++n) {
             double const* const from = source_[n].origin;
             double* const to = place(n);
             for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
-            for (int i = 0; asks_ahead_ && i < length; i += numbers_of_line)
+            for (int i = 0; asks_ahead_ && ahead != 0 && i < length; i += numbers_of_line)
                 for (int j = 0; j < lanes; ++j) prefetch<Real>(from, i + first[j] + ahead);
             if (!source_[n].neighbours) continue;
             Real::pick(from - 1, first).store(to - lanes);
@@ -153,7 +160,7 @@ class Tile {
     void empty(std::int64_t const* first, std::int64_t ahead) {
         for (int n = 0; n < written_; ++n) {
             for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
-            for (int i = 0; asks_ahead_ && i < length; i += numbers_of_line)
+            for (int i = 0; asks_ahead_ && ahead != 0 && i < length; i += numbers_of_line)
                 for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], i + first[j] + ahead);
         }
     }

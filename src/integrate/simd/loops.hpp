@@ -40,7 +40,7 @@ class FollowRuns {
         Motions m{};
         for (int p = 0; p < dca::parts_of_run; ++p) {
             dca::PartInLanes<Real> const bodies(runs, p);
-            tile_.fill(bodies, bodies_of_item);
+            tile_.fill(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
             for (Column k{0}; k.at < part; ++k.at) {
                 unsigned const begin = runs.begins[p * part + k.at];
                 Motions const own = load(k);
@@ -53,7 +53,7 @@ class FollowRuns {
                 }
                 store(k, m);
             }
-            tile_.empty(bodies, bodies_of_item);
+            tile_.empty(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
         }
         m.rotation = normalized(m.rotation);
         dca::scatter<Real>(m, whole_, runs.slot);
@@ -121,7 +121,7 @@ class FollowHinges {
         Motions m{};
         for (int p = 0; p < dca::parts_of_run; ++p) {
             dca::PartInLanes<Real> const bodies(runs, p);
-            tile_.fill(bodies, bodies_of_item);
+            tile_.fill(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
             double const* const here = constants_ + (item * dca::parts_of_run + p) * block;
             if (asks_ahead_) dca::prefetch<Real>(here, 2 * block, block);
             dca::Constants<Real> constants{here};
@@ -145,7 +145,7 @@ class FollowHinges {
                 write(turn_, k, as_vector(of.turn));
                 if (to_load_.origin) write(to_load_, k, of.torque);
             }
-            tile_.empty(bodies, bodies_of_item);
+            tile_.empty(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
         }
         m.rotation = normalized(m.rotation);
         dca::scatter<Real>(m, scan_.whole, runs.slot);
