@@ -12,31 +12,33 @@ namespace catena::cuda::kernels {
 constexpr int lanes_of_team = 4;
 constexpr std::int64_t most_runs_of_teams = 16384;  // more keep a GPU busy with a thread each
 
-/// Bodies of a run, for each of a warp's teams: so many at a time as `T` says.
+/// Bodies of a run, for each of a warp's teams: in T::slots, of which body i has T::slot(i).
 template <class T>
 class BodiesOfTeam {
     static constexpr int teams = 32 / lanes_of_team;
     using Records = PackedRecords<T, numbers_of<T>>;
 
   public:
-    static constexpr int at_once = T::at_once;
-    static_assert(at_once % lanes_of_team == 0 && dca::longest_run % at_once == 0);
-    static constexpr std::size_t numbers = Records::size(teams * at_once);
+    static constexpr std::size_t numbers = Records::size(teams * T::slots);
     __device__ BodiesOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes_of_team) {}
-    __device__ void put(int i, T const& of_body) const { records_.store(i % at_once * teams + team_, of_body); }
-    __device__ T get(int i) const { return records_.load(i % at_once * teams + team_); }
+    __device__ void put(int i, T const& of_body) const { records_.store(T::slot(i) * teams + team_, of_body); }
+    __device__ T get(int i) const { return records_.load(T::slot(i) * teams + team_); }
 
   private:
     Records records_;
     int team_;
 };
-/// What a run needs of a body to go on to it.
+/// What a run needs of a body to go on to it. All are found before what the way up needs takes the registers; not those of the first and
+/// the last, so that eight warps have room.
 struct BodyAhead : dca::LoadedBodyInRun<double> {
-    static constexpr int at_once = static_cast<int>(dca::longest_run);  // found before what the way up needs takes the registers
+    static constexpr int slots = static_cast<int>(dca::longest_run) - 2;
+    __device__ static int slot(int i) { return i - 1; }
 };
-/// And to come back from it.
+/// And to come back from it: some in turn.
 struct HingeBehind {
-    static constexpr int at_once = 8;  // more would leave less room for other warps
+    static constexpr int slots = 8;
+    static_assert(slots % lanes_of_team == 0 && dca::longest_run % slots == 0);
+    __device__ static int slot(int i) { return i % slots; }
     dca::ReleasedHinge<double> hinge;
     dca::BodyInRun<double> body;
 };
@@ -88,11 +90,11 @@ class HingeTeam {
             __device__ Mat3 axes() const { return kept.axes(); }
         } const kept_here{bodies, kept};
         auto const at = [&](int i, dca::BodyAcceleration<double>&) {
-            constexpr int at_once = HingeBehind::at_once;
-            if (i != count - 2 && i % at_once != at_once - 1) return;
+            constexpr int slots = HingeBehind::slots;
+            if (i != count - 2 && i % slots != slots - 1) return;
             __syncwarp();  // the others are read
             CATENA_NO_UNROLL
-            for (int k = i - i % at_once + own_; k <= i; k += lanes_of_team)
+            for (int k = i - i % slots + own_; k <= i; k += lanes_of_team)
                 if (k > 0) bodies.put(k, {kept.hinge(k), kept.body(k)});
             __syncwarp();
         };
@@ -127,7 +129,8 @@ class HingeTeam {
             }
             Vec3 const inward = mine * here.inward2;
             Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
-            bodies.put(first + own_, {in_run(here, mine, own_ == 0 ? of_last : inward_before)});
+            BodyAhead const ahead{in_run(here, mine, own_ == 0 ? of_last : inward_before)};
+            if (int const i = first + own_; i > 0 && i < count - 1) bodies.put(i, ahead);
             own = {mine, here.e2, inward};
         }
         __syncwarp();

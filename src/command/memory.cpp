@@ -28,12 +28,13 @@ double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes size
     using InJoints = dca::BodyLeaf<5, dca::MeetingFrames<5, false>>;
     using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
     bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
-    int const constants = chain.is_beads() ? 0 : joints ? dca::constants_of<InJoints> : dca::constants_of<InGround>;
     double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
     double const merge = sizes.kept / (dca::parts_of_run - 1);
     std::vector<JointType> const& types = chain.bodies.joint;
     bool const hinges =
         joints && directions == InJoints::K && std::none_of(types.begin(), types.end(), [](JointType t) { return slides(t); });
+    int const in_joints = dca::constants_of<InJoints> - (hinges ? 0 : dca::frame_constants<InJoints>);
+    int const constants = chain.is_beads() ? 0 : joints ? in_joints : dca::constants_of<InGround>;
     if (hinges) sizes.kept = sizes.all_kept = dca::kept_of_run_of<InJoints>(true) * 8.0;
     bool const all = !chain.is_beads() && dca::may_keep_all(static_cast<std::int64_t>(runs * sizes.all_kept / sizeof(double)));
     return places + (all ? sizes.all_kept : sizes.kept) + merge + static_cast<double>(dca::longest_run * constants) * sizeof(double);
