@@ -129,7 +129,8 @@ TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
                                 b.stiffness.assign(b.joint.size(), ones), b.damping.assign(b.joint.size(), ones);
                             }}};
     for (char const* const base : {"base: free, ", "base: fixed, "})
-        for (auto const& [bodies, next] : std::vector<std::pair<int, int>>{{1, 16}, {2, 17}, {4, 5}, {9, 15}, {16, 33}, {17, 1}, {70, 2}, {333, 129}})
+        for (auto const& [bodies, next] :
+             std::vector<std::pair<int, int>>{{1, 16}, {2, 17}, {4, 5}, {9, 15}, {16, 33}, {17, 1}, {70, 2}, {333, 129}})
             for (Loads const& of : loads) {
                 SCOPED_TRACE(std::string(base) + std::to_string(bodies) + ", " + std::to_string(next) + ", " + of.name);
                 auto const chain = [&](int seed, int length) {
