@@ -90,7 +90,7 @@ class SideBySide {
         runs_ = deal_out_runs(group, lanes_, {Leaf::by_inertia, Leaf::reads_neighbours});
         keeps_all_ = !Leaf::beads && !Leaf::by_inertia && may_keep_all(items() * lanes_ * kept_of_run<Leaf::K>(true));
         nodes_ = AlignedNumbers(items() * lanes_ * kept_of_run_of<Leaf>(keeps_all_));
-        constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&view, &group](std::int64_t k, double* place) {
+        constants_ = constants_in_lanes(runs_.items, lanes_, constants_of<Leaf>, [&](std::int64_t k, double* place) {
             each_constant<Leaf>(view, [&place, k]<int D>(ConstView<D> const& field) {
                 auto const numbers = field.load(k);
                 place = std::copy_n(numbers.data, D, place);
