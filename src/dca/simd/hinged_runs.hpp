@@ -164,13 +164,12 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
             Column<Real> const here{i % part_length};
             GroupView const& own = leaf().group();
-            BodiesInTile<Real, Leaf> const& in_tile = all_.in_tile();
-            state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(in_tile.rotation, here)));
+            state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(all_.in_tile().rotation, here)));
             turn_ = to_matrix_of_unit(state.turn);
             auto const axes1 = read(own.axes1, here);
             Vector3 const axis = turn_ * Vector3{{axes1[3], axes1[4], axes1[5]}}, r1 = turn_ * read(own.r1, here),
                           r2 = turn_ * read(own.r2, here);
-            Real const rate = read(in_tile.hinge_rate, here)[0];
+            Real const rate = read(all_.bodies_.loads.hinge_rate, here)[0];
             Vector3 const angular = rate * cross(state.omega, axis);
             state.omega = plus_scaled(state.omega, rate, axis);
             Real const square = dot(state.omega, state.omega);
@@ -190,7 +189,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             Column<Real> const here{i % part_length};
             auto body = leaf().hinged_at_rest(all_.bodies_.loads, here);
             Matrix3 const turn = axes_ * transpose(body.e1);
-            Vector3 const omega = transposed_times(turn, state.omega) + read(all_.in_tile().hinge_rate, here)[0] * body.e1.column(2);
+            Vector3 const omega = transposed_times(turn, state.omega) + read(all_.bodies_.loads.hinge_rate, here)[0] * body.e1.column(2);
             all_.set_moving(runs_, i, omega, body);
             leaf().add_gyroscopic(all_.bodies_.loads, omega, body);
             Matrix3 from_ground;

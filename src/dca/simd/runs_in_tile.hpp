@@ -32,7 +32,7 @@ class BodiesInTile {
             if constexpr (Frames::any_forces) group_.screw = tile.in(work.group.screw, true);
             loads_.hinges.given = work.loads.hinges.given;
             loads_.gyroscopic = work.loads.gyroscopic || loads_.hinges.given;
-            hinge_rate = loads_.hinge_rate = tile.in(work.loads.hinge_rate);
+            loads_.hinge_rate = tile.in(work.loads.hinge_rate);
             if (!loads_.hinge_rate.origin) loads_.bias = tile.template in_directions<K>(work.loads.bias);
             if (!loads_.hinges.given) {
                 loads_.omega = tile.in(work.loads.omega);
@@ -52,7 +52,7 @@ class BodiesInTile {
     }
     ConstView<4> rotation{};
     // Where hinges' loads are given.
-    ConstView<1> hinge_torque{}, hinge_rate{};
+    ConstView<1> hinge_torque{};
     int on_way_back = 0;  // numbers that accelerations need, of the tile's
 
     /// Those of a part.
