@@ -166,11 +166,11 @@ class HingeTeam {
         for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes_of_team], j % lanes_of_team);
         h.bias = of_lane(along[bias / lanes_of_team], bias % lanes_of_team);
         Wrench with_bias = wrench_[1];
-        differ(with_bias, all_, body);
+        take_difference(with_bias, all_, body);
         CATENA_UNROLL
         for (int s = 0; s < 2; ++s) {
             gain_row(h, along[s], bias - 1, row_[s], e_[s]);
-            differ(e_[s], wrench_[s], body);
+            take_difference(e_[s], wrench_[s], body);
         }
         bool const has_bias = own_ == bias % lanes_of_team;
         if (has_bias) wrench_[1] = with_bias;

@@ -74,8 +74,8 @@ struct Resting {
     }
 };
 
-/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end() and
-/// hinge() are asked for was put.
+/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end(), hinge()
+/// and body() are asked for was put; axes(): of a run of three bodies or more.
 template <class Sweeps>
 class HingesInJoints {
     using Hinge = ReleasedHinge<double>;
@@ -203,7 +203,7 @@ struct Evaluation {
             [](int, BodyAcceleration<double>&) {}, [&](int i, double of_hinge) { turn(run, i, of_hinge); });
     }
     /// Whether anything is wanted of each of a run's bodies.
-    CATENA_HD bool goes_by_all() const { return !out.hinge_acceleration.origin || out.joint_force; }
+    CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }
     /// What is wanted of body i of a run on hinges.
     CATENA_HD void accelerate(Run const& run, int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) const {
         std::int64_t const k = run.body + i;

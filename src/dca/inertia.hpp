@@ -15,7 +15,8 @@ template <class Real>
 struct Wrench {
     Vector<Real, 3> torque, force;
 };
-/// A hinge when it was released: I along it, its own share's inverse, and the parts that bias and first have in it. At the meeting point.
+/// A hinge when it was released: I along it, its own share's inverse, and the parts that bias and first have in it. About the
+/// meeting point, in the axes of the run, but those of the run's last hinge in its own.
 template <class Real>
 struct ReleasedHinge {
     Vector<Real, 3> turning, moving;

@@ -85,13 +85,13 @@ CATENA_HD void gain_row(ReleasedHinge<Real> const& h, Real const& first, int j, 
 
 /// By what accelerations on the hinge's two sides differ: the bias's share. `all`: released.
 template <class Real>
-CATENA_HD void differ(Wrench<Real>& bias, SpatialInertia<Real> const& all, BodyInRun<Real> const& body) {
+CATENA_HD void take_difference(Wrench<Real>& bias, SpatialInertia<Real> const& all, BodyInRun<Real> const& body) {
     bias.torque = bias.torque - (all.turning * body.angular + all.coupling * body.linear);
     bias.force = bias.force - (transposed_times(all.coupling, body.angular) + all.moving * body.linear);
 }
 /// And that of e, by `first` of its row.
 template <class Real>
-CATENA_HD void differ(Real& e, Wrench<Real> const& first, BodyInRun<Real> const& body) {
+CATENA_HD void take_difference(Real& e, Wrench<Real> const& first, BodyInRun<Real> const& body) {
     e = e - (dot(first.torque, body.angular) + dot(first.force, body.linear));
 }
 /// Past the hinge inboard of `body`.
@@ -114,10 +114,10 @@ CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, BodyInRun<Real> 
     return h;
 }
 template <class Real>
-CATENA_HD void differ(InertiaRun<Real>& run, BodyInRun<Real> const& body) {
-    differ(run.bias, run.inertia, body);
+CATENA_HD void take_difference(InertiaRun<Real>& run, BodyInRun<Real> const& body) {
+    take_difference(run.bias, run.inertia, body);
     CATENA_UNROLL
-    for (int j = 0; j < 5; ++j) differ(run.e[j], run.first[j], body);
+    for (int j = 0; j < 5; ++j) take_difference(run.e[j], run.first[j], body);
 }
 /// Of one body: its `first` along direction j, and e of that row.
 template <class Real>
@@ -176,7 +176,7 @@ CATENA_HD LoadedBodyInRun<Real> in_run(HingedBody<Real> const& body, Matrix<Real
 template <class Real, class Torque>
 CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, LoadedBodyInRun<Real> const& body, Torque const& torque) {
     ReleasedHinge<Real> const hinge = pass_hinge(run, body, torque);
-    differ(run, body);
+    take_difference(run, body);
     move_point(run.inertia, body.across);
     move_point(run.bias, body.across);
     CATENA_UNROLL
@@ -220,7 +220,7 @@ CATENA_HD RunsEnd<Real> end_run(InertiaRun<Real>& run, OutboardHandle<Real> cons
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) run.first[j].torque[2] = Real(0);
     run.bias.torque[2] = left_along_hinge<Real>(torque);
-    differ(run, joint);
+    take_difference(run, joint);
 
     Matrix<Real, 3, 3> const to_joint = transpose(last.e1);
     Vector3 const centre = -(to_joint * last.r1), force = to_joint * last.force;

@@ -132,6 +132,8 @@ struct AccelerationsView {
     /// ground; component 1, of the joint after such a run, that of the run's last body against the ground about that joint's axis:
     /// [0, size].
     View<2> hinge_acceleration{};
+    /// Whether runs on hinges find the accelerations of all their bodies, not only of those named above.
+    CATENA_HD bool by_all_bodies() const { return !hinge_acceleration.origin || joint_force; }
 };
 
 /// Of a tree whose lowest levels are computed in one place and the others in another one (cuda-levels: GPU and CPU).

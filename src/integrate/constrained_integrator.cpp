@@ -66,10 +66,10 @@ bool ConstrainedIntegrator::choose_sweeps(int most) {
     while (!enough && sweeps < most) {
         double const last = std::exchange(error, error_after(++sweeps));
         bool const at_rounding = error <= scheme_.tolerance && error > 0.5 * last;
-        enough = error <= 0.01 * scheme_.tolerance || at_rounding;
+        enough = error <= early * scheme_.tolerance || at_rounding;
     }
     for (std::size_t g = 0; g < groups_.size(); ++g) put_back(g);
-    if (enough) sweeps_ = std::min(sweeps + 1, most_sweeps);
+    if (enough) sweeps_ = sweeps;
     last_error_ = error;
     return enough;
 }

@@ -1,11 +1,14 @@
 #include "integrate/simulation.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <future>
 #include <nlohmann/json.hpp>
+#include <system_error>
 
 #include "error.hpp"
+#include "integrate/constrained_integrator.hpp"
 #include "integrate/force_summary.hpp"
 #include "integrate/run_folder.hpp"
 #include "integrate/share.hpp"
@@ -23,12 +26,10 @@ using nlohmann::json;
 /// Steps whose timeline is kept: the first few and then those that write output, up to a limit.
 constexpr std::int64_t first_timelines = 5;
 constexpr std::size_t most_timelines = 50;
-/// The constraint error is looked at with every output and checkpoint, at the last step, and this often.
+/// The constraint error is looked at with every output and checkpoint, at the last step, and this often; and after 1, 2, 4, ... steps,
+/// while what started at rest gains speed.
 constexpr std::int64_t check_every = 100;
-/// Bodies whose observables are worth a thread of their own while they are written.
-constexpr std::int64_t worth_a_thread = 100000;
-/// A sweep is added when the error comes this near to the tolerance: it grows and falls with the chain's shape between the looks.
-constexpr double early = 0.1, rounding_of_joints = 1e-13;
+constexpr double rounding_of_joints = 1e-13;
 
 json as_json(Traffic const& sum, std::int64_t steps) {
     json a_step;
@@ -68,7 +69,8 @@ class Run {
         for (std::int64_t n = first;; ++n) {
             bool const writes = n % scene_.output.every == 0;
             bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
-            bool const looks = writes || saves || n % check_every == 0;
+            bool const looks =
+                writes || saves || n % check_every == 0 || (n < check_every && std::has_single_bit(static_cast<std::uint64_t>(n)));
             StepTimeline* const timeline = new_timeline(n, n - first < first_timelines || writes);
             bool const renews = (saves || n == last_) && system_.openmm();
             if (renews) system_.openmm()->renew_ghosts();  // as after a restart from here
@@ -135,43 +137,49 @@ class Run {
     }
     ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }
 
+    struct PendingFrame {
+        std::int64_t step;
+        double error;
+        Observed now;
+        std::vector<Vector<double, 6>> at_tips;
+    };
     /// On one rank, of many bodies, the frame is written by a thread of its own while steps go on, until something else is to be written.
     void output(std::int64_t n, double error) {
         end_frame();
-        Observed now = at_start_ ? std::move(*at_start_) : observed();
-        if (!now.bodies) now.bodies = own_bodies();
-        std::vector<Vector<double, 6>> at_tips;
+        pending_ = {n, error, at_start_ ? std::move(*at_start_) : observed(), {}};
+        if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
         if (scene_.output.joint_forces)
-            for (TipForce const& tip : system_.tip_forces()) at_tips.push_back(tip.wrench);
-        bool const beside = communicator_.size() == 1 && scene_.bodies() >= worth_a_thread;
-        // Where no thread is to be had, it waits for end_frame().
-        frame_ = std::async(beside ? std::launch::async | std::launch::deferred : std::launch::deferred,
-                            [this, n, error, now = std::move(now), at_tips = std::move(at_tips)] { write(n, error, now, at_tips); });
-        if (!beside) end_frame();
+            for (TipForce const& tip : system_.tip_forces()) pending_->at_tips.push_back(tip.wrench);
+        bool const beside = communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside;
+        if (beside) try {
+                frame_ = std::async(std::launch::async, [this] { write(*pending_); });
+                return;
+            } catch (std::system_error const&) {  // no thread is to be had
+            }
+        write(*pending_);
+        pending_.reset();
+        folder_->check();
     }
     /// The frame that is being written, if one is. Throws what it failed by.
     void end_frame() {
         if (!frame_.valid()) return;
         frame_.get();
+        pending_.reset();
         folder_->check();
     }
     /// Collective; on one rank no message is sent.
-    void write(std::int64_t n, double error, Observed const& now, std::vector<Vector<double, 6>> const& at_tips) {
-        folder_->begin(n, time(n));
+    void write(PendingFrame const& frame) {
+        folder_->begin(frame.step, time(frame.step));
         observables_->begin();
         bool const together = folder_->frames_way().collective;
-        system_.pass_bodies(*now.bodies, [&](ChainSystem::Bodies const& bodies) {
+        system_.pass_bodies(*frame.now.bodies, [&](ChainSystem::Bodies const& bodies) {
             Frame const part = sites_.part(bodies, scene_.output.velocities && !together, system_.executor());
-            auto const add = [&] { observables_->add(bodies.motion, part.positions); };
-            bool const beside = !together && std::ssize(bodies.motion.position) >= worth_a_thread;
-            // Where no thread is to be had, it waits for get().
-            auto added = std::async(beside ? std::launch::async | std::launch::deferred : std::launch::deferred, add);
             if (!together) folder_->put(std::span(&part, 1));
-            added.get();
+            observables_->add(bodies.motion, part.positions);
         });
-        if (together) put_own(*now.bodies);
-        if (root_) last_row_ = observables_->row(now.terms, error);
-        folder_->end(at_tips, last_row_);
+        if (together) put_own(*frame.now.bodies);
+        if (root_) last_row_ = observables_->row(frame.now.terms, frame.error);
+        folder_->end(frame.at_tips, last_row_);
     }
 
     void put_own(ChainSystem::OwnBodies const& own) {
@@ -198,7 +206,8 @@ class Run {
         worst_error_ = std::max(worst_error_, error);
         bool const counted = n == first_ && !options_.restart.empty();  // by the run before
         double const tolerance = scene_.dynamics.constraint_tolerance;
-        if (error > std::max(early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted && stepper_->add_sweep())
+        if (error > std::max(ConstrainedIntegrator::early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted &&
+            stepper_->add_sweep())
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
     }
 
@@ -356,6 +365,7 @@ class Run {
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0;
     int stopped_by_ = 0;
+    std::optional<PendingFrame> pending_;
     std::future<void> frame_;  // last: it ends before what it uses
 };
 

@@ -18,8 +18,9 @@ struct RunOptions {
     std::string restart;                // checkpoint to go on from
     bool overwrite = false;
     bool quiet = false;
-    StopAgreement::Wish stop;  // the run ends after the step that is under way, with a checkpoint and what it has
-    std::string command_line;  // for the summary
+    StopAgreement::Wish stop;             // the run ends after the step that is under way, with a checkpoint and what it has
+    std::string command_line;             // for the summary
+    std::int64_t bodies_beside = 100000;  // in the scene, from which on frames on one rank are written beside the steps that follow
 };
 
 /// Runs the scene and writes its folder: trajectory.h5md, topology.pdb, observables.csv, checkpoint.h5, summary.json, timeline.json,

@@ -1,15 +1,19 @@
 // A run that is stopped and restarted is the undisturbed run, bit for bit: state, trajectory and table.
 #include <gtest/gtest.h>
+#include <pthread.h>
 
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <system_error>
+#include <thread>
 
 #include "error.hpp"
 #include "integrate/simulation.hpp"
 #include "io/output.hpp"
 #include "tests/integrate/scenes.hpp"
+#include "tests/io/dataset_bits.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace catena::test {
@@ -25,7 +29,10 @@ std::string text_of(std::string const& file) {
 class Restart : public testing::TestWithParam<RunScene> {
   protected:
     nlohmann::json run(std::string const& output, std::int64_t steps, std::string const& restart = "", StopAgreement::Wish stop = {}) {
-        RunOptions options;
+        return run({}, output, steps, restart, std::move(stop));
+    }
+    nlohmann::json run(RunOptions options, std::string const& output, std::int64_t steps, std::string const& restart = "",
+                       StopAgreement::Wish stop = {}) {
         options.output = folder_ / output;
         options.steps = steps;
         options.restart = restart;
@@ -49,6 +56,50 @@ TEST_P(Restart, IsTheUndisturbedRun) {
     EXPECT_EQ(whole.arrays, parts.arrays);  // doubles compared by value: equal means equal bits but for zeros' signs
     EXPECT_EQ(text_of(folder_ / "whole/observables.csv"), text_of(folder_ / "parts/observables.csv"));
     EXPECT_EQ(text_of(folder_ / "whole/trajectory.h5md").size(), text_of(folder_ / "parts/trajectory.h5md").size());
+}
+
+/// Threads' stacks that no memory has room for.
+class NoMoreThreads {
+  public:
+    NoMoreThreads() {
+        pthread_attr_t none;
+        pthread_getattr_default_np(&before_);
+        pthread_getattr_default_np(&none);
+        pthread_attr_setstacksize(&none, std::size_t{1} << 50);
+        pthread_setattr_default_np(&none);
+        pthread_attr_destroy(&none);
+    }
+    NoMoreThreads(NoMoreThreads const&) = delete;
+    NoMoreThreads& operator=(NoMoreThreads const&) = delete;
+    ~NoMoreThreads() {
+        pthread_setattr_default_np(&before_);
+        pthread_attr_destroy(&before_);
+    }
+
+  private:
+    pthread_attr_t before_;
+};
+
+TEST_P(Restart, WithFramesBesideTheSteps) {
+    auto const beside = [] {
+        RunOptions options;
+        options.bodies_beside = 1;
+        return options;
+    };
+    run("one-after-the-other", 20);
+    run(beside(), "beside", 10);
+    run(beside(), "beside", 20, folder_ / "beside/checkpoint.h5");
+    {
+        NoMoreThreads const none;
+        EXPECT_THROW(std::thread([] {}).join(), std::system_error);
+        run(beside(), "no-thread", 20);
+    }
+    for (char const* const name : {"beside", "no-thread"}) {
+        EXPECT_EQ(text_of(folder_ / (std::string(name) + "/observables.csv")), text_of(folder_ / "one-after-the-other/observables.csv"))
+            << name;
+        EXPECT_EQ(bits_of(folder_ / (std::string(name) + "/trajectory.h5md")), bits_of(folder_ / "one-after-the-other/trajectory.h5md"))
+            << name;
+    }
 }
 
 TEST_P(Restart, FromTheCheckpointBefore) {

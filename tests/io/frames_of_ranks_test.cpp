@@ -1,14 +1,12 @@
 // A trajectory that all ranks write together holds the same bits as one that a rank writes alone, and ends as well.
 #include <gtest/gtest.h>
-#include <hdf5.h>
 
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <map>
 
+#include "dataset_bits.hpp"
 #include "error.hpp"
-#include "io/hdf5_handle.hpp"
 #include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
 #include "sample_frames.hpp"
@@ -32,23 +30,6 @@ bool can_write_together() { return world().size() > 1 && world().sum(hdf5::why_n
 #define NEEDS_PARALLEL_HDF5 \
     if (!can_write_together()) GTEST_SKIP() << "NOT RUN: one rank, or " << hdf5::why_not_by_all(world())
 
-/// Of every dataset, by its first name: `step` has many.
-using Bits = std::map<std::string, std::vector<char>>;
-herr_t add_bits(hid_t root, char const* name, H5O_info_t const* info, void* bits) {
-    if (info->type != H5O_TYPE_DATASET) return 0;
-    hdf5::Dataset const data(H5Dopen2(root, name, H5P_DEFAULT));
-    hdf5::Space const space(H5Dget_space(data.get()));
-    hdf5::Type const type(H5Dget_type(data.get()));
-    std::vector<char>& values = (*static_cast<Bits*>(bits))[name];
-    values.resize(H5Tget_size(type.get()) * static_cast<std::size_t>(H5Sget_simple_extent_npoints(space.get())));
-    return H5Dread(data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data());
-}
-Bits bits_of(std::string const& file) {
-    hdf5::File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    Bits bits;
-    EXPECT_GE(H5Ovisit2(handle.get(), H5_INDEX_NAME, H5_ITER_INC, add_bits, &bits, H5O_INFO_BASIC), 0) << file;
-    return bits;
-}
 std::size_t frames_in(std::string const& file) { return bits_of(file).at("catena/joint_force/step").size() / 8; }
 
 class FramesOfRanks : public ::testing::Test {
@@ -132,7 +113,7 @@ TEST_F(FramesOfRanks, AreTheBitsOfOneWriter) {
         auto const alone = make_trajectory(folder_ / "alone.h5md", topology, true, true, {});
         for (std::int64_t const step : {0, 10, 20}) alone->write(sample_frame(step, topology));
         alone->close();
-        Bits const expected = bits_of(folder_ / "alone.h5md");
+        DatasetBits const expected = bits_of(folder_ / "alone.h5md");
         ASSERT_GT(expected.size(), 10U);
         for (char const* const name : {"turns.h5md", "runs.h5md", "none.h5md"})
             EXPECT_TRUE(bits_of(folder_ / name) == expected) << name << ", " << beads;

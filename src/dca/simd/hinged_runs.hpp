@@ -11,8 +11,9 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
     static constexpr int numbers_of_hinge = hinge_numbers * lanes;
     using Base = RunsInTile<Real, Leaf>;
-    using Base::work_, Base::bodies_, Base::joint_frame_, Base::out_, Base::fill, Base::empty, Base::in_tile;
-    static_assert(sizeof(ReleasedHinge<Real>) == released_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == met_numbers * sizeof(Real));
+    using Base::work_, Base::bodies_, Base::joint_frame_, Base::out_, Base::fill, Base::empty, Base::ask, Base::in_tile;
+    static_assert(sizeof(ReleasedHinge<Real>) == released_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == met_numbers * sizeof(Real) &&
+                  sizeof(BodyInRun<Real>) == passed_body_numbers * sizeof(Real));
     using Vector3 = Vector<Real, 3>;
     using Matrix3 = Matrix<Real, 3, 3>;
 
@@ -26,6 +27,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         } else {
             auto const body = [this, &runs = work_.runs[item]](int i) {
                 if (i % part_length == 0) fill(runs, i / part_length, 1);
+                ask(runs, i, 1);
                 Column<Real> const here{i % part_length};
                 auto b = bodies_.leaf.hinged_at_rest(bodies_.loads, here);
                 Vector3 const omega = omega_at(here);
@@ -46,8 +48,9 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         PassedOn passed{next, {}, {}, Real(0)};
         BodyAcceleration<Real> of_late;  // first bodies, in the lanes where others go on after them
         int part = parts_of_run;
+        ask(runs, 0, -1);
         descend_hinges<Real>(
-            count, goes_by_all(),
+            count, out_.by_all_bodies(),
             [&](int i) {
                 if (i / part_length != part) fill(runs, part = i / part_length, -1);
                 Column<Real> const here{i % part_length};
@@ -82,7 +85,10 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                 if (runs.late == 0 || runs.begins[i] == 0) return;
                 i > 0 ? choose<Real>(runs.begins[i], a, of_late) : choose<Real>(runs.late, of_late, a);
             },
-            [&](int i, Real const& of_hinge) { turn(runs, i, of_hinge); });
+            [&](int i, Real const& of_hinge) {
+                ask(runs, i, -1);
+                turn(runs, i, of_hinge);
+            });
     }
 
   private:
@@ -104,7 +110,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             store_vectors<Real>(of_hinge(i) + released_numbers * lanes, body);
         }
         /// Outboard of joint i, in the body's axes.
-        void put(int i, Vector3 const& omega) { store_vectors<Real>(of_hinge(i) + at_omega, omega); }
+        void put_omega(int i, Vector3 const& omega) { store_vectors<Real>(of_hinge(i) + at_omega, omega); }
         void put_axes(Matrix3 const& axes) { store_vectors<Real>(place + met_numbers * lanes, axes); }
         /// What turns to the last body's axes.
         void put_orientation(Matrix3 const& from_ground) { store_vectors<Real>(place + at_orientation, from_ground); }
@@ -151,6 +157,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             : all_(all), runs_(all.work_.runs[item]), kept_{all, runs_, all.place_of(item)} {}
         HingedBody<Real> first() {
             all_.fill(runs_, 0, 1);
+            all_.ask(runs_, 0, 1);
             auto body = leaf().hinged_at_rest(all_.bodies_.loads, Column<Real>{0});
             Vector3 const omega = pick<Real>(all_.work_.loads.omega, runs_.body);
             if (all_.has_wrenches()) from_ground_ = all_.first_from_ground(runs_);
@@ -162,6 +169,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         }
         LoadedBodyInRun<Real> next(int i) {
             if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
+            all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
             GroupView const& own = leaf().group();
             state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(all_.in_tile().rotation, here)));
@@ -172,20 +180,18 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             Real const rate = read(all_.bodies_.loads.hinge_rate, here)[0];
             Vector3 const angular = rate * cross(state.omega, axis);
             state.omega = plus_scaled(state.omega, rate, axis);
-            Real const square = dot(state.omega, state.omega);
+            Real const square = dot(state.omega, state.omega);  // omega x (omega x r) in fewer operations
             auto const inward = [&](Vector3 const& r) { return plus_scaled(dot(state.omega, r) * state.omega, -square, r); };
             Vector3 const linear = state.inward - inward(r1);
             state.inward = inward(r2);
             Symmetric<Real, 3> const inertia = turned(turn_, as_symmetric(read(own.inertia, here)));
             Vector3 torque = cross(inertia * state.omega, state.omega), force = Vector3::zero();
-            if (all_.has_wrenches()) {
-                torque = torque + from_ground_ * read(all_.hinges().torque, here);
-                force = from_ground_ * read(all_.hinges().force, here);
-            }
-            if (i >= count - 2 || all_.goes_by_all()) keep_omega(i);
+            all_.add_wrench(here, from_ground_, torque, force);
+            if (i >= count - 2 || all_.out_.by_all_bodies()) keep_omega(i);
             return {{axis, angular, linear, r2 - r1}, -r2, read(own.mass, here)[0], inertia, torque, force};
         }
         HingedBody<Real> last(int i) {
+            all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
             auto body = leaf().hinged_at_rest(all_.bodies_.loads, here);
             Matrix3 const turn = axes_ * transpose(body.e1);
@@ -198,7 +204,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
                 kept_.put_orientation(from_ground);
             }
             all_.push(runs_, i, from_ground, body);
-            kept_.put(i, omega);
+            kept_.put_omega(i, omega);
             return body;
         }
         OutboardHandle<Real> before_last() {
@@ -217,7 +223,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         void keep_omega(int i) {
             Vector3 omega = transposed_times(turn_, state.omega);
             if (runs_.begins[i] != 0) choose<Real>(runs_.begins[i], first_omega(), omega);
-            kept_.put(i, omega);
+            kept_.put_omega(i, omega);
         }
         Vector3 first_omega() const { return pick<Real>(all_.work_.loads.omega, runs_.body); }
         HingedRunsSideBySide& all_;
@@ -245,9 +251,6 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         scatter<Real>(segment.matrix, work_.sweeps.matrices, runs.slot);
         scatter<Real>(segment.bias, work_.sweeps.biases, runs.slot);
     }
-    /// As Evaluation.
-    bool goes_by_all() const { return !out_.hinge_acceleration.origin || out_.joint_force; }
-
     double* place_of(std::int64_t item) const { return work_.nodes + item * kept_of_hinged_run * lanes; }
     GroupView const& group() const { return work_.group; }
     Vector3 omega_at(Column<Real> const& here) const {
@@ -262,13 +265,14 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     Real torque_about(int i) const {
         return in_tile().hinge_torque.origin ? read(in_tile().hinge_torque, Column<Real>{i % part_length})[0] : Real(0);
     }
+    void add_wrench(Column<Real> const& here, Matrix3 const& from_ground, Vector3& torque, Vector3& force) const {
+        if (!has_wrenches()) return;
+        torque = torque + from_ground * read(hinges().torque, here);
+        force = force + from_ground * read(hinges().force, here);
+    }
     /// What acts on body i from outside and by the joints at the runs' ends, where hinges' loads are given.
     void push(RunsInLanes const& runs, int i, Matrix3 const& from_ground, HingedBody<Real>& body) const {
-        if (has_wrenches()) {
-            Column<Real> const here{i % part_length};
-            body.torque = body.torque + from_ground * read(hinges().torque, here);
-            body.force = body.force + from_ground * read(hinges().force, here);
-        }
+        add_wrench({i % part_length}, from_ground, body.torque, body.force);
         if (!in_tile().hinge_torque.origin) return;
         ConstView<3> const& of_joints = work_.loads.hinges.joint_torque;
         if (i == 0) body.torque = body.torque + body.e1 * pick<Real>(of_joints, runs.body);

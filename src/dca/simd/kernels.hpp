@@ -36,7 +36,7 @@ template <class Real, class Leaf>
 class RunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes;
     using Base = RunsInTile<Real, Leaf>;
-    using Base::work_, Base::begin_, Base::bodies_, Base::out_, Base::fill, Base::empty;
+    using Base::work_, Base::begin_, Base::bodies_, Base::out_, Base::fill, Base::empty, Base::ask;
     using Bodies = typename Base::Bodies;
     using Body = typename Bodies::template Body<Column<Real>>;
     using Kept = decltype(std::declval<Bodies const&>().keep(std::declval<Body const&>()));
@@ -58,9 +58,9 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
             make_part(item, p, p == 0 ? whole : part);
             if (p == 0) continue;
             Node node;
+            append(whole, part, node, runs, p * part_length);
             double* const kept = place_of_node(item, p);
             if (work_.asks_ahead) prefetch_to_write<Real>(kept, numbers_of_node, numbers_of_node);
-            append(whole, part, node, runs, p * part_length);
             store_vectors<Real>(kept, node);
         }
         scatter<Real>(whole.matrix, work_.sweeps.matrices, runs.slot);
@@ -101,6 +101,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         Segment body;
         Node node;
         each_body<unrolled<K>>(0, part_length, [&](int i) {
+            ask(runs, p * part_length + i, 1);
             ::new (i == 0 ? &segment : &body) Segment(bodies_.segment(bodies.body(i)));
             if (i == 0) return keep(item, p, 0, {{}, segment.matrix.z12, segment.bias});
             append(segment, body, node, runs, p * part_length + i);
@@ -121,17 +122,18 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         if (!Leaf::beads && work_.keeps_all)
             use_kept(item, p, first, next);
         else
-            eliminate_again(first, next);
+            eliminate_again(runs, p, first, next);
         empty(runs, p);
     }
     /// As Evaluation::down.
-    void eliminate_again(Directions const& first, Directions next) {
+    void eliminate_again(RunsInLanes const& runs, int p, Directions const& first, Directions next) {
         Elimination<Real, K> passed[part_length];
         Kept kept[part_length];
         auto bodies = bodies_.walk(begin_);
         Symmetric<Real, K> z22;
         Directions b2;
         each_body<unrolled<K>>(0, part_length, [&](int i) {
+            ask(runs, p * part_length + i, -1);
             Segment const segment = take(bodies, i, kept);
             if (i == 0) {
                 z22 = segment.matrix.z22;

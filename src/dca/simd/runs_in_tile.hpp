@@ -93,8 +93,7 @@ class RunsInTile {
   protected:
     using Bodies = decltype(std::declval<BodiesInTile<Real, Leaf>>().with(Constants<Real>{}));
 
-    explicit RunsInTile(RunWork<Leaf> const& work)
-        : work_(work), tile_(work.asks_ahead), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
+    explicit RunsInTile(RunWork<Leaf> const& work) : work_(work), in_tile_(tile_, work), bodies_(in_tile_.with({work.constants})) {
         if (View<2> const& of_hinges = work.out.hinge_acceleration; of_hinges.origin) {
             View<1> const first = tile_.out(component<Real>(of_hinges, 0));
             out_.hinge_acceleration = {first.origin, first.pitch, first.size};  // the other component goes straight to its place
@@ -104,19 +103,15 @@ class RunsInTile {
         }
         out_.joint_force = tile_.template out_directions<Leaf::K>(work.out.joint_force);
     }
-    /// The next item's bodies usually follow, or come before where the way is back.
+    /// `way`: 1 outwards, -1 back.
     void fill(RunsInLanes const& runs, int p, int way) {
         begin_ = {by_runs ? p * part_length : 0};
-        bool const not_all = way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force;
         if (!by_runs)
-            tile_.fill(PartInLanes<Real>(runs, p), ahead_of_part<Real>(p, way * bodies_of_item),
-                       not_all ? in_tile_.on_way_back : tile_.count());
+            tile_.fill(PartInLanes<Real>(runs, p), count(way));
         else if (p == (way > 0 ? 0 : parts_of_run - 1))
-            tile_.fill(runs.body, way * bodies_of_item);
+            tile_.fill(runs.body);
         if constexpr (constants_of<Leaf> > 0) {
-            constexpr int block = constants_of<Leaf> * part_length * lanes;
-            double const* const here = work_.constants + ((&runs - work_.runs) * parts_of_run + p) * block;
-            if (work_.asks_ahead) prefetch<Real>(here, 2 * way * block, block);
+            double const* const here = constants(runs, p);
             bodies_ = in_tile_.with({here});
             if constexpr (frame_constants<Leaf> > 0)
                 joint_frame_ = Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>)*part_length * lanes}.template next<4>();
@@ -124,9 +119,20 @@ class RunsInTile {
     }
     void empty(RunsInLanes const& runs, int p) {
         if (!by_runs)
-            tile_.empty(PartInLanes<Real>(runs, p), ahead_of_part<Real>(p, -bodies_of_item));
+            tile_.empty(PartInLanes<Real>(runs, p));
         else if (p == 0)
-            tile_.empty(runs.body, -bodies_of_item);
+            tile_.empty(runs.body);
+    }
+    /// With body i, in turn: the next item's bodies usually follow, or come before where the way is back.
+    [[gnu::always_inline]] void ask(RunsInLanes const& runs, int i, int way) const {
+        if (!work_.asks_ahead) return;
+        std::int64_t const ahead = (by_runs ? 2 : 1) * way * bodies_of_item;
+        tile_.ask_to_read(runs.body, ahead, i, count(way));
+        if (way < 0) tile_.ask_to_write(runs.body, ahead, i);
+        if constexpr (constants_of<Leaf> > 0) {
+            constexpr int of_body = constants_of<Leaf> * lanes, two_parts = 2 * part_length * of_body;
+            prefetch<Real>(constants(runs, 0) + i * of_body, way * two_parts, of_body);
+        }
     }
 
     BodiesInTile<Real, Leaf> const& in_tile() const { return in_tile_; }
@@ -134,6 +140,11 @@ class RunsInTile {
     RunWork<Leaf> const& work_;
 
   private:
+    double const* constants(RunsInLanes const& runs, int p) const {
+        return work_.constants + ((&runs - work_.runs) * parts_of_run + p) * (constants_of<Leaf> * part_length * lanes);
+    }
+    /// Of numbers that the tile reads.
+    int count(int way) const { return way < 0 && in_tile_.on_way_back > 0 && !out_.joint_force ? in_tile_.on_way_back : tile_.count(); }
     Tile<Real, by_runs ? longest_run : part_length> tile_;
     BodiesInTile<Real, Leaf> in_tile_;
 

@@ -88,20 +88,12 @@ struct Constants {
     }
 };
 
-/// How far ahead of part p to ask, of every other one: a line of the cache has two parts.
-template <class Real>
-constexpr std::int64_t ahead_of_part(int p, std::int64_t ahead) {
-    static_assert(2 * part_length == numbers_of_line);
-    return p % 2 == 0 ? ahead : 0;
-}
-
 /// Of `length` bodies of each run.
 template <class Real, int length>
 class Tile {
     static constexpr int lanes = Real::lanes, columns = length + 2, most = 64;
 
   public:
-    explicit Tile(bool asks_ahead) : asks_ahead_(asks_ahead) {}
     /// The same view of the tile; none of none. `neighbours`: columns -1 and `length` too.
     template <int D>
     ConstView<D> in(ConstView<D> view, bool neighbours = false) {
@@ -132,55 +124,66 @@ class Tile {
     }
     /// How many numbers of a body it reads.
     int count() const { return count_; }
-    /// `first`: the bodies in column 0. What lies `ahead` of them is asked for, for another time (0: nothing). `count`: numbers, those of views that came
-    /// first.
-    void fill(std::int64_t const* first, std::int64_t ahead, int count) {
+    /// `first`: the bodies in column 0. `count`: numbers, those of views that came first.
+    void fill(std::int64_t const* first, int count) {
         for (int n = 0; n < count; ++n) {
             double const* const from = source_[n].origin;
             double* const to = place(n);
             for (int i = 0; i < length; i += 4) Real::read_four(from + i, first, to + i * lanes);
-            for (int i = 0; asks_ahead_ && ahead != 0 && i < length; i += numbers_of_line)
-                for (int j = 0; j < lanes; ++j) prefetch<Real>(from, i + first[j] + ahead);
             if (!source_[n].neighbours) continue;
             Real::pick(from - 1, first).store(to - lanes);
             Real::pick(from + length, first).store(to + length * lanes);
         }
     }
-    void fill(std::int64_t const* first, std::int64_t ahead) { fill(first, ahead, count_); }
-    void fill(PartInLanes<Real> const& part, std::int64_t ahead, int count) {
-        fill(part.first, ahead, count);
+    void fill(std::int64_t const* first) { fill(first, count_); }
+    void fill(PartInLanes<Real> const& part, int count) {
+        fill(part.first, count);
         if (!part.short_ones) return;
         for (int j = 0; j < lanes; ++j)
             for (int n = 0; n < count && part.skipped[j] > 0; ++n)
                 for (int i = 0; i < length; ++i)
                     place(n)[i * lanes + j] = source_[n].origin[part.first[j] + (i < part.skipped[j] ? 0 : i - part.skipped[j])];
     }
-    void fill(PartInLanes<Real> const& part, std::int64_t ahead) { fill(part, ahead, count_); }
+    void fill(PartInLanes<Real> const& part) { fill(part, count_); }
     /// As fill.
-    void empty(std::int64_t const* first, std::int64_t ahead) {
-        for (int n = 0; n < written_; ++n) {
+    void empty(std::int64_t const* first) {
+        for (int n = 0; n < written_; ++n)
             for (int i = 0; i < length; i += 4) Real::write_four(place(most - 1 - n) + i * lanes, target_[n] + i, first);
-            for (int i = 0; asks_ahead_ && ahead != 0 && i < length; i += numbers_of_line)
-                for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], i + first[j] + ahead);
-        }
     }
     /// But for skipped columns.
-    void empty(PartInLanes<Real> const& part, std::int64_t ahead) {
-        if (!part.short_ones) return empty(part.first, ahead);
+    void empty(PartInLanes<Real> const& part) {
+        if (!part.short_ones) return empty(part.first);
         for (int n = 0; n < written_; ++n)
             for (int j = 0; j < lanes; ++j)
                 for (int i = part.skipped[j]; i < length; ++i)
                     target_[n][part.first[j] + i - part.skipped[j]] = place(most - 1 - n)[i * lanes + j];
     }
+    /// With body i of runs whose first bodies are first[j]: a share of what fill will read, and empty write, of runs that lie `ahead`. Little at
+    /// a time: many at once would wait for each other, and what is computed with them.
+    [[gnu::always_inline]] void ask(std::int64_t const* first, std::int64_t ahead, int i) const {
+        ask_to_read(first, ahead, i);
+        ask_to_write(first, ahead, i);
+    }
+    [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i, int count) const {
+        for (int n = i % numbers_of_line; n < count; n += numbers_of_line)
+            for (int j = 0; j < lanes; ++j) prefetch<Real>(source_[n].origin, line_of(i) + first[j] + ahead);
+    }
+    [[gnu::always_inline]] void ask_to_read(std::int64_t const* first, std::int64_t ahead, int i) const {
+        ask_to_read(first, ahead, i, count_);
+    }
+    [[gnu::always_inline]] void ask_to_write(std::int64_t const* first, std::int64_t ahead, int i) const {
+        for (int n = i % numbers_of_line; n < written_; n += numbers_of_line)
+            for (int j = 0; j < lanes; ++j) prefetch_to_write<Real>(target_[n], line_of(i) + first[j] + ahead);
+    }
 
   private:
     static constexpr std::int64_t pitch = columns * lanes;
+    static constexpr int line_of(int i) { return i / numbers_of_line * numbers_of_line; }
     double* place(int n) { return numbers_ + n * pitch + lanes; }
     struct Source {
         double const* origin;
         bool neighbours;
     };
-    bool asks_ahead_;
     int count_ = 0, written_ = 0;
     Source source_[most];
     double* target_[most];

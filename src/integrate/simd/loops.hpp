@@ -19,7 +19,7 @@ class FollowRuns {
     FollowRuns(JointScan const& s, bool asks_ahead)
         : joints_(s.joints),
           whole_(s.whole),
-          tile_(asks_ahead),
+          asks_ahead_(asks_ahead),
           rotation_(tile_.in(ConstView<4>(s.rotation))),
           omega_(tile_.in(ConstView<3>(s.omega))),
           to_rotation_(tile_.out(s.rotation)),
@@ -36,12 +36,12 @@ class FollowRuns {
     FollowRuns& operator=(FollowRuns const&) = delete;
 
     void follow(dca::RunsInLanes const& runs) {
-        constexpr std::int64_t bodies_of_item = lanes * dca::longest_run;
         Motions m{};
         for (int p = 0; p < dca::parts_of_run; ++p) {
             dca::PartInLanes<Real> const bodies(runs, p);
-            tile_.fill(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
+            tile_.fill(bodies);
             for (Column k{0}; k.at < part; ++k.at) {
+                if (asks_ahead_) tile_.ask_to_read(runs.body, lanes * dca::longest_run, p * part + k.at);  // and written again
                 unsigned const begin = runs.begins[p * part + k.at];
                 Motions const own = load(k);
                 if (p == 0 && k.at == 0) {
@@ -53,7 +53,7 @@ class FollowRuns {
                 }
                 store(k, m);
             }
-            tile_.empty(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
+            tile_.empty(bodies);
         }
         m.rotation = normalized(m.rotation);
         dca::scatter<Real>(m, whole_, runs.slot);
@@ -79,6 +79,7 @@ class FollowRuns {
     }
     JointsView joints_;
     MotionRecords whole_;
+    bool asks_ahead_;
     dca::Tile<Real, part> tile_;
     ConstView<4> rotation_;
     ConstView<3> omega_, translation_, velocity_, normal_;
@@ -99,7 +100,6 @@ class FollowHinges {
         : scan_(loads.scan),
           constants_(constants),
           asks_ahead_(asks_ahead),
-          tile_(asks_ahead),
           q_(coordinate(scan_.state.q)),
           qd_(coordinate(scan_.state.qd)),
           turn_(tile_.out(scan_.motion.joint_turn)) {
@@ -115,19 +115,21 @@ class FollowHinges {
     FollowHinges& operator=(FollowHinges const&) = delete;
 
     void follow(dca::RunsInLanes const* items, std::int64_t item) {
-        constexpr std::int64_t bodies_of_item = lanes * dca::longest_run;
-        constexpr int block = hinge_constants * part * lanes;
+        constexpr int of_body = hinge_constants * lanes, block = part * of_body;
         dca::RunsInLanes const& runs = items[item];
         Motions m{};
         for (int p = 0; p < dca::parts_of_run; ++p) {
             dca::PartInLanes<Real> const bodies(runs, p);
-            tile_.fill(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
+            tile_.fill(bodies);
             double const* const here = constants_ + (item * dca::parts_of_run + p) * block;
-            if (asks_ahead_) dca::prefetch<Real>(here, 2 * block, block);
             dca::Constants<Real> constants{here};
             auto const axis = constants.template next<3>();
             auto const frame = constants.template next<4>();
             for (Column k{0}; k.at < part; ++k.at) {
+                if (asks_ahead_) {
+                    tile_.ask(runs.body, lanes * dca::longest_run, p * part + k.at);
+                    dca::prefetch<Real>(here + k.at * of_body, 2 * block, of_body);
+                }
                 Vector3 const along = read(axis, k);
                 Vector<Real, 1> const q = read(q_, k), qd = read(qd_, k);
                 Of of{from_axis_angle(along, q[0]), {}, to_load_.origin ? torque(k, q, qd) : Vector<Real, 1>{{Real(0)}}};
@@ -145,7 +147,7 @@ class FollowHinges {
                 write(turn_, k, as_vector(of.turn));
                 if (to_load_.origin) write(to_load_, k, of.torque);
             }
-            tile_.empty(bodies, dca::ahead_of_part<Real>(p, bodies_of_item));
+            tile_.empty(bodies);
         }
         m.rotation = normalized(m.rotation);
         dca::scatter<Real>(m, scan_.whole, runs.slot);
