@@ -203,6 +203,7 @@ SideBySide compare(std::int64_t beads, BenchRequest const& request, Communicator
     Runner own{[&](int count) { catena.step(count); }};
     own.period = period_of(system);
     own.warm_up();
+    catena.adapt();
     Rival bonds{OwnLinks::bonds}, constraints{OwnLinks::constraints};
     bonds.make(catena, communicator, backend, start);
     if (!constrained_before) constraints.make(catena, communicator, backend, start);
@@ -324,6 +325,8 @@ Outcome bench_overlap(Communicator const& communicator, BenchRequest const& requ
         Runner without{[&](int count) { off.step(count); }}, with{[&](int count) { on.step(count); }};
         without.warm_up();
         with.warm_up();
+        off.adapt();
+        on.adapt();
         Hidden const hidden(on.system());
         take_turns({&without, &with}, request.repeat);
         double const error = larger(off.constraint_error(), on.constraint_error());

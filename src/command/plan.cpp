@@ -8,6 +8,7 @@
 #include "command/plan_messages.hpp"
 #include "command/predictions.hpp"
 #include "integrate/chain_system.hpp"
+#include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "plan/cache.hpp"
 
@@ -88,8 +89,8 @@ StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
     bool const tips = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
     int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
-    std::string const chosen =
-        fmt::format("s is fixed at the start: the fewest that close the joints to {:g}, and one more", 0.01 * d.constraint_tolerance);
+    std::string const chosen = fmt::format("s is the fewest at the start that close the joints to {:g}, later one more where they do not",
+                                           ConstrainedIntegrator::early * d.constraint_tolerance);
     switch (d.integrator) {
         case Integrator::staggered:
         case Integrator::baoab:

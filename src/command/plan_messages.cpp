@@ -14,7 +14,7 @@ namespace catena::command {
 namespace {
 
 /// Of a drift at 10 fs (README); the run chooses its own.
-constexpr int usual_drift_sweeps = 5;
+constexpr int usual_drift_sweeps = 4;
 constexpr int measurements = 21;
 
 Json json_of(Traffic const& t) {

@@ -8,12 +8,6 @@
 #include "error.hpp"
 
 namespace catena::command {
-namespace {
-
-constexpr double early = 0.1;  // of the tolerance
-
-}  // namespace
-
 CatenaSteps::CatenaSteps(Scene scene, Communicator const& communicator)
     : scene_(std::move(scene)), system_(scene_, Axes::world, communicator), stepper_(make_stepper(system_, scene_.dynamics)) {}
 
@@ -45,7 +39,7 @@ std::vector<StepTimeline> CatenaSteps::timelines(int count) {
 }
 
 void CatenaSteps::adapt() {
-    if (last_error_ > early * tolerance()) stepper_->add_sweep();
+    if (watch_.is_due(last_error_, stepper_->early() * tolerance(), tolerance()) && stepper_->add_sweep()) watch_.added(last_error_);
 }
 
 ChainSystem::Snapshot CatenaSteps::observe() {

@@ -8,6 +8,7 @@
 #include "command/requests.hpp"
 #include "force/openmm_own.hpp"
 #include "integrate/stepper.hpp"
+#include "integrate/sweep_watch.hpp"
 
 namespace catena::command {
 
@@ -38,6 +39,7 @@ class CatenaSteps {
     void wait();
     Scene scene_;
     ChainSystem system_;
+    SweepWatch watch_;
     std::unique_ptr<Stepper> stepper_;
     std::int64_t n_ = 0;
     double error_ = 0, last_error_ = 0;

@@ -27,12 +27,12 @@ class ConstrainedIntegrator {
     void step(std::int64_t n);
     /// Velocities at x_n as an observer sees them (both half kicks in their places), into the dynamics' observed state. Before step().
     void observe();
-    /// Quasi-Newton sweeps a drift makes from now on: the fewest that reach `early` * `tolerance` from the present state.
+    /// Quasi-Newton sweeps a drift makes from now on: the fewest that reach `early` * `tolerance`, or rounding, from the present state.
     /// Configuration, matrices and forces must be ready; the state is put back. Throws ComputationError when 30 do not suffice.
     void choose_sweeps();
 
     static constexpr int most_sweeps = 30;
-    /// Where another sweep is due: the error grows and falls with the chain's shape and speed.
+    /// Of the tolerance: so many sweeps are chosen that the error is below that, and above it another one is due.
     static constexpr double early = 0.01;
     int sweeps() const { return sweeps_; }
     void set_sweeps(int sweeps) { sweeps_ = sweeps; }

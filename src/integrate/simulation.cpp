@@ -8,7 +8,6 @@
 #include <system_error>
 
 #include "error.hpp"
-#include "integrate/constrained_integrator.hpp"
 #include "integrate/force_summary.hpp"
 #include "integrate/run_folder.hpp"
 #include "integrate/share.hpp"
@@ -16,6 +15,7 @@
 #include "integrate/start_velocities.hpp"
 #include "integrate/step_messages.hpp"
 #include "integrate/stepper.hpp"
+#include "integrate/sweep_watch.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -29,7 +29,6 @@ constexpr std::size_t most_timelines = 50;
 /// The constraint error is looked at with every output and checkpoint, at the last step, and this often; and after 1, 2, 4, ... steps,
 /// while what started at rest gains speed.
 constexpr std::int64_t check_every = 100;
-constexpr double rounding_of_joints = 1e-13;
 
 json as_json(Traffic const& sum, std::int64_t steps) {
     json a_step;
@@ -153,6 +152,7 @@ class Run {
         bool const beside = communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside;
         if (beside) try {
                 frame_ = std::async(std::launch::async, [this] { write(*pending_); });
+                ++frames_beside_;
                 return;
             } catch (std::system_error const&) {  // no thread is to be had
             }
@@ -200,15 +200,15 @@ class Run {
         return error;
     }
 
-    /// Another sweep where the error comes near to the tolerance. At steps that the scene chooses alone, not where a run happens to end: a
-    /// restart is to be the undisturbed run.
+    /// Another sweep where one is due. At steps that the scene chooses alone, not where a run happens to end: a restart is to be the
+    /// undisturbed run.
     void adapt(std::int64_t n, double error) {
         worst_error_ = std::max(worst_error_, error);
-        bool const counted = n == first_ && !options_.restart.empty();  // by the run before
+        if (n == first_ && !options_.restart.empty()) return;  // the run before did
         double const tolerance = scene_.dynamics.constraint_tolerance;
-        if (error > std::max(ConstrainedIntegrator::early * tolerance, std::min(tolerance, rounding_of_joints)) && !counted &&
-            stepper_->add_sweep())
-            notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
+        if (!watch_.is_due(error, stepper_->early() * tolerance, tolerance) || !stepper_->add_sweep()) return;
+        watch_.added(error);
+        notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
     }
 
     /// So far; without what OpenMM is brought, which StepMessages does not tell.
@@ -244,13 +244,14 @@ class Run {
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
         if (system_.openmm()) c.notes[note_of_platform] = platform();
         c.arrays["largest_constraint_error"] = {worst_error_};
+        c.arrays[array_of_watch] = watch_.state();
         stepper_->save(c);
         ChainSystem::OwnState own = system_.own_state();
         stepper_->save(own);
         folder_->write_checkpoint(c, system_, own);
     }
 
-    static constexpr char const* note_of_platform = "openmm_platform";
+    static constexpr char const *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch";
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
@@ -276,6 +277,7 @@ class Run {
         system_.set_state(c.arrays);
         stepper_->restore(c);
         if (auto const found = c.arrays.find("largest_constraint_error"); found != c.arrays.end()) worst_error_ = found->second.at(0);
+        if (auto const found = c.arrays.find(array_of_watch); found != c.arrays.end()) watch_.set_state(found->second);
         return c.step;
     }
 
@@ -310,6 +312,7 @@ class Run {
                          {"message_passing", message_passing_library()},
                          {"gathers", communicator_.gather_way().text()},
                          {"frames_written", folder_->frames_way().text},
+                         {"frames_beside_steps", frames_beside_},
                          {"checkpoints_written", "by the root"},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
@@ -362,8 +365,9 @@ class Run {
     std::vector<double> last_row_;
     std::optional<Observed> at_start_;  // what the topology and the first frame show
     std::vector<std::string> notes_;
+    SweepWatch watch_;
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
-    std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0;
+    std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;
     int stopped_by_ = 0;
     std::optional<PendingFrame> pending_;
     std::future<void> frame_;  // last: it ends before what it uses

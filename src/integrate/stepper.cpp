@@ -43,6 +43,7 @@ class JointStepper final : public Stepper {
         return worst;
     }
     /// One more correction of jointed tips.
+    double early() const override { return 0.1; }
     bool add_sweep() override {
         if (!has_tips() || corrections_ >= most_corrections) return false;
         ++corrections_;
@@ -142,6 +143,7 @@ class ConstrainedStepper final : public Stepper {
         system_.check_forces();
         return worst;
     }
+    double early() const override { return ConstrainedIntegrator::early; }
     bool add_sweep() override {
         if (integrator_.sweeps() >= ConstrainedIntegrator::most_sweeps) return false;
         integrator_.set_sweeps(integrator_.sweeps() + 1);

@@ -19,6 +19,8 @@ class Stepper {
     virtual void observe(bool joint_forces) = 0;
     virtual void step(std::int64_t n, StepTimeline*) = 0;
     virtual double constraint_error() = 0;
+    /// Of the tolerance: above that another sweep is due.
+    virtual double early() const = 0;
     /// One more projection sweep from now on; false where there is none to add.
     virtual bool add_sweep() = 0;
     /// Of a drift; in joint coordinates corrections of jointed tips.

@@ -86,15 +86,19 @@ TEST_P(Restart, WithFramesBesideTheSteps) {
         options.bodies_beside = 1;
         return options;
     };
-    run("one-after-the-other", 20);
-    run(beside(), "beside", 10);
-    run(beside(), "beside", 20, folder_ / "beside/checkpoint.h5");
+    auto const beside_steps = [](nlohmann::json const& summary) { return summary["parallel"]["frames_beside_steps"].get<int>(); };
+    EXPECT_EQ(beside_steps(run("one-after-the-other", 20)), 0);
+    EXPECT_GT(beside_steps(run(beside(), "beside", 10)), 0);
+    EXPECT_GT(beside_steps(run(beside(), "beside", 20, folder_ / "beside/checkpoint.h5")), 0);
     {
         NoMoreThreads const none;
         EXPECT_THROW(std::thread([] {}).join(), std::system_error);
-        run(beside(), "no-thread", 20);
+        EXPECT_EQ(beside_steps(run(beside(), "no-thread", 20)), 0);
     }
     for (char const* const name : {"beside", "no-thread"}) {
+        EXPECT_EQ(read_checkpoint(folder_ / (std::string(name) + "/checkpoint.h5")).arrays,
+                  read_checkpoint(folder_ / "one-after-the-other/checkpoint.h5").arrays)
+            << name;
         EXPECT_EQ(text_of(folder_ / (std::string(name) + "/observables.csv")), text_of(folder_ / "one-after-the-other/observables.csv"))
             << name;
         EXPECT_EQ(bits_of(folder_ / (std::string(name) + "/trajectory.h5md")), bits_of(folder_ / "one-after-the-other/trajectory.h5md"))
@@ -159,6 +163,31 @@ TEST_P(Restart, RefusesAnExistingFolder) {
     EXPECT_EQ(message_of([&] { run("parts", 5); }).find("--restart"), std::string::npos);
 }
 
+/// What starts at rest gains speed, and sweeps, at steps that nothing but the look at 1, 2, 4, ... falls on.
+RunScene const from_rest{"from_rest",
+                         "units: si\nforces: {gravity: [0, 0, -9.81]}\n"
+                         "chains:\n  - base: fixed\n    anchor: [0, 0, 2]\n    bodies:\n"
+                         "      - {mass: 0.1, position: [0.3, 0, 1.7], joint: {type: link}}\n"
+                         "      - {mass: 0.1, position: [0.7, 0, 1.5], joint: {type: link}}\n"
+                         "      - {mass: 0.1, position: [1.1, 0.1, 1.4], joint: {type: link}}\n"
+                         "      - {mass: 0.1, position: [1.5, 0, 1.5], joint: {type: link}}\n"
+                         "dynamics: {integrator: rattle, step: 1e-3, steps: 20}\noutput: {every: 1000}\n"};
+using FromRest = Restart;
+
+TEST_P(FromRest, SweepsAreAddedAsInTheUndisturbedRun) {
+    auto const sweeps = [](nlohmann::json const& summary) { return summary["solver"]["sweeps_a_drift"].get<int>(); };
+    int const at_start = sweeps(run("start", 0)), at_end = sweeps(run("whole", 40));
+    EXPECT_GT(at_end, at_start);
+    for (int const stop : {4, 5, 8, 16}) {
+        std::string const name = "parts-" + std::to_string(stop);
+        run(name, stop);
+        EXPECT_EQ(sweeps(run(name, 40, folder_ / (name + "/checkpoint.h5"))), at_end) << stop;
+        EXPECT_EQ(read_checkpoint(folder_ / (name + "/checkpoint.h5")).arrays, read_checkpoint(folder_ / "whole/checkpoint.h5").arrays)
+            << stop;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, FromRest, testing::Values(from_rest), [](auto const& scene) { return scene.param.name; });
 INSTANTIATE_TEST_SUITE_P(Integrators, Restart, testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
 
 }  // namespace

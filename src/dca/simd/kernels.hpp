@@ -120,7 +120,7 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         RunsInLanes const& runs = work_.runs[item];
         fill(runs, p, -1);
         if (!Leaf::beads && work_.keeps_all)
-            use_kept(item, p, first, next);
+            use_kept(runs, item, p, first, next);
         else
             eliminate_again(runs, p, first, next);
         empty(runs, p);
@@ -145,12 +145,13 @@ class RunsSideBySide : RunsInTile<Real, Leaf> {
         back(kept, first, next, [&](int i) { return passed[i].gain * next + passed[i].offset; });
     }
     /// As Evaluation::forces.
-    void use_kept(std::int64_t item, int p, Directions const& first, Directions next) {
+    void use_kept(RunsInLanes const& runs, std::int64_t item, int p, Directions const& first, Directions next) {
         Elimination<Real, K> passed[part_length];
         Kept kept[part_length];
         auto bodies = bodies_.walk(begin_);
         Directions b2;
         each_body<unrolled<K>>(0, part_length, [&](int i) {
+            ask(runs, p * part_length + i, -1);
             kept[i] = bodies_.keep(bodies.body(i));
             Passed joint;
             load_vectors<Real>(place_of_passed(item, p * part_length + i), joint);
@@ -197,9 +198,9 @@ template <class Real, class Leaf>
     for (std::int64_t item = end; item-- > begin;) runs.descend(item);  // what was climbed last may still be near
 }
 template <class Real, class Leaf>
-void prefetch_merge(MergeWork<Leaf> const& work, std::int64_t item) {
+[[gnu::always_inline]] inline void prefetch_merge(MergeWork<Leaf> const& work, std::int64_t item) {
     constexpr int numbers_of_node = node_numbers<Leaf::K> * Real::lanes;
-    auto const prefetch_segments = [&sweeps = work.sweeps](std::int64_t const* slots) {
+    auto const prefetch_segments = [&sweeps = work.sweeps](std::int64_t const* slots) [[gnu::always_inline]] {
         prefetch_records<Real>(sweeps.matrices, slots);
         prefetch_records<Real>(sweeps.biases, slots);
     };

@@ -69,7 +69,7 @@ void gather(RecordsView<OfOne, order> from, std::int64_t const* index, Record& r
 
 /// Of as many places as a vector has lanes.
 template <class Real, class OfOne, Order order>
-void prefetch_records(RecordsView<OfOne, order> from, std::int64_t const* index) {
+[[gnu::always_inline]] inline void prefetch_records(RecordsView<OfOne, order> from, std::int64_t const* index) {
     constexpr int count = RecordsView<OfOne, order>::numbers;
     for (int j = 0; j < Real::lanes; ++j) prefetch<Real>(from.origin, index[j] * count, count);
 }

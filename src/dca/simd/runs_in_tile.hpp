@@ -126,10 +126,14 @@ class RunsInTile {
     /// With body i, in turn: the next item's bodies usually follow, or come before where the way is back.
     [[gnu::always_inline]] void ask(RunsInLanes const& runs, int i, int way) const {
         if (!work_.asks_ahead) return;
+        // A whole run in the tile is read at once, at the next item's beginning.
         std::int64_t const ahead = (by_runs ? 2 : 1) * way * bodies_of_item;
         tile_.ask_to_read(runs.body, ahead, i, count(way));
         if (way < 0) tile_.ask_to_write(runs.body, ahead, i);
         if constexpr (constants_of<Leaf> > 0) {
+            // Two parts further. On the way back a run on hinges may need those of its ends alone.
+            bool const of_ends = Leaf::by_inertia && way < 0 && !out_.by_all_bodies();
+            if (of_ends && (i < part_length || i >= longest_run - part_length)) return;
             constexpr int of_body = constants_of<Leaf> * lanes, two_parts = 2 * part_length * of_body;
             prefetch<Real>(constants(runs, 0) + i * of_body, way * two_parts, of_body);
         }
