@@ -31,16 +31,15 @@ void ConstrainedIntegrator::observe() {
     for (AbsoluteDynamics* group : groups_) group->observe((pending_ - 0.5) * scheme_.step);
 }
 
-/// The first drift of a step from the state of now.
-void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps) const {
-    // Steps with implicit joints are long for what may start at rest.
-    if (is_implicit(scheme_.kind)) group.draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group.group().chain.size(), true));
+/// The first drift of a step from the state of now, or as fast as a thermostat will have it.
+void ConstrainedIntegrator::begin_trial(AbsoluteDynamics& group, int sweeps, bool thermal) const {
+    if (thermal) group.draw_velocities(scheme_.kt, scheme_.seed, std::vector<bool>(group.group().chain.size(), true));
     group.kick(pending_ * scheme_.step);
     group.drift(scheme_.step / drifts(), sweeps);
 }
 
 /// Where so many suffice.
-bool ConstrainedIntegrator::choose_sweeps(int most) {
+bool ConstrainedIntegrator::choose_sweeps(int most, bool thermal) {
     std::vector<std::vector<StateArray>> before;
     for (AbsoluteDynamics* group : groups_) before.push_back(group->state());
     auto const put_back = [&](std::size_t g) {
@@ -51,10 +50,10 @@ bool ConstrainedIntegrator::choose_sweeps(int most) {
         double worst = 0;
         for (std::size_t g = 0; g < groups_.size(); ++g) {
             if (sweeps == 1)
-                begin_trial(*groups_[g], sweeps);
+                begin_trial(*groups_[g], sweeps, thermal);
             else if (!groups_[g]->close_further(scheme_.step / drifts())) {
                 put_back(g);
-                begin_trial(*groups_[g], sweeps);
+                begin_trial(*groups_[g], sweeps, thermal);
             }
             worst = larger(worst, groups_[g]->constraint_error());
         }
@@ -79,10 +78,14 @@ void ConstrainedIntegrator::choose_sweeps() {
         // A sweep that gains two digits has room for joints that turn more than those of the trial.
         int constexpr few = 8, most_parts = 64;
         for (parts_ = 1; parts_ <= most_parts; parts_ *= 2)
-            if (choose_sweeps(few)) return;
+            if (choose_sweeps(few, true)) return;
         parts_ = most_parts;
     }
-    if (choose_sweeps(most_sweeps)) return;
+    int const of_now = choose_sweeps(most_sweeps, false) ? sweeps_ : 0;
+    if (of_now > 0 && (!is_langevin(scheme_.kind) || choose_sweeps(most_sweeps, true))) {
+        sweeps_ = std::max(sweeps_, of_now);
+        return;
+    }
     std::ostringstream line;
     line << "the joints do not close to dynamics.constraint_tolerance = " << scheme_.tolerance << " within " << most_sweeps
          << " sweeps of a step of " << scheme_.step << " (error " << last_error_

@@ -27,7 +27,8 @@ class ConstrainedIntegrator {
     void step(std::int64_t n);
     /// Velocities at x_n as an observer sees them (both half kicks in their places), into the dynamics' observed state. Before step().
     void observe();
-    /// Quasi-Newton sweeps a drift makes from now on: the fewest that reach `early` * `tolerance`, or rounding, from the present state.
+    /// Quasi-Newton sweeps a drift makes from now on: the fewest that reach `early` * `tolerance`, or rounding, from the present state
+    /// and, under a thermostat, from thermal velocities.
     /// Configuration, matrices and forces must be ready; the state is put back. Throws ComputationError when 30 do not suffice.
     void choose_sweeps();
 
@@ -47,8 +48,8 @@ class ConstrainedIntegrator {
 
   private:
     int drifts() const { return (is_langevin(scheme_.kind) ? 2 : 1) * parts_; }
-    void begin_trial(AbsoluteDynamics&, int sweeps) const;
-    bool choose_sweeps(int most);
+    void begin_trial(AbsoluteDynamics&, int sweeps, bool thermal) const;
+    bool choose_sweeps(int most, bool thermal);
     ConstrainedScheme scheme_;
     std::vector<AbsoluteDynamics*> groups_;
     int sweeps_ = 0, parts_ = 1;

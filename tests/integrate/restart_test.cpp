@@ -188,6 +188,19 @@ TEST_P(FromRest, SweepsAreAddedAsInTheUndisturbedRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FromRest, testing::Values(from_rest), [](auto const& scene) { return scene.param.name; });
+/// Whatever a thermostat does to what starts at rest.
+RunScene const heated{"heated",
+                      "chains: [{base: free, velocities: zero, count: 3, generator: {freely_jointed: {beads: 60, length: 0.38}}}]\n"
+                      "dynamics: {integrator: g-baoab, step: 0.01, steps: 200, temperature: 300, friction: 10}\noutput: {every: 200}\n"};
+using Heated = Restart;
+
+TEST_P(Heated, JointsStayClosed) {
+    nlohmann::json const summary = run("run", 200);
+    EXPECT_TRUE(summary["valid"].get<bool>());
+    EXPECT_GT(summary["last_observables"]["temperature [K]"].get<double>(), 200);
+}
+
+INSTANTIATE_TEST_SUITE_P(Integrators, Heated, testing::Values(heated), [](auto const& scene) { return scene.param.name; });
 INSTANTIATE_TEST_SUITE_P(Integrators, Restart, testing::ValuesIn(run_scenes), [](auto const& scene) { return scene.param.name; });
 
 }  // namespace
