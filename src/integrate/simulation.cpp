@@ -149,16 +149,20 @@ class Run {
         if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
         if (scene_.output.joint_forces)
             for (TipForce const& tip : system_.tip_forces()) pending_->at_tips.push_back(tip.wrench);
-        bool const beside = communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside;
-        if (beside) try {
-                frame_ = std::async(std::launch::async, [this] { write(*pending_); });
-                ++frames_beside_;
-                return;
-            } catch (std::system_error const&) {  // no thread is to be had
-            }
+        if (communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside && write_beside()) return;
         write(*pending_);
         pending_.reset();
         folder_->check();
+    }
+    /// False where no thread is to be had.
+    bool write_beside() {
+        try {
+            frame_ = std::async(std::launch::async, [this] { write(*pending_); });
+        } catch (std::system_error const&) {
+            return false;
+        }
+        ++frames_beside_;
+        return true;
     }
     /// The frame that is being written, if one is. Throws what it failed by.
     void end_frame() {

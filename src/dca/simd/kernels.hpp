@@ -200,12 +200,11 @@ template <class Real, class Leaf>
 template <class Real, class Leaf>
 [[gnu::always_inline]] inline void prefetch_merge(MergeWork<Leaf> const& work, std::int64_t item) {
     constexpr int numbers_of_node = node_numbers<Leaf::K> * Real::lanes;
-    auto const prefetch_segments = [&sweeps = work.sweeps](std::int64_t const* slots) [[gnu::always_inline]] {
-        prefetch_records<Real>(sweeps.matrices, slots);
-        prefetch_records<Real>(sweeps.biases, slots);
-    };
-    prefetch_segments(work.merges[item].inboard);
-    prefetch_segments(work.merges[item].outboard);
+    std::int64_t const* const segments[] = {work.merges[item].inboard, work.merges[item].outboard};
+    for (std::int64_t const* slots : segments) {
+        prefetch_records<Real>(work.sweeps.matrices, slots);
+        prefetch_records<Real>(work.sweeps.biases, slots);
+    }
     prefetch_to_write<Real>(work.nodes, item * numbers_of_node, numbers_of_node);
 }
 template <class Real, class Leaf>
