@@ -38,9 +38,7 @@ std::vector<StepTimeline> CatenaSteps::timelines(int count) {
     return timelines;
 }
 
-void CatenaSteps::adapt() {
-    if (watch_.is_due(last_error_, stepper_->early() * tolerance(), tolerance()) && stepper_->add_sweep()) watch_.added(last_error_);
-}
+void CatenaSteps::adapt() { stepper_->adapt(watch_, last_error_, tolerance()); }
 
 ChainSystem::Snapshot CatenaSteps::observe() {
     system_.make_current();

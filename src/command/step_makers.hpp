@@ -8,7 +8,6 @@
 #include "command/requests.hpp"
 #include "force/openmm_own.hpp"
 #include "integrate/stepper.hpp"
-#include "integrate/sweep_watch.hpp"
 
 namespace catena::command {
 

@@ -15,7 +15,6 @@
 #include "integrate/start_velocities.hpp"
 #include "integrate/step_messages.hpp"
 #include "integrate/stepper.hpp"
-#include "integrate/sweep_watch.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -209,10 +208,8 @@ class Run {
     void adapt(std::int64_t n, double error) {
         worst_error_ = std::max(worst_error_, error);
         if (n == first_ && !options_.restart.empty()) return;  // the run before did
-        double const tolerance = scene_.dynamics.constraint_tolerance;
-        if (!watch_.is_due(error, stepper_->early() * tolerance, tolerance) || !stepper_->add_sweep()) return;
-        watch_.added(error);
-        notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
+        if (stepper_->adapt(watch_, error, scene_.dynamics.constraint_tolerance))
+            notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
     }
 
     /// So far; without what OpenMM is brought, which StepMessages does not tell.

@@ -190,6 +190,11 @@ class ConstrainedStepper final : public Stepper {
 
 }  // namespace
 
+bool Stepper::adapt(SweepWatch& watch, double error, double tolerance) {
+    if (!watch.is_due(error, early() * tolerance, tolerance) || !add_sweep()) return false;
+    watch.added(error);
+    return true;
+}
 json Stepper::inner_steps() const { return nullptr; }
 
 std::unique_ptr<Stepper> make_stepper(ChainSystem& system, DynamicsSpec const& dynamics) {

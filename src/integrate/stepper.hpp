@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "integrate/joint_integrators.hpp"
+#include "integrate/sweep_watch.hpp"
 #include "io/output.hpp"
 
 namespace catena {
@@ -19,10 +20,8 @@ class Stepper {
     virtual void observe(bool joint_forces) = 0;
     virtual void step(std::int64_t n, StepTimeline*) = 0;
     virtual double constraint_error() = 0;
-    /// Of the tolerance: above that another sweep is due.
-    virtual double early() const = 0;
-    /// One more projection sweep from now on; false where there is none to add.
-    virtual bool add_sweep() = 0;
+    /// One more projection sweep from now on where `watch` says that one is due and there is one to add. Returns whether it was added.
+    bool adapt(SweepWatch& watch, double error, double tolerance);
     /// Of a drift; in joint coordinates corrections of jointed tips.
     virtual int sweeps() const = 0;
     /// That every drift is taken in.
@@ -36,6 +35,12 @@ class Stepper {
     virtual void save(ChainSystem::OwnState&) const {}
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;
+
+  protected:
+    /// Of the tolerance: above that another sweep is due.
+    virtual double early() const = 0;
+    /// False where there is none to add.
+    virtual bool add_sweep() = 0;
 };
 
 std::unique_ptr<Stepper> make_stepper(ChainSystem&, DynamicsSpec const&);

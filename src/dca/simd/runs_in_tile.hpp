@@ -126,7 +126,7 @@ class RunsInTile {
     /// With body i, in turn: the next item's bodies usually follow, or come before where the way is back.
     [[gnu::always_inline]] void ask(RunsInLanes const& runs, int i, int way) const {
         if (!work_.asks_ahead) return;
-        // A whole run in the tile is read at once, at the next item's beginning.
+        // A whole run in the tile is read at once, at the next item's beginning: what is asked for last would come too late.
         std::int64_t const ahead = (by_runs ? 2 : 1) * way * bodies_of_item;
         tile_.ask_to_read(runs.body, ahead, i, count(way));
         if (way < 0) tile_.ask_to_write(runs.body, ahead, i);
