@@ -7,13 +7,14 @@
 #include "error.hpp"
 
 namespace catena::cuda {
-namespace {
 
-Vec3 mean(std::vector<Vec3> const& x) {
+Vec3 mean(std::span<Vec3 const> x) {
     Vec3 sum = Vec3::zero();
     for (Vec3 const& each : x) sum = sum + each;
     return (1.0 / static_cast<double>(x.size())) * sum;
 }
+
+namespace {
 
 /// Of the only rank.
 class LonePath final : public GpuPath {
@@ -50,7 +51,7 @@ class LonePath final : public GpuPath {
         for (std::size_t i = 0; i < x.size(); ++i)
             if (!std::isfinite(norm(x[i]))) flags_->data()->trouble = static_cast<std::int64_t>(i);
         refuse_trouble();
-        order(x, {});
+        order(x, {}, mean(x));
     }
 };
 
@@ -99,8 +100,8 @@ std::vector<Vec3> GpuPath::positions() {
     return x;
 }
 
-void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others) {
-    particles_.origin = plan_.shifted ? mean(x) : Vec3::zero();
+void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others, Vec3 const& middle) {
+    particles_.origin = plan_.shifted ? middle : Vec3::zero();
     std::size_t particles = x.size();
     for (Others const& more : others) particles += more.particle.size();
     std::vector<double> of_particle(3 * particles);
@@ -124,7 +125,7 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others) 
     particles_.double_position = arrays.double_precision ? static_cast<double*>(arrays.position) : nullptr;
     particles_.position = arrays.double_precision ? nullptr : static_cast<float*>(arrays.position);
     particles_.correction = static_cast<float*>(arrays.correction);
-    particles_.force = static_cast<std::int64_t const*>(arrays.force);
+    particles_.force = static_cast<std::int64_t*>(arrays.force);
     particles_.places = arrays.places;
     of_this_order_ = 0;
 }
@@ -143,6 +144,7 @@ void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     if (timed_) events_->openmm_begin.record(stream_);
     openmm_->compute();
     if (timed_) events_->openmm_end.record(stream_);
+    complete_forces();
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));

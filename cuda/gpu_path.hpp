@@ -16,8 +16,13 @@ namespace catena::cuda {
 /// Of a Context that outlives it.
 std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context&);
 
+Vec3 mean(std::span<Vec3 const> x);
+
 /// Ghosts that arrived go where they belong.
 void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
+/// Forces on beads go to their ranks, and those on so many own ones that came from there are added.
+void send(SentForces const&, cudaStream_t);
+void add(std::int64_t count, ReturnedForces const&, cudaStream_t);
 
 class GpuPath : public DevicePath {
   public:
@@ -53,12 +58,15 @@ class GpuPath : public DevicePath {
         std::span<int const> particle;
         std::span<Vec3 const> position;
     };
-    /// Gives OpenMM's particles a new order. `x`: of own beads, `others`: of the Context's other particles.
-    void order(std::vector<Vec3> const& x, std::span<Others const> others);
+    /// Gives OpenMM's particles a new order. `x`: of own beads, `others`: of the Context's other particles; `middle`: goes to the origin
+    /// where all may be moved by one vector.
+    void order(std::vector<Vec3> const& x, std::span<Others const> others, Vec3 const& middle);
     DeviceBead bead_of(int particle, Vec3 const& x) const { return bead_at(place_[static_cast<std::size_t>(particle)], x, plan_.box); }
     /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.
     void put_own(std::span<DeviceBeads* const> beads);
     void compute(std::span<DeviceBeads* const> beads);
+    /// Of compute(), once OpenMM has been given its work: what its forces lack yet.
+    virtual void complete_forces() {}
     template <class T>
     void upload(Buffer<T> const& to, T const* from, std::size_t count) {
         if (count > 0) check(cudaMemcpyAsync(to.data(), from, count * sizeof(T), cudaMemcpyHostToDevice, stream_), "take OpenMM's order");

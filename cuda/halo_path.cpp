@@ -8,6 +8,7 @@
 
 #include "clock.hpp"
 #include "cuda/gpu_path.hpp"
+#include "cuda/pair_share.hpp"
 #include "cuda/peer_inboxes.hpp"
 #include "error.hpp"
 #include "force/halo.hpp"
@@ -36,7 +37,11 @@ class Room {
 
 class HaloPath final : public GpuPath {
   public:
-    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan), evaluations_of_an_order), halo_(*plan_.halo) {}
+    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan), evaluations_of_an_order), halo_(*plan_.halo) {
+        if (!halo_.groups_of_share()) return;
+        of_an_order_ = evaluations_of_all_beads;
+        pairs_ = std::make_unique<PairShare>(halo_);
+    }
     ~HaloPath() override { make_current(); }  // what it owns lives there
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
@@ -55,7 +60,7 @@ class HaloPath final : public GpuPath {
 
   private:
     /// Where lists are made anew ghosts come from elsewhere.
-    static constexpr int evaluations_of_an_order = 250;
+    static constexpr int evaluations_of_an_order = 250, evaluations_of_all_beads = 4000;
 
     Halo::Lists const& lists() const { return halo_.lists(); }
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
@@ -66,19 +71,29 @@ class HaloPath final : public GpuPath {
     void show(std::span<DeviceBeads* const> beads) {
         cudaStream_t const last = stream_of(*beads.back());
         std::int64_t next = 0;
+        // Into a new order they come as they are. OpenMM's forces do not see more than single precision has.
+        bool const rounded = pairs_ && inboxes_ && of_this_order_ > 0 && particles_.position && !halo_.is_audited();
+        shown_.particles = particles_;
+        shown_.rounded = rounded ? rounded_.of(3 * lists().sent.size()).data() : nullptr;
         for (DeviceBeads* group : beads) {
             group->show(shown_.from(next));
             events_->positions.record(stream_of(*group));
             events_->positions.hold(last);
             next += group->count();
         }
+        bool const kernel_waits = pairs_ && inboxes_;  // for what is sent: the host asks how far beads are meanwhile
+        if (kernel_waits) is_shown_.record(last);
         if (inboxes_) {
             inboxes_->turn();
-            inboxes_->send(lists().messages, shown_.shown, last);
+            if (shown_.rounded)
+                inboxes_->send(lists().messages, shown_.rounded, lists().one_for_all, last);
+            else
+                inboxes_->send(lists().messages, shown_.shown, lists().one_for_all, last);
+            is_sent_.record(last);
         } else if (!out().empty()) {
             check(cudaMemcpyAsync(out().data(), shown_.shown, out().size_bytes(), cudaMemcpyDeviceToHost, last), "show its beads");
         }
-        is_shown_.record(last);
+        if (!kernel_waits) is_shown_.record(last);
     }
 
     void exchange_and_compute(std::span<DeviceBeads* const> beads) {
@@ -100,24 +115,47 @@ class HaloPath final : public GpuPath {
             halo_.note_carried();
         else
             halo_.carry(out(), in());
+        if (pairs_ && inboxes_) {
+            is_sent_.hold(stream_);
+            pairs_->wait_for_positions(stream_);
+        }
         if (inboxes_ && (halo_.is_audited() || of_this_order_ == 0 || !ghosts_are_placed_)) look_into_inbox();
         if (halo_.is_audited()) halo_.audit(positions(), in());
         exchange_.end = seconds_now();
         if (of_this_order_ == 0) {
             Others const others[] = {{lists().particle, in()}, {lists().idle, lists().aside}};
-            order(positions(), others);
+            std::vector<Vec3> const own = positions();
+            order(own, others, pairs_ ? middle_of_all(own) : mean(own));
             own_are_put_ = ghosts_are_placed_ = false;
         }
         if (!own_are_put_) put_own(beads);
         if (!std::exchange(ghosts_are_placed_, true)) place_ghosts();
         put_ghosts();
+        if (pairs_ && pairs_->choose(*openmm_, of_this_order_ == 0)) list_shown();
         compute(beads);
+    }
+    void complete_forces() override {
+        if (pairs_) pairs_->complete(particles_, ghosts_from(0).particles, stream_);
+    }
+
+    /// From where own beads are now they may move until the next list of pairs.
+    void list_shown() {
+        std::size_t const bytes = lists().sent.size() * sizeof(Vec3);
+        check(cudaMemcpyAsync((*listed_).data(), shown_.shown, bytes, cudaMemcpyDeviceToDevice, stream_), "take lists");
+    }
+
+    /// The same on every rank, to the bit: ranks that share out pairs must find them in one order.
+    Vec3 middle_of_all(std::vector<Vec3> const& own) const {
+        std::vector<Vec3> all(own.size() + in().size());
+        for (std::size_t i = 0; i < own.size(); ++i) all[static_cast<std::size_t>(plan_.particle[i])] = own[i];
+        for (std::size_t i = 0; i < in().size(); ++i) all[static_cast<std::size_t>(lists().particle[i])] = in()[i];
+        return mean(all);
     }
 
     /// For the host.
     void look_into_inbox() {
         if (in().empty()) return;
-        check(cudaMemcpyAsync(in().data(), inboxes_->arrived(), in().size_bytes(), cudaMemcpyDeviceToHost, stream_), "take ghosts");
+        check(cudaMemcpyAsync(in().data(), inboxes_->arrived<double>(), in().size_bytes(), cudaMemcpyDeviceToHost, stream_), "take ghosts");
         check(cudaStreamSynchronize(stream_), "take ghosts");
     }
 
@@ -131,9 +169,10 @@ class HaloPath final : public GpuPath {
     void make_lists(std::span<DeviceBeads* const> beads) {
         std::vector<Vec3> const x = positions();
         for (DeviceBeads* group : beads) check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
-        compute_with(nullptr);
+        bool const lasts = pairs_ && openmm_;  // which knows its share
+        if (!lasts) compute_with(nullptr);
         halo_.make_lists(x);
-        compute_with(on_device(halo_.context()));
+        if (!lasts) compute_with(on_device(halo_.context()));
         if (!make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
         if (!lists().keeps_particles) of_this_order_ = 0;
         ghosts_are_placed_ = false;
@@ -142,6 +181,7 @@ class HaloPath final : public GpuPath {
         if (!has_way_ && halo_.every_rank_has_beads()) inboxes_ = PeerInboxes::make(halo_.communicator());
         has_way_ = true;
         if (inboxes_ && !inboxes_->fit(lists().messages)) inboxes_.reset();
+        if (pairs_ && !pairs_->fit(inboxes_ != nullptr)) inboxes_.reset();
         out_.of(lists().sent.size());
         in_.of(lists().particle.size());
     }
@@ -156,8 +196,9 @@ class HaloPath final : public GpuPath {
         shown_.first = (*first_).data();
         shown_.place = (*place_of_shown_).data();
         shown_.shown = show_.of(3 * lists().sent.size()).data();
-        shown_.listed = lists().farthest ? (*listed_).data() : nullptr;
-        double const farthest = lists().farthest.value_or(0);
+        std::optional<double> const lasts = pairs_ ? openmm_->list_lasts() : lists().farthest;
+        shown_.listed = lasts ? (*listed_).data() : nullptr;
+        double const farthest = lasts.value_or(0);
         shown_.farthest_squared = farthest * farthest;
         shown_.far = &flags_->data()->far;
         shown_.trouble = &flags_->data()->trouble;
@@ -190,8 +231,10 @@ class HaloPath final : public GpuPath {
     void put_ghosts() {
         if (in().empty()) return;
         ArrivedBeads arrived = ghosts_from(0);
-        if (inboxes_)
-            arrived.position = inboxes_->arrived();
+        if (inboxes_ && shown_.rounded)
+            arrived.rounded = inboxes_->arrived<float>();
+        else if (inboxes_)
+            arrived.position = inboxes_->arrived<double>();
         else
             check(cudaMemcpyAsync((*arrived_).data(), in().data(), in().size_bytes(), cudaMemcpyHostToDevice, stream_), "take ghosts");
         put(static_cast<std::int64_t>(in().size()), arrived, stream_);
@@ -200,10 +243,12 @@ class HaloPath final : public GpuPath {
     Halo& halo_;
     bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
     std::unique_ptr<PeerInboxes> inboxes_;  // null: positions pass through the host
+    std::unique_ptr<PairShare> pairs_;      // null: OpenMM computes all that acts on own beads
     ShownBeads shown_;
-    Event is_shown_{Event::For::clock};
+    Event is_shown_{Event::For::clock}, is_sent_{Event::For::order};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;
     Room<Buffer<double>> listed_, show_, arrived_;
+    Room<Buffer<float>> rounded_;
     Room<Buffer<DeviceBead>> ghost_;
     Room<PinnedBuffer<Vec3>> out_, in_;
 };

@@ -29,6 +29,7 @@ std::vector<fs::path> module_folders() {
 struct Module {
     ModuleEntry entry = nullptr;
     std::string why_not;
+    ModuleSharesPairs shares_pairs = nullptr;
 };
 
 Module load() {
@@ -38,7 +39,8 @@ Module load() {
         if (!fs::exists(folder / module_file, ignored)) continue;
         void* const library = dlopen((folder / module_file).c_str(), RTLD_NOW | RTLD_LOCAL);
         void* const entry = library ? dlsym(library, module_entry) : nullptr;
-        if (entry) return {reinterpret_cast<ModuleEntry>(entry), ""};
+        if (entry)
+            return {reinterpret_cast<ModuleEntry>(entry), "", reinterpret_cast<ModuleSharesPairs>(dlsym(library, module_shares_pairs))};
         char const* const reason = dlerror();
         return {nullptr, reason ? reason : std::string(module_file) + " has no entry"};
     }
@@ -53,6 +55,10 @@ Module const& module() {
 }  // namespace
 
 std::string const& why_no_device_path() { return module().why_not; }
+
+std::string why_pairs_cannot_be_shared() {
+    return module().shares_pairs && module().shares_pairs() ? "" : "this OpenMM's kernel for pairs is not one that can be told which";
+}
 
 int chosen_device() {
     int device = 0;

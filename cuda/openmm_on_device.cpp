@@ -3,12 +3,38 @@
 #include <OpenMM.h>
 #include <cuda.h>
 #include <openmm/cuda/CudaContext.h>
+#include <openmm/cuda/CudaNonbondedUtilities.h>
 #include <openmm/cuda/CudaPlatform.h>
+
+#include <string>
 
 #include "force/openmm_impl.hpp"
 
+namespace OpenMM {
+/// In the library, not in its headers: another version may lack it.
+class CudaKernelSources {
+  public:
+    __attribute__((weak)) static std::string const nonbonded;
+};
+}  // namespace OpenMM
+
 namespace catena::cuda {
 namespace {
+
+/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list, those that a context computes. OpenMM
+/// defines them by the contexts of one process.
+constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE";
+
+bool shares_pairs() {
+    if (&OpenMM::CudaKernelSources::nonbonded == nullptr) return false;
+    std::string const& source = OpenMM::CudaKernelSources::nonbonded;
+    return source.find(first_tile) != std::string::npos && source.find(last_tile) != std::string::npos;
+}
+
+std::string with(std::string text, std::string const& word, std::string const& value) {
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += value.size()) text.replace(at, word.size(), value);
+    return text;
+}
 
 OpenMM::CudaContext& gpu_of(OpenMM::ContextImpl& context) {
     return *static_cast<OpenMM::CudaPlatform::PlatformData*>(context.getPlatformData())->contexts.at(0);
@@ -38,10 +64,32 @@ class OnDevice final : public OpenMmOnDevice {
         context_.setPositions(particles);  // and reorders
         return gpu_.getAtomIndex();
     }
-    void compute() override { impl_.calcForcesAndEnergy(true, false, all_groups); }
+    void compute() override { impl_.calcForcesAndEnergy(true, false, groups_); }
+    void share(int groups, int part, int parts) override {
+        groups_ = groups;
+        auto const tiles = static_cast<std::int64_t>(pairs().getExclusionTiles().getSize());
+        std::string const begin = std::to_string(tiles * part / parts), end = std::to_string(tiles * (part + 1) / parts);
+        pairs().setKernelSource(with(with(OpenMM::CudaKernelSources::nonbonded, first_tile, begin), last_tile, end));
+    }
+    void make_list(double begin, double end) override { pairs().setAtomBlockRange(begin, end); }
+    /// Without blocks OpenMM finds nothing to prepare, and goes on to compute what is in the list.
+    void keep_list() override { pairs().setAtomBlockRange(0, 0); }
+    double list_lasts() override {
+        double const reach = pairs().getMaxCutoffDistance();
+        return (pairs().padCutoff(reach) - reach) / 2;
+    }
+    double tiles() override {
+        OpenMM::CudaArray& counts = pairs().getInteractionCount();
+        std::vector<unsigned int> found(counts.getSize());
+        counts.download(found);
+        double constexpr pairs_of_a_tile = 32 * 32;
+        return found.at(0) + found.at(1) / pairs_of_a_tile;
+    }
 
   private:
-    static constexpr int all_groups = -1;
+    OpenMM::CudaNonbondedUtilities& pairs() { return gpu_.getNonbondedUtilities(); }
+
+    int groups_ = -1;  // all
     OpenMM::Context& context_;
     OpenMM::ContextImpl& impl_;
     OpenMM::CudaContext& gpu_;
@@ -54,3 +102,4 @@ class OnDevice final : public OpenMmOnDevice {
 extern "C" __attribute__((visibility("default"))) catena::cuda::OpenMmOnDevice* catena_openmm_on_device(OpenMM::Context& context) {
     return new catena::cuda::OnDevice(context);
 }
+extern "C" __attribute__((visibility("default"))) bool catena_openmm_shares_pairs() { return catena::cuda::shares_pairs(); }

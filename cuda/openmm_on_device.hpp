@@ -15,7 +15,7 @@ namespace catena::cuda {
 struct OpenMmArrays {
     void *position = nullptr, *correction = nullptr;
     bool double_precision = false;
-    void const* force = nullptr;
+    void* force = nullptr;
     std::int64_t places = 0;
     void* stream = nullptr;  // that OpenMM computes on
 };
@@ -31,10 +31,26 @@ class OpenMmOnDevice {
     virtual std::vector<int> const& order(std::vector<double> const& positions) = 0;
     /// Forces at the positions of its arrays. Returns once its neighbour list stands, maybe before the forces do.
     virtual void compute() = 0;
+
+    /// From now on compute() finds the forces of these groups (bits) alone, and among pairs those of part `part` of `parts`. Before the
+    /// first compute(). Throws what OpenMM throws.
+    virtual void share(int groups, int part, int parts) = 0;
+    /// The next compute() makes its neighbour list anew: of pairs whose first block of 32 places is from `begin` to `end` of the row of
+    /// all, whose ends are 0 and 1. Whoever computes the others needs the same order and does so at the same evaluation.
+    virtual void make_list(double begin, double end) = 0;
+    /// From now on compute() takes the list that there is, and does not look for what has moved. Until make_list().
+    virtual void keep_list() = 0;
+    /// How far particles may move until their list is to be made anew, nm.
+    virtual double list_lasts() = 0;
+    /// How many tiles of 32 by 32 pairs the list has, pairs by themselves as their part of one; 0: OpenMM keeps none of so few particles,
+    /// and keep_list() must not be called. Waits for it.
+    virtual double tiles() = 0;
 };
 
 inline constexpr char const* module_file = "libcatena_openmm_cuda.so";
 inline constexpr char const* module_entry = "catena_openmm_on_device";
+inline constexpr char const* module_shares_pairs = "catena_openmm_shares_pairs";
 using ModuleEntry = OpenMmOnDevice* (*)(OpenMM::Context&);  // the caller owns what it returns
+using ModuleSharesPairs = bool (*)();                       // whether OpenMmOnDevice::share() is to be had
 
 }  // namespace catena::cuda

@@ -45,18 +45,8 @@ bool PeerInboxes::map_anew(std::int64_t received) {
     return !base_.empty();
 }
 
-double* PeerInboxes::at(int rank, std::int64_t position) const {
-    return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * (turn_ * capacity_ + position);
-}
-
-void PeerInboxes::send(std::span<Halo::Message const> messages, double const* shown, cudaStream_t stream) const {
-    for (Halo::Message const& m : messages) {
-        if (m.sent > 0)
-            check(cudaMemcpyAsync(at(m.rank, first_[static_cast<std::size_t>(m.rank)]), shown,
-                                  static_cast<std::size_t>(m.sent) * sizeof(Vec3), cudaMemcpyDefault, stream),
-                  "show its beads");
-        shown += 3 * m.sent;
-    }
+void* PeerInboxes::box(int rank) const {
+    return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * turn_ * capacity_;
 }
 
 }  // namespace catena::cuda

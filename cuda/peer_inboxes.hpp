@@ -1,4 +1,5 @@
-// Where positions of ghosts arrive on each rank's GPU, written there by the GPUs of the others: they do not pass through the host then.
+// Where positions of ghosts, and forces on them, arrive on each rank's GPU, written there by the GPUs of the others: they do not pass
+// through the host then.
 #pragma once
 
 #include <cstdint>
@@ -27,15 +28,31 @@ class PeerInboxes {
     bool fit(std::span<Halo::Message const> messages);
     /// From now on the other one is filled and read. On every rank.
     void turn() { turn_ = 1 - turn_; }
-    /// Sends `shown`, one message after the other, once the stream comes here.
-    void send(std::span<Halo::Message const> messages, double const* shown, cudaStream_t stream) const;
-    double const* arrived() const { return at(communicator_.rank(), 0); }
+    /// Sends `shown`, three numbers a position, one message after the other or one for all, once the stream comes here.
+    template <class Number>
+    void send(std::span<Halo::Message const> messages, Number const* shown, bool one_for_all, cudaStream_t stream) const {
+        for (Halo::Message const& m : messages) {
+            auto const bytes = 3 * static_cast<std::size_t>(m.sent) * sizeof(Number);
+            if (bytes > 0) check(cudaMemcpyAsync(box_of<Number>(m.rank), shown, bytes, cudaMemcpyDefault, stream), "show its beads");
+            if (!one_for_all) shown += 3 * m.sent;
+        }
+    }
+    /// Where in that rank's inbox what this rank sends goes: numbers of eight bytes or less.
+    template <class Number>
+    Number* box_of(int rank) const {
+        static_assert(sizeof(Number) <= sizeof(double));
+        return static_cast<Number*>(box(rank)) + 3 * first_[static_cast<std::size_t>(rank)];
+    }
+    template <class Number>
+    Number const* arrived() const {
+        return static_cast<Number const*>(box(communicator_.rank()));
+    }
 
   private:
     explicit PeerInboxes(Communicator const& communicator) : communicator_(communicator) {}
     bool map_anew(std::int64_t received);
-    /// Of a rank, that position in the inbox that is filled now.
-    double* at(int rank, std::int64_t position) const;
+    /// The inbox of a rank that is filled now.
+    void* box(int rank) const;
 
     Communicator const& communicator_;
     int turn_ = 0;

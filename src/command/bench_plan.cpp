@@ -39,6 +39,7 @@ struct Compared {
     bool valid() const { return residual <= bound; }
     double typical() const { return measured[plan::typical_evaluation]; }
     double ratio() const { return predicted.seconds[plan::evaluation] / measured[plan::evaluation]; }
+    double ratio_to_median() const { return predicted.seconds[plan::evaluation] / typical(); }
 };
 
 Compared compare(plan::Family const& family, Scene const& scene, Prediction const& predicted, std::string const& gpu_levels) {
@@ -75,8 +76,15 @@ Json json_of(Compared const& c) {
     Json phases = Json::object();
     for (std::size_t p = 0; p < plan::phases; ++p)
         phases[plan::phase_names[p]] = {{"predicted", c.predicted.seconds[p]}, {"measured", c.measured[p]}};
-    return {{"arrangement", c.name},  {"same_bits", c.predicted.alike}, {"seconds", phases}, {"ratio", c.ratio()},
-            {"residual", c.residual}, {"residual_bound", c.bound},      {"valid", c.valid()}};
+    return {{"arrangement", c.name},
+            {"same_bits", c.predicted.alike},
+            {"seconds", phases},
+            {"median", c.typical()},
+            {"ratio", c.ratio()},
+            {"ratio_to_median", c.ratio_to_median()},
+            {"residual", c.residual},
+            {"residual_bound", c.bound},
+            {"valid", c.valid()}};
 }
 
 /// The quickest as measured, among those that `counts`.
@@ -88,9 +96,14 @@ Compared const& best_of(std::vector<Compared> const& all, Counts const& counts) 
     return *best;
 }
 
+/// Ratios farthest from 1, to the shortest measured and to the median; how much slower than the best.
 struct Worst {
-    double ratio = 1, choice = 0;  // the ratio farthest from 1; how much slower than the best
-    void take(double r) { ratio = std::abs(std::log(r)) > std::abs(std::log(ratio)) ? r : ratio; }
+    double ratio = 1, to_median = 1, choice = 0;
+    static void keep(double& worst, double r) { worst = std::abs(std::log(r)) > std::abs(std::log(worst)) ? r : worst; }
+    void take(double of_shortest, double of_median) {
+        keep(ratio, of_shortest);
+        keep(to_median, of_median);
+    }
 };
 
 void add_case(Outcome& outcome, Table& table, Worst& worst, plan::Planner& planner, plan::Family const& family, std::int64_t bodies) {
@@ -105,16 +118,17 @@ void add_case(Outcome& outcome, Table& table, Worst& worst, plan::Planner& plann
     bool valid = true;
     Json list = Json::array();
     for (Compared const& c : all) {
-        here.take(c.ratio());
+        here.take(c.ratio(), c.ratio_to_median());
         valid = valid && c.valid();
         list.push_back(json_of(c));
     }
-    worst.take(here.ratio);
+    worst.take(here.ratio, here.to_median);
     worst.choice = std::max(worst.choice, slower);
     outcome.valid = outcome.valid && valid;
     table.add({family.name(), std::to_string(bodies), chosen.name, duration_text(chosen.predicted.seconds[plan::evaluation]),
-               duration_text(chosen.measured[plan::evaluation]), fmt::format("{:.2f}", chosen.ratio()), best.name,
-               duration_text(best.typical()), fmt::format("{:.0f} %", 100 * slower), fmt::format("{:.2f}", here.ratio),
+               duration_text(chosen.measured[plan::evaluation]), fmt::format("{:.2f}", chosen.ratio()),
+               fmt::format("{:.2f}", chosen.ratio_to_median()), best.name,
+               duration_text(best.typical()), fmt::format("{:.0f} %", 100 * slower), fmt::format("{:.2f}", here.ratio), fmt::format("{:.2f}", here.to_median),
                valid ? "VALID" : "INVALID"});
     outcome.json["results"].push_back({{"kind", family.name()},
                                        {"bodies", bodies},
@@ -134,7 +148,7 @@ void add_case_or_failure(Outcome& outcome, Table& table, Worst& worst, plan::Pla
     } catch (ComputationError const& error) {
         spdlog::warn("{}, {} bodies: {}", family.name(), bodies, error.what());
         outcome.valid = false;
-        table.add({family.name(), std::to_string(bodies), "-", "-", "-", "-", "-", "-", "-", "-", "FAILED"});
+        table.add({family.name(), std::to_string(bodies), "-", "-", "-", "-", "-", "-", "-", "-", "-", "-", "FAILED"});
         outcome.json["results"].push_back({{"kind", family.name()}, {"bodies", bodies}, {"failure", error.what()}, {"valid", false}});
     }
 }
@@ -143,8 +157,9 @@ void add_case_or_failure(Outcome& outcome, Table& table, Worst& worst, plan::Pla
 
 Outcome bench_plan(Communicator const& communicator, BenchRequest const& request) {
     if (communicator.size() > 1) throw InputError("predictions are compared on one rank", "catena bench plan", "run it without mpirun");
-    Table table({"kind", "bodies", "chosen", "predicted", "measured", "ratio", "best", "median", "slower by", "worst ratio", ""},
-                {0, 2, 6, 10});
+    Table table({"kind", "bodies", "chosen", "predicted", "measured", "ratio", "to median", "best", "median", "slower by", "worst",
+                 "to median", ""},
+                {0, 2, 7, 12});
     Outcome outcome;
     outcome.json = {{"bench", "plan"}, {"build", version_json()}, {"hardware", hardware_json()}, {"results", Json::array()}};
     Worst worst;
@@ -157,15 +172,17 @@ Outcome bench_plan(Communicator const& communicator, BenchRequest const& request
                            outcome.json["left_out"] = planner.machine().no_gpu;
                        });
     outcome.json["worst_ratio"] = worst.ratio;
+    outcome.json["worst_ratio_to_median"] = worst.to_median;
     outcome.json["worst_choice_slower_by"] = worst.choice;
     outcome.json["valid"] = outcome.valid;
     outcome.text = fmt::format(
-        "An evaluation, predicted over measured, the shortest of several; best: the least median of all arrangements that give the same "
+        "An evaluation, predicted over measured, the shortest of several and their median; worst: of all arrangements; best: the least median of all arrangements that give the same "
         "bits. "
         "{}; {}, {}\n",
         hardware_text(), compiler_name(), instruction_set());
     outcome.text += table.text();
-    outcome.text += fmt::format("worst ratio {:.2f}, worst choice {:.0f} % slower than the best\n", worst.ratio, 100 * worst.choice);
+    outcome.text += fmt::format("worst ratio {:.2f}, to the median {:.2f}; worst choice {:.0f} % slower than the best\n", worst.ratio,
+                                worst.to_median, 100 * worst.choice);
     std::string const no_gpu = outcome.json["left_out"];
     if (!no_gpu.empty()) outcome.text += "left out: cuda, cuda-levels: " + no_gpu + "\n";
     outcome.complaint = "a residual above its bound, or a chain that cannot be computed: see the results";

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "force/device_beads.hpp"
+#include "mpi/communicator.hpp"
 
 namespace OpenMM {
 class Context;
@@ -68,6 +69,10 @@ namespace cuda {
 
 /// Empty where OpenMM's arrays can be reached on a GPU by this build and on this machine, else why not.
 std::string const& why_no_device_path();
+/// Empty where such a path can compute some of the pairs of a Context alone, else why not. Precondition: why_no_device_path() is empty.
+std::string why_pairs_cannot_be_shared();
+/// Whether the ranks' GPUs may write to each other's memory. Collective.
+bool gpus_may_write_to_each_other(Communicator const&);
 /// The GPU that choose_device chose.
 int chosen_device();
 /// `context`: of OpenMM's CUDA platform; must outlive it. Precondition: why_no_device_path() is empty.

@@ -36,10 +36,6 @@ std::vector<std::vector<T>> blocks_of_ranks(Communicator const& communicator, st
     return blocks;
 }
 
-[[noreturn]] void throw_trouble(double bead, char const* trouble) {
-    throw SharedError(fmt::format(fmt::runtime(std::string(trouble) + ": take a smaller step, or a start without overlaps"), bead + 1));
-}
-
 template <class T>
 std::span<std::byte const> bytes_of(std::vector<T> const& values) {
     return std::as_bytes(std::span(values));
@@ -52,6 +48,10 @@ std::span<std::byte> room_for(std::size_t count, std::vector<T>& values) {
 }
 
 }  // namespace
+
+void throw_trouble(double bead, char const* trouble) {
+    throw SharedError(fmt::format(fmt::runtime(std::string(trouble) + ": take a smaller step, or a start without overlaps"), bead + 1));
+}
 
 GhostLists::GhostLists(Communicator const& communicator, Plan plan)
     : communicator_(communicator),

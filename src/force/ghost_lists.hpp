@@ -24,6 +24,9 @@
 
 namespace catena {
 
+/// Throws the SharedError about bead number `bead`; `trouble`: "the position of bead {:.0f} is not finite".
+[[noreturn]] void throw_trouble(double bead, char const* trouble);
+
 class GhostLists {
   public:
     struct Plan {

@@ -25,6 +25,7 @@ class Halo {
     struct Lists {
         std::vector<Message> messages;   // whose positions follow each other in `sent` and `particle`
         std::vector<std::int64_t> sent;  // own beads whose positions are sent, in this order
+        bool one_for_all = false;        // every message has all of `sent`
         std::vector<int> particle;       // of each position received, in the rank's Context
         std::vector<int> idle;           // particles that stand for no bead, and their places, which nothing feels
         std::vector<Vec3> aside;
@@ -32,6 +33,9 @@ class Halo {
         bool keeps_particles = false;    // the Context and its particles' parameters are those of the lists before
     };
     virtual ~Halo() = default;
+
+    /// GhostLists::are_used_up's.
+    static constexpr char const* in_trouble = "the position of bead {:.0f}, or OpenMM's force on it, is not finite";
 
     /// Whether the lists are to be made anew. `far`: an own bead is farther away than `farthest`; `bead`: number of one whose position or
     /// force is not finite, -1: there is none. Collective. Throws SharedError where some rank has one.
@@ -54,6 +58,11 @@ class Halo {
     /// Collective; throws SharedError.
     virtual bool is_audited() const = 0;
     virtual void audit(std::span<Vec3 const> own, std::span<Vec3 const> received) const = 0;
+    /// Where every rank has every bead: bits for the groups of forces that this one computes, those between pairs in its share of these
+    /// alone. What ranks find adds up to the forces. Absent: a rank computes whatever acts on its own beads.
+    virtual std::optional<int> groups_of_share() const { return std::nullopt; }
+    /// Whether are_used_up() was told last that beads of some rank are far, or found lists used up: lists of pairs are to be made anew.
+    virtual bool some_are_far() const { return false; }
 };
 
 }  // namespace catena

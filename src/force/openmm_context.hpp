@@ -40,8 +40,8 @@ class ForceContext {
     void set_positions(std::span<Vec3 const> positions, std::size_t centred);
     /// Shifts and cells are found anew at the next positions: as in a Context that has just been made.
     void place_anew() { placed_for_ = 0; }
-    /// Forces on particle i = 0 .. size - 1, kJ/mol/nm, W.
-    std::vector<OpenMM::Vec3> forces();
+    /// Of these groups on particle i = 0 .. size - 1, kJ/mol/nm, W.
+    std::vector<OpenMM::Vec3> forces(int groups = -1);
     Placement placement() const { return placement_; }
     OpenMM::Context& context() { return *context_; }
     /// Those of its System's forces, kJ/mol, each in the place of its group. Precondition: no two have one group.

@@ -24,9 +24,9 @@ std::string join(std::vector<std::string> const& words) { return fmt::format("{}
 
 class OpenMmForces final : public OpenMmForce {
   public:
-    /// `why_no_device`: the same on every rank.
+    /// `why_no_device`, `by_pairs`: the same on every rank.
     OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model,
-                 OpenMmPlatform platform, std::string const& why_no_device);
+                 OpenMmPlatform platform, std::string const& why_no_device, bool by_pairs);
 
     void begin(ConstView<3> positions) override;
     void finish(View<3> forces) override;
@@ -55,7 +55,7 @@ class OpenMmForces final : public OpenMmForce {
 
     Communicator const& communicator_;
     std::vector<std::int64_t> first_of_rank_;
-    bool replicate_, overlap_, leaves_a_core_;
+    bool replicate_, by_pairs_, overlap_, leaves_a_core_;
     OpenMmModel model_;
     OpenMmPlatform platform_;
     PathChoice path_;
@@ -85,6 +85,7 @@ std::optional<Vec3> box_of(OpenMmModel const& model, BeadSystem const& beads) {
 }
 
 std::string split_text(RankForces const& rank) {
+    if (rank.shares_pairs()) return "split: every bead on each rank, which computes a share of the pairs";
     if (!std::isfinite(rank.reach())) return "split: every bead on each rank (a force has no cutoff)";
     std::string text = fmt::format("split: own beads and those within {} + {} nm on each rank", rank.reach(), rank.skin());
     std::vector<PairRange> const ranges = rank.ranges();
@@ -105,10 +106,11 @@ std::string cannot_stay_on_device(OpenMmSpec const& spec, OpenMmPlatform const& 
 }
 
 OpenMmForces::OpenMmForces(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OpenMmModel model,
-                           OpenMmPlatform platform, std::string const& why_no_device)
+                           OpenMmPlatform platform, std::string const& why_no_device, bool by_pairs)
     : communicator_(communicator),
       first_of_rank_(beads.first_of_rank),
       replicate_(spec.replicate),
+      by_pairs_(by_pairs),
       overlap_(spec.overlap),
       leaves_a_core_(!platform.on_cpu() || cores_of_rank(communicator) > 1),
       model_(std::move(model)),
@@ -133,6 +135,7 @@ std::vector<ForceLayer> OpenMmForces::layers(OpenMmSpec const& spec, BeadSystem 
 
 std::unique_ptr<RankForces> OpenMmForces::make_rank_forces(OpenMmSpec const& spec, BeadSystem const& beads) const {
     auto const make = communicator_.size() == 1 || spec.replicate ? make_whole_forces
+                      : by_pairs_                                 ? make_pair_forces
                       : path_.on_device()                         ? make_halo_forces
                                                                   : make_split_forces;
     return make_layered_forces({model_, platform_, beads, communicator_, box_of(model_, beads), spec.audit}, layers_, make);
@@ -292,6 +295,28 @@ OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads, Communicat
     return model;
 }
 
+/// Why ranks cannot share out the pairs of beads that all of them know; empty where they can. `why_no_device`: the same on every rank.
+std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads,
+                               std::string const& why_no_device) {
+    if (!why_no_device.empty()) return why_no_device;
+    if (spec.path != "auto" && spec.path != "device") return "path is " + spec.path;
+    auto const& first = beads.first_of_rank;
+    if (std::adjacent_find(first.begin(), first.end()) != first.end()) return "a rank has no beads";
+    if (std::string why = why_not_by_pairs(system); !why.empty()) return why;
+    return cuda::why_pairs_cannot_be_shared();
+}
+
+/// Whether they do. The same on every rank. Collective.
+bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads, Communicator const& communicator,
+                   std::string const& why_no_device) {
+    if (communicator.size() == 1 || spec.replicate || spec.split == "ghosts") return false;
+    std::string const why_not = first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
+    if (spec.split == "pairs" && !why_not.empty())
+        throw InputError(fmt::format("ranks cannot share out OpenMM's pairs: {}", why_not), beads.scene_file + ": forces.openmm.split",
+                         "take auto or ghosts, or chains of beads, --backend cuda and pair forces with a cutoff on GPUs");
+    return why_not.empty() && (spec.split == "pairs" || cuda::gpus_may_write_to_each_other(communicator));
+}
+
 /// What `action` makes; what OpenMM throws becomes an InputError.
 template <class Action>
 auto accepted(std::string const& where, Action const& action) {
@@ -318,10 +343,11 @@ std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSyste
         platform = accepted(where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
     });
     std::string const why_no_device = first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));
+    bool const by_pairs = goes_by_pairs(spec, *model.system, beads, communicator, why_no_device);
     std::unique_ptr<OpenMmForce> force;
     on_all(communicator, [&] {
         force = accepted(where, [&]() -> std::unique_ptr<OpenMmForce> {
-            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model), std::move(platform), why_no_device);
+            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model), std::move(platform), why_no_device, by_pairs);
         });
     });
     return force;

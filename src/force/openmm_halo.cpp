@@ -60,7 +60,7 @@ void HaloForces::count_kinds_elsewhere() {
 DevicePathPlan HaloForces::plan(bool overlap) {
     DevicePathPlan plan;
     for (int k = 0; k < static_cast<int>(own().size()); ++k) plan.particle.push_back(k);
-    plan.bead = own();
+    plan.bead = share_.own_numbers();
     Placement const placement = placement_for(share_.system());  // of all forces: a small part may allow more
     if (placement == Placement::wrapped) plan.box = share_.box();
     plan.shifted = placement == Placement::shifted;

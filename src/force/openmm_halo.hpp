@@ -58,7 +58,6 @@ class HaloForces final : public RankForces, public Halo {
     ForceContext* computing() const { return context_.get(); }
 
   private:
-    static constexpr char const* in_trouble = "the position of bead {:.0f}, or OpenMM's force on it, is not finite";
     /// One slot of a kind in so many is a spare when a Context is made, and so many besides.
     static std::int64_t constexpr spare_part = 8, least_spares = 16;
     /// OpenMM computes on so many particles that follow each other at once: the longest pieces begin there.

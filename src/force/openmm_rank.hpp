@@ -42,6 +42,8 @@ class RankForces {
     /// Particles of the largest Context so far, and how many were made.
     virtual std::int64_t largest_context() const = 0;
     virtual std::int64_t contexts() const = 0;
+    /// Every bead is on each rank, which computes some of the pairs.
+    virtual bool shares_pairs() const { return false; }
     /// How far forces reach, and by how much more ghosts' lists do, nm; where nothing is split, or forces have no end, infinite and 0.
     virtual double reach() const { return std::numeric_limits<double>::infinity(); }
     virtual double skin() const { return 0; }
@@ -73,6 +75,11 @@ std::unique_ptr<RankForces> make_whole_forces(RankPlan const&);
 std::unique_ptr<RankForces> make_split_forces(RankPlan const&);
 /// The same for the path on which positions and forces stay on the GPU.
 std::unique_ptr<RankForces> make_halo_forces(RankPlan const&);
+/// For that path, too: a Context with every bead on each rank, which computes a share of the pairs; rank 0 all other forces.
+/// Preconditions: why_not_by_pairs() is empty, every rank has beads.
+std::unique_ptr<RankForces> make_pair_forces(RankPlan const&);
+/// Why a System's pairs cannot be shared out; empty where they can.
+std::string why_not_by_pairs(OpenMM::System const&);
 
 /// Layer by layer (force/force_layers.hpp), each made by `make`; through the host. `plan`'s model is what the layers were taken off.
 using MakeRankForces = std::unique_ptr<RankForces> (*)(RankPlan const&);

@@ -27,20 +27,15 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
     : model_(plan.model),
       platform_(plan.platform),
       beads_(plan.beads),
-      communicator_(plan.communicator),
       box_(plan.box),
       own_(plan.beads.beads_of(plan.communicator.rank())),
       particle_of_bead_(plan.model.bead_of_particle.size()),
       ends_(std::isfinite(reach_of(*plan.model.system))),
       ranges_(ends_ ? pair_ranges(*plan.model.system, plan.model.bead_of_particle) : std::vector<PairRange>{}),
       skin_(skin_of_reach * std::max(longest_reach(ranges_), plan.longest_reach)),
-      exchanges_(can_exchange_particles(*plan.model.system)) {
+      exchanges_(can_exchange_particles(*plan.model.system)),
+      energies_(plan) {
     for (std::size_t p = 0; p < particle_of_bead_.size(); ++p) particle_of_bead_[model_.bead_of_particle[p]] = static_cast<int>(p);
-    for (int rank = 0; rank < communicator_.size(); ++rank) {
-        std::vector<std::int64_t> const of_rank = beads_.beads_of(rank);
-        bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));
-        bead_at_.insert(bead_at_.end(), of_rank.begin(), of_rank.end());
-    }
     for (std::int64_t const bead : own_) own_numbers_.push_back(beads_.name(bead));
     if (own_.empty()) return;
     if (!ends_) {
@@ -67,18 +62,6 @@ Subset SplitShare::subset_of(std::span<std::int64_t const> ghosts) const {
     subset.particles.insert(subset.particles.end(), particles.begin(), particles.end());
     subset.fixed = exchanges_ ? static_cast<int>(own_.size() + partners_.size()) : static_cast<int>(subset.particles.size());
     return subset;
-}
-
-void SplitShare::find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group) {
-    std::vector<Vec3> all(communicator_.rank() == 0 ? particle_of_bead_.size() : 0);
-    communicator_.gather(std::as_bytes(own), std::as_writable_bytes(std::span(all)), bytes_of_rank_);
-    if (communicator_.rank() != 0) return;
-    if (!energies_) energies_ = context_of(model_.system, home);
-    std::vector<Vec3> of_particles(all.size());
-    for (std::size_t i = 0; i < all.size(); ++i) of_particles[particle_of_bead_[bead_at_[i]]] = all[i];
-    energies_->place_anew();  // outputs are far between: no list of pairs is left that could be kept
-    energies_->set_positions(of_particles, of_particles.size());
-    energies_->find_energies(of_group);
 }
 
 }  // namespace catena

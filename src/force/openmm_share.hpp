@@ -9,6 +9,7 @@
 
 #include "force/ghost_lists.hpp"
 #include "force/openmm_context.hpp"
+#include "force/openmm_energies.hpp"
 #include "force/openmm_rank.hpp"
 #include "force/openmm_subset.hpp"
 #include "force/pair_ranges.hpp"
@@ -40,7 +41,7 @@ class SplitShare {
         return std::make_unique<ForceContext>(std::move(system), platform_, box_, home);
     }
     /// RankForces::find_energies with these positions.
-    void find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group);
+    void find_energies(std::span<Vec3 const> own, ForceContext* home, std::span<double> of_group) { energies_.find(own, home, of_group); }
     /// Of own beads in the scene, for messages.
     std::vector<std::int64_t> const& own_numbers() const { return own_numbers_; }
     std::optional<Vec3> const& box() const { return box_; }
@@ -49,7 +50,6 @@ class SplitShare {
     OpenMmModel const& model_;
     OpenMmPlatform const& platform_;
     BeadSystem const& beads_;
-    Communicator const& communicator_;
     std::optional<Vec3> box_;
     std::vector<std::int64_t> own_, own_numbers_;
     std::vector<int> particle_of_bead_;
@@ -57,8 +57,8 @@ class SplitShare {
     std::vector<PairRange> ranges_;
     double skin_;
     bool exchanges_;
-    std::vector<std::int64_t> partners_, bead_at_, bytes_of_rank_;  // bead_at_: beads of all ranks, one rank after the other
-    std::unique_ptr<ForceContext> energies_;                        // every bead, on rank 0
+    std::vector<std::int64_t> partners_;
+    WholeEnergies energies_;
 };
 
 }  // namespace catena

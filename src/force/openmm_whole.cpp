@@ -54,7 +54,7 @@ class WholeForces final : public RankForces {
     std::unique_ptr<DevicePath> device_path(bool overlap) override {
         DevicePathPlan plan;
         plan.particle.assign(particle_.begin(), particle_.end());
-        for (std::int64_t const particle : particle_) plan.bead.push_back(model_.bead_of_particle[particle]);
+        for (std::int64_t const particle : particle_) plan.bead.push_back(number_of_particle_[particle]);
         if (context_->placement() == Placement::wrapped) plan.box = box_;
         plan.shifted = context_->placement() == Placement::shifted;
         plan.overlap = overlap;

@@ -157,6 +157,7 @@ struct OpenMmSpec {
     std::string path = "auto";    // auto | device (positions and forces stay on the GPU) | host (worker thread) | inline
     bool overlap = true;          // the chains' own work goes on while forces are computed (paths device and host)
     std::string layers = "auto";  // auto | all | none: forces that reach far and act on few beads in Contexts of their own
+    std::string split = "auto";   // auto | ghosts | pairs: what ranks on GPUs share out
     bool replicate = false;
     bool audit = false;             // compares the ghosts with a search among all beads at every evaluation
     std::vector<int> force_groups;  // empty: all

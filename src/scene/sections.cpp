@@ -65,7 +65,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
     Fields const fields(node, {"builder", "system", "topology", "map", "temperature", "ionic_strength", "ph", "switch_width", "platform",
-                               "precision", "threads", "device", "path", "overlap", "layers", "replicate", "audit", "force_groups"});
+                               "precision", "threads", "device", "path", "overlap", "layers", "split", "replicate", "audit", "force_groups"});
     if (si) fail(node, "OpenMM's forces in SI units", "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);
@@ -86,6 +86,8 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
     take(fields, "overlap", spec.overlap, truth);
     take(fields, "layers", spec.layers,
          [](Node const& n) { return choice<std::string>(n, {{"auto", "auto"}, {"all", "all"}, {"none", "none"}}); });
+    take(fields, "split", spec.split,
+         [](Node const& n) { return choice<std::string>(n, {{"auto", "auto"}, {"ghosts", "ghosts"}, {"pairs", "pairs"}}); });
     take(fields, "replicate", spec.replicate, truth);
     take(fields, "audit", spec.audit, truth);
     if (Node const* const groups = fields.find("force_groups"))

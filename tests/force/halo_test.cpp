@@ -9,6 +9,7 @@
 #include <random>
 
 #include "force/bead_tables.hpp"
+#include "force/openmm_pairs.hpp"
 #include "mpi/first_rank.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
@@ -17,11 +18,12 @@
 namespace catena::testing {
 namespace {
 
-/// What cuda/halo_path.cpp does, on the host.
+/// What cuda/halo_path.cpp does, on the host. Forces: HaloForces or PairForces.
+template <class Forces>
 class PlainMemory {
   public:
-    PlainMemory(Halo& halo, HaloForces& forces, std::size_t own, std::optional<Vec3> const& box)
-        : halo_(halo), forces_(forces), own_(own), box_(box) {}
+    explicit PlainMemory(Forces& forces)
+        : halo_(forces), forces_(forces), particle_(forces.plan(true).particle), own_(particle_.size()), box_(forces.plan(true).box) {}
 
     std::vector<Vec3> evaluate(std::vector<Vec3> const& x) {
         far_ = 0;
@@ -82,22 +84,27 @@ class PlainMemory {
             arrived.particles.bead = beads.data();
             for (std::size_t i = 0; i < particle.size(); ++i) arrived(static_cast<std::int64_t>(i));
         };
-        std::vector<int> own(own_);
-        std::iota(own.begin(), own.end(), 0);
-        put(own, x);
+        put(particle_, x);
         put(lists.particle, in);
         put(lists.idle, lists.aside);
-        EXPECT_EQ(own.size() + lists.particle.size() + lists.idle.size(), particles);
+        EXPECT_EQ(own_ + lists.particle.size() + lists.idle.size(), particles);
         EXPECT_EQ(trouble, -1);
         std::vector<Vec3> of_particle(particles);
         for (std::size_t p = 0; p < particles; ++p)
             for (int c = 0; c < 3; ++c) of_particle[p][c] = position[4 * static_cast<std::size_t>(place[p]) + static_cast<std::size_t>(c)];
         context.set_positions(of_particle, own_);
-        return forces_.forces_again();
+        auto const all = context.forces();
+        std::vector<Vec3> forces;
+        for (int const p : particle_) {
+            auto const& f = all[static_cast<std::size_t>(p)];
+            forces.push_back({{f[0], f[1], f[2]}});
+        }
+        return forces;
     }
 
     Halo& halo_;
-    HaloForces& forces_;
+    Forces& forces_;
+    std::vector<int> particle_;  // of own beads
     std::size_t own_;
     std::optional<Vec3> box_;
     bool has_lists_ = false;
@@ -155,7 +162,7 @@ Walk walk(OpenMmSpec const& spec, BeadSystem const& all_beads, int steps, Commun
     std::optional<Vec3> const box = model.system->usesPeriodicBoundaryConditions() ? beads.box : std::nullopt;
     HaloForces forces({model, platform, beads, communicator, box, true});
     auto const own = static_cast<std::size_t>(beads.first_of_rank[communicator.rank() + 1] - first);
-    PlainMemory memory(forces, forces, own, forces.plan(true).box);
+    PlainMemory memory(forces);
     OpenMmSpec replicated = spec;
     replicated.replicate = true;
     auto const oracle = make_openmm_force(replicated, beads, communicator);
@@ -278,6 +285,68 @@ TEST(Halo, ExceptionsAcrossAFace) {
     OpenMmSpec spec = on_reference("");
     spec.system = scratch_file("face.xml", xml_of(system));
     on_ranks([&](Communicator const& communicator) { walk(spec, beads, 15, communicator); });
+}
+
+/// On the host nobody has a share: each rank computes all pairs, and what is sent back adds up to so many times the forces.
+TEST(Pairs, EveryBeadIsOnEachRank) {
+    for (std::optional<Vec3> const& box : {std::optional<Vec3>{}, std::optional<Vec3>{Vec3{{40, 8.5, 8.2}}}})
+        on_ranks([&](Communicator const& communicator) {
+            if (communicator.size() == 1) return;
+            BeadSystem const beads = split(eight_chains(box), communicator.size());
+            OpenMmSpec spec = on_reference();
+            OpenMmModel const model = calvados2_model(spec, beads);
+            EXPECT_EQ(why_not_by_pairs(*model.system), "");
+            PairForces forces({model, choose_platform(spec, beads, communicator, -1), beads, communicator, beads.box, true});
+            PlainMemory memory(forces);
+            EXPECT_EQ(forces.groups_of_share(), 3);
+            spec.replicate = true;
+            auto const oracle = make_openmm_force(spec, beads, communicator);
+            auto const begin = beads.first_of_rank[communicator.rank()], end = beads.first_of_rank[communicator.rank() + 1];
+            for (int step = 0; step <= 12; ++step) {
+                std::vector<Vec3> const x = moved(beads, step);
+                if (step == 7) forces.renew_ghosts();
+                auto const found = memory.evaluate({x.begin() + begin, x.begin() + end});
+                auto const expected = catena::testing::evaluate(*oracle, beads, communicator.rank(), x);
+                double const tolerance = same * communicator.max(largest(expected));
+                EXPECT_LE(difference(found, expected), tolerance) << "step " << step << " on " << communicator.size() << " ranks";
+                std::vector<Vec3> summed = forces.forces_again();
+                for (Vec3& f : summed) f = (1.0 / communicator.size()) * f;
+                EXPECT_LE(difference(summed, expected), tolerance) << "step " << step << " on " << communicator.size() << " ranks";
+            }
+            GhostTraffic const traffic = forces.traffic();
+            EXPECT_EQ(traffic.rebuilds, 2);
+            EXPECT_EQ(traffic.updates, 13);
+            EXPECT_EQ(traffic.ghosts, beads.size() - (end - begin));
+            EXPECT_EQ(traffic.messages, 2 * 13 * (communicator.size() - 1));
+        });
+}
+
+TEST(Pairs, WhatCannotBeSharedOut) {
+    EXPECT_EQ(why_not_by_pairs(OpenMM::System()), "no force acts between pairs");
+    OpenMM::System grouped;
+    auto* pairs = new OpenMM::CustomNonbondedForce("r");
+    pairs->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffNonPeriodic);
+    grouped.addForce(pairs);
+    EXPECT_EQ(why_not_by_pairs(grouped), "");
+    pairs->addInteractionGroup({0}, {1});
+    EXPECT_EQ(why_not_by_pairs(grouped), "CustomNonbondedForce has interaction groups");
+    OpenMM::System system;
+    system.addForce(new OpenMM::HarmonicBondForce);
+    auto* charges = new OpenMM::NonbondedForce;
+    system.addForce(charges);
+    for (int i = 0; i < 2; ++i) {
+        system.addParticle(1);
+        charges->addParticle(1, 0.3, 0.5);
+    }
+    EXPECT_EQ(why_not_by_pairs(system), "NonbondedForce has no cutoff");
+    charges->setNonbondedMethod(OpenMM::NonbondedForce::CutoffNonPeriodic);
+    EXPECT_EQ(why_not_by_pairs(system), "");
+    charges->addException(0, 1, 0, 0.3, 0);
+    EXPECT_EQ(why_not_by_pairs(system), "");
+    charges->setExceptionParameters(0, 0, 1, 0, 0.3, 0.1);
+    EXPECT_EQ(why_not_by_pairs(system), "NonbondedForce has exceptions that act");
+    charges->setNonbondedMethod(OpenMM::NonbondedForce::PME);
+    EXPECT_EQ(why_not_by_pairs(system), "NonbondedForce cannot be split");
 }
 
 TEST(Halo, FewerBeadsThanRanks) {

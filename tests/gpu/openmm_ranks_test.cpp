@@ -47,12 +47,13 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         given_way_.empty() ? ::unsetenv("CATENA_GPU_EXCHANGE") : ::setenv("CATENA_GPU_EXCHANGE", given_way_.c_str(), 1);
     }
     std::string given_way_ = std::getenv("CATENA_GPU_EXCHANGE") ? std::getenv("CATENA_GPU_EXCHANGE") : "";
-    static Scene scene_with(std::string const& precision, bool on_device) {
+    static Scene scene_with(std::string const& precision, bool on_device, char const* split = "ghosts") {
         Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest), "scene.yaml");
         scene.solver.backend = Backend::cuda;
         scene.forces.openmm->precision = precision;
         scene.forces.openmm->path = on_device ? "device" : "host";
-        scene.forces.openmm->audit = on_device;
+        scene.forces.openmm->audit = on_device && std::string(split) == "ghosts";
+        scene.forces.openmm->split = split;
         scene.forces.openmm->replicate = !on_device;  // the oracle
         return scene;
     }
@@ -85,6 +86,11 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         f.traffic = system.openmm()->traffic();
         f.contexts = system.openmm()->contexts();
         return f;
+    }
+    static std::int64_t scene_beads(Scene const& scene) {
+        std::int64_t beads = 0;
+        for (auto const& chain : scene.chains) beads += static_cast<std::int64_t>(chain.bead_count());
+        return beads;
     }
     double largest(std::vector<Vec3> const& of_rank) const {
         double value = 0;
@@ -192,6 +198,74 @@ TEST_P(OpenMmOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) {
     system.set_state(c.arrays);
     EXPECT_THROW(system.evaluate(), SharedError);
 }
+
+/// Every rank has every bead, and computes some of the pairs.
+class PairsOnGpus : public OpenMmOnGpus {};
+
+TEST_P(PairsOnGpus, ForcesComeEitherWay) {
+    Scene const scene = scene_with("double", true, "pairs");
+    ::unsetenv("CATENA_GPU_EXCHANGE");
+    Found const either = found(scene, 40);
+    ::setenv("CATENA_GPU_EXCHANGE", "host", 1);
+    Found const by_host = found(scene, 40);
+    EXPECT_FALSE(by_host.traffic.direct);
+    EXPECT_EQ(by_host.traffic.ghosts, scene_beads(scene) - std::ssize(by_host.own));
+    EXPECT_EQ(either.traffic.bytes, by_host.traffic.bytes);
+    double constexpr after_steps = 1e-8;  // rounding, grown by the chains' own chaos
+    expect_close(either, by_host, after_steps);
+    if (world_.max(either.traffic.direct ? 0 : 1) > 0)
+        GTEST_SKIP() << "NOT RUN: from GPU to GPU: ranks share one, or these do not reach each other's memory";
+}
+
+TEST_P(PairsOnGpus, ForcesAndEnergiesAreThoseOfTheWholeSystem) {
+    for (char const* const precision : {"double", "mixed", "single"})
+        expect_close(found(scene_with(precision, true, "pairs"), 0), found(scene_with(precision, false), 0), tolerance(precision));
+}
+
+/// Shares, the order of particles and the cells are those of earlier steps.
+TEST_P(PairsOnGpus, AfterManySteps) {
+    for (char const* const precision : {"double", "mixed"}) {
+        Found const device = found(scene_with(precision, true, "pairs"), 400);
+        EXPECT_EQ(device.traffic.rebuilds, 2);
+        EXPECT_EQ(device.traffic.updates, 401);
+        EXPECT_EQ(device.contexts, 1);
+        expect_close(device, found(scene_with(precision, false), 400, &device), tolerance(precision));
+        expect_close(device, found(scene_with(precision, true, "pairs"), 400, &device), tolerance(precision));
+    }
+}
+
+TEST_P(PairsOnGpus, WithoutOverlap) {
+    Scene apart = scene_with("double", true, "pairs");
+    apart.forces.openmm->overlap = false;
+    apart.forces.openmm->audit = true;
+    Found const without = found(apart, 20);
+    expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
+}
+
+TEST_P(PairsOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) {
+    Scene const scene = scene_with("mixed", true, "pairs");
+    ChainSystem system(scene, Axes::world, world_);
+    system.evaluate();
+    Checkpoint c;
+    c.arrays = system.state();
+    share(world_, c);
+    c.arrays["position"][3 * 10 + 1] = NAN;
+    system.set_state(c.arrays);
+    EXPECT_THROW(system.evaluate(), SharedError);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, PairsOnGpus,
+    ::testing::Values(Case{"periodic",
+                           "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
+                           "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
+                           "box: {periodic: [16, 17, 18]}"},
+                      Case{"long_box",
+                           "{name: a, count: 120, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
+                           "velocities: thermal}",
+                           "box: {periodic: [90, 13, 12]}", 90},
+                      Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""}),
+    [](auto const& scene) { return scene.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, OpenMmOnGpus,

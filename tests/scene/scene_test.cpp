@@ -19,7 +19,7 @@ box: {periodic: [60, 50, 40]}
 forces:
   gravity: [0, 1, 2]
   openmm: {builder: calvados2, temperature: 310, ionic_strength: 0.1, ph: 7.4, switch_width: 0.2, platform: CPU, precision: mixed, threads: 2, device: 1, path: inline,
-           overlap: false, layers: none, replicate: true, audit: true}
+           overlap: false, layers: none, split: pairs, replicate: true, audit: true}
 dynamics: {integrator: g-baoab, step: 0.01, steps: 1e4, temperature: 300, friction: 0.5, seed: 12345678901234567890, constraint_tolerance: 1e-9}
 solver: {backend: segments, handles: full, threads: 3, refine: 2, gpu_levels: "4,2"}
 output: {every: 10, checkpoint_every: 1000, observables: [energy, radius_of_gyration], joint_forces: true, velocities: true}
@@ -46,6 +46,7 @@ TEST(Scenes, every_section) {
     EXPECT_EQ(o.path, "inline");
     EXPECT_FALSE(o.overlap);
     EXPECT_EQ(o.layers, "none");
+    EXPECT_EQ(o.split, "pairs");
     EXPECT_TRUE(o.replicate);
     EXPECT_TRUE(o.audit);
     DynamicsSpec const& d = s.dynamics;
@@ -120,6 +121,7 @@ TEST(Hash, tells_what_decides_the_motion) {
     for (char const* const same :
          {"title=other", "dynamics.steps=5", "solver.backend=serial", "solver.threads=1", "output.every=7", "output.observables=[energy]",
           "forces.openmm.platform=Reference", "forces.openmm.threads=1", "forces.openmm.path=host", "forces.openmm.layers=all",
+          "forces.openmm.split=ghosts",
           "forces.openmm.replicate=false", "forces.openmm.audit=false"})
         EXPECT_EQ(hash({same}), plain) << same;
     for (char const* const other :

@@ -1,0 +1,105 @@
+#include "cuda/pair_share.hpp"
+
+#include <algorithm>
+
+#include "cuda/gpu_path.hpp"
+#include "force/pair_cuts.hpp"
+
+namespace catena::cuda {
+namespace {
+
+/// After how many evaluations cuts follow what the ranks' lists hold, beside those at which particles come into a new order.
+bool is_early(std::int64_t evaluations) { return evaluations <= 8 && (evaluations & (evaluations - 1)) == 0; }
+
+}  // namespace
+
+bool PairShare::fit(bool direct) {
+    Communicator const& communicator = halo_.communicator();
+    messages_.clear();
+    for (Halo::Message const& m : halo_.lists().messages) messages_.push_back({m.rank, m.received, m.sent});
+    if (direct && !inboxes_) inboxes_ = PeerInboxes::make(communicator);
+    if (inboxes_ && !memory_) memory_ = PeerMemory::connect(communicator);
+    if (memory_ && boxes_.ranks == 0) boxes_ = memory_->boxes(0);
+    if (!memory_ || (inboxes_ && !inboxes_->fit(messages_))) inboxes_.reset();
+    if (inboxes_) {
+        clear_inbox(nullptr);
+        check(cudaStreamSynchronize(nullptr), "clear memory");
+        communicator.barrier();  // nobody sends before
+        return true;
+    }
+    sent_ = Buffer<std::int64_t>(static_cast<std::size_t>(3 * sent()));
+    arrived_ = Buffer<std::int64_t>(static_cast<std::size_t>(3 * received()));
+    out_ = std::make_unique<PinnedBuffer<std::int64_t>>(static_cast<std::size_t>(3 * sent()));
+    in_ = std::make_unique<PinnedBuffer<std::int64_t>>(static_cast<std::size_t>(3 * received()));
+    return false;
+}
+
+bool PairShare::choose(OpenMmOnDevice& openmm, bool new_order) {
+    Communicator const& communicator = halo_.communicator();
+    int const rank = communicator.rank(), ranks = communicator.size();
+    std::int64_t const before = evaluations_++;
+    if (has_list_ && !new_order && !is_early(before) && !halo_.some_are_far()) {
+        openmm.keep_list();
+        return false;
+    }
+    if (before == 0) {
+        openmm.share(*halo_.groups_of_share(), rank, ranks);
+        cuts_ = equal_cuts(ranks);
+    } else if (new_order || is_early(before)) {
+        double const own = openmm.tiles();
+        std::vector<double> all(static_cast<std::size_t>(ranks));
+        communicator.all_gather(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)),
+                                std::vector<std::int64_t>(all.size(), sizeof(own)));
+        cuts_ = evened_cuts(cuts_, all);
+        has_list_ = *std::max_element(all.begin(), all.end()) > 0;
+    }
+    openmm.make_list(cuts_[static_cast<std::size_t>(rank)], cuts_[static_cast<std::size_t>(rank) + 1]);
+    return true;
+}
+
+void PairShare::wait_for_positions(cudaStream_t stream) const {
+    if (inboxes_) meet(boxes_, stream);
+}
+
+void PairShare::complete(DeviceParticles const& own_beads, DeviceParticles const& others, cudaStream_t stream) {
+    SentForces forces{others};
+    forces.all = !inboxes_;
+    if (inboxes_)
+        for (Halo::Message const& m : messages_) forces.add(m.sent, inboxes_->box_of<std::int64_t>(m.rank));
+    else
+        forces.add(sent(), sent_.data());
+    send(forces, stream);
+    if (inboxes_)
+        meet(boxes_, stream);
+    else
+        carry_by_host(stream);
+    std::int64_t const* const arrived = inboxes_ ? inboxes_->arrived<std::int64_t>() : arrived_.data();
+    add(own(), {own_beads, arrived, own(), static_cast<int>(messages_.size())}, stream);
+    if (inboxes_) clear_inbox(stream);
+}
+
+/// Zeros are not sent: most beads of other ranks are far from the pairs of this one.
+void PairShare::clear_inbox(cudaStream_t stream) const {
+    auto const bytes = static_cast<std::size_t>(received()) * 3 * sizeof(std::int64_t);
+    if (bytes > 0) check(cudaMemsetAsync(inboxes_->box_of<std::int64_t>(halo_.communicator().rank()), 0, bytes, stream), "clear memory");
+}
+
+void PairShare::carry_by_host(cudaStream_t stream) {
+    auto const bytes = [](std::int64_t beads) { return static_cast<std::size_t>(beads) * 3 * sizeof(std::int64_t); };
+    if (sent() > 0) check(cudaMemcpyAsync(out_->data(), sent_.data(), bytes(sent()), cudaMemcpyDeviceToHost, stream), "send forces");
+    check(cudaStreamSynchronize(stream), "send forces");
+    std::vector<Outgoing> out;
+    std::vector<Incoming> in;
+    std::int64_t first_sent = 0, first_received = 0;
+    for (Halo::Message const& m : messages_) {
+        out.push_back({m.rank, std::as_bytes(std::span(out_->data() + 3 * first_sent, static_cast<std::size_t>(3 * m.sent)))});
+        in.push_back({m.rank, std::as_writable_bytes(std::span(in_->data() + 3 * first_received, static_cast<std::size_t>(3 * m.received)))});
+        first_sent += m.sent;
+        first_received += m.received;
+    }
+    halo_.communicator().exchange_all(out, in);
+    if (received() > 0)
+        check(cudaMemcpyAsync(arrived_.data(), in_->data(), bytes(received()), cudaMemcpyHostToDevice, stream), "take forces");
+}
+
+}  // namespace catena::cuda

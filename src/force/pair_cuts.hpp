@@ -1,0 +1,37 @@
+// Where pairs are shared out among ranks that all know every bead.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace catena {
+
+/// Rank r computes from cuts[r] to cuts[r + 1] of a row of blocks, 0 and 1 being its ends.
+inline std::vector<double> equal_cuts(int ranks) {
+    std::vector<double> cuts;
+    for (int r = 0; r <= ranks; ++r) cuts.push_back(static_cast<double>(r) / ranks);
+    return cuts;
+}
+
+/// Cuts that give every rank as much work, were that of each, `work`, spread evenly over what it has now. Where there is none they stay.
+inline std::vector<double> evened_cuts(std::vector<double> const& cuts, std::span<double const> work) {
+    std::size_t const ranks = work.size();
+    double total = 0;
+    for (double const w : work) total += w;
+    if (!(total > 0)) return cuts;
+    std::vector<double> evened{0};
+    std::size_t r = 0;
+    double before = 0;  // work of ranks before r
+    for (std::size_t next = 1; next < ranks; ++next) {
+        double const wanted = total * static_cast<double>(next) / static_cast<double>(ranks);
+        while (r + 1 < ranks && before + work[r] < wanted) before += work[r++];
+        double const part = work[r] > 0 ? std::min(1.0, (wanted - before) / work[r]) : 1.0;
+        evened.push_back(std::max(evened.back(), cuts[r] + part * (cuts[r + 1] - cuts[r])));
+    }
+    evened.push_back(1);
+    return evened;
+}
+
+}  // namespace catena
