@@ -22,17 +22,19 @@ class LonePath final : public GpuPath {
     LonePath(OpenMM::Context& context, DevicePathPlan plan) : GpuPath(context, std::move(plan), evaluations_of_an_order) {
         compute_with(on_device(context));
     }
+    ~LonePath() override { make_current(); }  // what it owns lives there
 
     void begin(std::span<DeviceBeads* const> beads, bool timed) override {
         refuse_trouble();  // of the evaluation before, which is over where its step is
         if (of_this_order_ == 0) order_anew(beads);
         start(beads, timed);
         put_own(beads);
-        compute(beads);
+        if (!asks_ || !plan_.overlap) choose_list_and_compute(beads);
         if (timed) events_->chains_begin.record(stream_of(*beads.front()));
     }
     void go_on(std::span<DeviceBeads* const> beads) override {
         if (timed_) events_->chains_end.record(stream_of(*beads.back()));
+        if (asks_ && plan_.overlap) choose_list_and_compute(beads);
     }
     void refuse_trouble() override {
         std::int64_t const bead = take_trouble();
@@ -45,6 +47,43 @@ class LonePath final : public GpuPath {
     /// OpenMM's own integrators do so after 250, which would be a twentieth of a step of 100,000 beads; chains move little meanwhile.
     static constexpr int evaluations_of_an_order = 1000;
 
+    /// Of thousands of particles OpenMM keeps a list of pairs, and sorts blocks of them at every evaluation before it looks whether one has
+    /// moved far. Here that is found while they are moved, and the host asks while the chains go on.
+    void choose_list_and_compute(std::span<DeviceBeads* const> beads) {
+        if (asks_) {
+            placed_.record(stream_);
+            exchange_.begin = seconds_now();
+            placed_.wait();
+            exchange_.end = seconds_now();
+            // The GPU may have been behind: its clock is the host's where both are known to be.
+            if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
+            bool const far = std::exchange(flags_->data()->far, 0) != 0;
+            if (far || of_this_order_ == 0 || !listed_)
+                make_list();
+            else
+                openmm_->keep_list();
+        }
+        compute(beads);
+        if (!std::exchange(has_computed_, true)) asks_ = openmm_->tiles() > 0;
+    }
+
+    void make_list() {
+        auto const numbers = static_cast<std::size_t>(4 * particles_.places);
+        openmm_->make_list(0, 1);
+        if (!listed_) listed_ = std::make_unique<Buffer<double>>(numbers);  // of floats half
+        bool const twice = particles_.double_position != nullptr;
+        void const* const now = twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
+        check(cudaMemcpyAsync(listed_->data(), now, numbers * (twice ? sizeof(double) : sizeof(float)), cudaMemcpyDeviceToDevice, stream_),
+              "take lists");
+        auto const lasts = static_cast<float>(openmm_->list_lasts());
+        if (twice)
+            particles_.double_listed = listed_->data();
+        else
+            particles_.listed = reinterpret_cast<float const*>(listed_->data());
+        particles_.farthest_squared = lasts * lasts;
+        particles_.far = &flags_->data()->far;
+    }
+
     void order_anew(std::span<DeviceBeads* const> beads) {
         beads_.assign(beads.begin(), beads.end());
         std::vector<Vec3> const x = positions();
@@ -53,6 +92,10 @@ class LonePath final : public GpuPath {
         refuse_trouble();
         order(x, {}, mean(x));
     }
+
+    bool has_computed_ = false, asks_ = false;
+    Event placed_{Event::For::clock};
+    std::unique_ptr<Buffer<double>> listed_;  // positions of the last list
 };
 
 }  // namespace

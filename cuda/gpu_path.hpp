@@ -84,7 +84,7 @@ class GpuPath : public DevicePath {
     int of_an_order_, of_this_order_ = 0;  // evaluations
     bool timed_ = false;
     double begun_ = 0;
-    Interval exchange_;
+    Interval exchange_;  // clock()'s
 };
 
 /// Of several ranks.

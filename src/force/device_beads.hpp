@@ -27,6 +27,12 @@ struct DeviceParticles {
     std::int64_t* force = nullptr;
     std::int64_t places = 0;
     Vec3 origin = Vec3::zero(), box = Vec3::zero();
+    /// Where they were when OpenMM's list of pairs was made, as `position` and `double_position`; absent: it is not asked for. `far`
+    /// becomes 1 where a particle is farther from there.
+    float const* listed = nullptr;
+    double const* double_listed = nullptr;
+    float farthest_squared = 0;
+    std::int64_t* far = nullptr;
     /// Becomes the index of a bead whose position or force is no number OpenMM can hold; -1: there was none.
     std::int64_t* trouble = nullptr;
     std::int64_t first = 0;  // index of bead 0 among all that trouble can name
@@ -42,17 +48,23 @@ struct DeviceParticles {
     CATENA_HD void put(std::int64_t k, Vec3 const& x) const {
         DeviceBead const b = bead[k];
         std::int64_t const at = 4 * static_cast<std::int64_t>(b.place);
+        float away = 0;
         for (int c = 0; c < 3; ++c) {
             double const y = coordinate(k, x, c);
             if (!(std::fabs(y) < far_away)) *trouble = first + k;
             if (double_position) {
                 double_position[at + c] = y;
+                float const moved = double_listed ? static_cast<float>(y - double_listed[at + c]) : 0.0f;
+                away += moved * moved;
                 continue;
             }
             float const rounded = static_cast<float>(y);
             position[at + c] = rounded;
             if (correction) correction[at + c] = static_cast<float>(y - static_cast<double>(rounded));
+            float const moved = listed ? rounded - listed[at + c] : 0.0f;
+            away += moved * moved;
         }
+        if (far && !(away < farthest_squared)) *far = 1;
     }
     /// Of bead k's particle, where the bead is at x.
     CATENA_HD double coordinate(std::int64_t k, Vec3 const& x, int c) const { return x[c] - origin[c] - box[c] * bead[k].cell[c]; }
@@ -110,7 +122,7 @@ struct ShownBeads {
             away += d * d;
             if (!(std::fabs(x[c]) < DeviceParticles::far_away)) *trouble = first_bead + k;
         }
-        if (listed && !(away < farthest_squared)) *far = 1;
+        if (far && !(away < farthest_squared)) *far = 1;
     }
 };
 

@@ -52,8 +52,8 @@ class DevicePath {
     /// Throws ComputationError where beads of the last evaluation had no finite position or force. To be asked once their streams have
     /// been waited for.
     virtual void refuse_trouble() = 0;
-    /// Of the last evaluation, which was timed: OpenMM's computation, the chains' work from begin() to go_on(), and what brought ghosts;
-    /// 0 where the rank has no beads. Waits for them.
+    /// Of the last evaluation, which was timed: OpenMM's computation, the chains' work from begin() to go_on(), and what brought ghosts, or
+    /// told whether pairs' list still holds; 0 where there was no such thing. Waits for them.
     struct Clock {
         Interval openmm, chains, exchange;
     };

@@ -166,8 +166,9 @@ DevicePath::Clock ChainSystem::read_device_clock() {
     DevicePath::Clock const clock = openmm_->device_path()->clock();
     auto const length = [weight](double begin, double end) { return weight * std::max(0.0, end - begin); };
     double const matrices = length(clock.chains.begin, clock.chains.end);
-    bool const exchanges = communicator_.size() > 1;  // ghosts come, then OpenMM computes: the sweep runs beside both
-    double const begin = exchanges ? clock.exchange.begin : clock.openmm.begin;
+    bool const exchanges = communicator_.size() > 1;
+    // Ghosts come, or the host asks how far beads are, then OpenMM computes: the sweep runs beside both.
+    double const begin = clock.exchange.end > 0 ? clock.exchange.begin : clock.openmm.begin;
     matrix_seconds_ += matrices;
     hidden_seconds_ += length(std::max(clock.chains.begin, begin), std::min(clock.chains.end, clock.openmm.end));
     if (exchanges) seconds_["exchange"] += length(clock.exchange.begin, clock.exchange.end);

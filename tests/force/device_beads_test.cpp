@@ -82,6 +82,29 @@ TEST(DeviceBeads, PartsOfForcesGoAndComeBack) {
     EXPECT_EQ(a.force, (std::vector<std::int64_t>{404, 10, 20 + 101, 30, 40 + 505, 50, 60 + 202, 70, 80 + 606, 90, 100 + 303, 110}));
 }
 
+TEST(DeviceBeads, HowFarParticlesAreFromWhereTheirListWasMade) {
+    for (bool const twice : {false, true}) {
+        Arrays a;
+        std::vector<float> const listed(16, 1.5f);
+        std::vector<double> const double_listed(16, 1.5);
+        std::int64_t far = 0;
+        DeviceParticles p = twice ? a.doubles() : a.single();
+        p.origin = p.box = Vec3::zero();
+        p.put(0, {{9, 9, 9}});  // nobody asks
+        p.double_listed = twice ? double_listed.data() : nullptr;
+        p.listed = twice ? nullptr : listed.data();
+        p.far = &far;
+        p.farthest_squared = 0.25f;
+        p.put(0, {{1.2, 1.5, 1.8}});
+        EXPECT_EQ(far, 0);
+        p.put(0, {{1.2, 1.1, 1.4}});
+        EXPECT_EQ(far, 1);
+        far = 0;
+        p.put(1, {{NAN, 1.5, 1.5}});
+        EXPECT_EQ(far, 1);
+    }
+}
+
 TEST(DeviceBeads, ForcesAreFixedPointNumbersOfTheirPlace) {
     Arrays a;
     a.force[1] = std::int64_t{3} << 31;

@@ -155,6 +155,10 @@ INSTANTIATE_TEST_SUITE_P(
                            "{name: a, count: 5, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
                            "thermal}, {name: b, sequence: KDEKDE, model: calvados2, velocities: thermal}",
                            "box: {periodic: [16, 17, 18]}"},
+                      // So many that OpenMM keeps a list of pairs.
+                      Case{"many",
+                           "{name: a, count: 40, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}",
+                           "box: {periodic: [36, 30, 28]}"},
                       Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""},
                       Case{"held",
                            "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "
