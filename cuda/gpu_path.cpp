@@ -21,6 +21,8 @@ class LonePath final : public GpuPath {
   public:
     LonePath(OpenMM::Context& context, DevicePathPlan plan) : GpuPath(context, std::move(plan), evaluations_of_an_order) {
         compute_with(on_device(context));
+        may_ask_ = plan_.keeps_list && why_pairs_cannot_be_shared().empty();
+        if (may_ask_) openmm_->share(-1, 0, 1);
     }
     ~LonePath() override { make_current(); }  // what it owns lives there
 
@@ -29,12 +31,13 @@ class LonePath final : public GpuPath {
         if (of_this_order_ == 0) order_anew(beads);
         start(beads, timed);
         put_own(beads);
-        if (!asks_ || !plan_.overlap) choose_list_and_compute(beads);
+        computes_later_ = asks_ && plan_.overlap;
+        if (!computes_later_) choose_list_and_compute(beads);
         if (timed) events_->chains_begin.record(stream_of(*beads.front()));
     }
     void go_on(std::span<DeviceBeads* const> beads) override {
         if (timed_) events_->chains_end.record(stream_of(*beads.back()));
-        if (asks_ && plan_.overlap) choose_list_and_compute(beads);
+        if (computes_later_) choose_list_and_compute(beads);
     }
     void refuse_trouble() override {
         std::int64_t const bead = take_trouble();
@@ -58,13 +61,15 @@ class LonePath final : public GpuPath {
             // The GPU may have been behind: its clock is the host's where both are known to be.
             if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
             bool const far = std::exchange(flags_->data()->far, 0) != 0;
-            if (far || of_this_order_ == 0 || !listed_)
+            bool const anew = far || of_this_order_ == 0 || !listed_;
+            if (anew)
                 make_list();
             else
                 openmm_->keep_list();
+            ++(anew ? pair_lists_.made : pair_lists_.kept);
         }
         compute(beads);
-        if (!std::exchange(has_computed_, true)) asks_ = openmm_->tiles() > 0;
+        if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
     }
 
     void make_list() {
@@ -93,7 +98,7 @@ class LonePath final : public GpuPath {
         order(x, {}, mean(x));
     }
 
-    bool has_computed_ = false, asks_ = false;
+    bool may_ask_ = false, has_computed_ = false, asks_ = false, computes_later_ = false;
     Event placed_{Event::For::clock};
     std::unique_ptr<Buffer<double>> listed_;  // positions of the last list
 };
@@ -186,8 +191,8 @@ void GpuPath::put_own(std::span<DeviceBeads* const> beads) {
 void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     if (timed_) events_->openmm_begin.record(stream_);
     openmm_->compute();
-    if (timed_) events_->openmm_end.record(stream_);
     complete_forces();
+    if (timed_) events_->openmm_end.record(stream_);
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));

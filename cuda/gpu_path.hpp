@@ -35,6 +35,7 @@ class GpuPath : public DevicePath {
     void finish(std::span<DeviceBeads* const> beads) override;
     Clock clock() override;
     std::vector<Vec3> positions() override;
+    PairLists pair_lists() const override { return pair_lists_; }
 
   protected:
     struct Flags {
@@ -85,6 +86,7 @@ class GpuPath : public DevicePath {
     bool timed_ = false;
     double begun_ = 0;
     Interval exchange_;  // clock()'s
+    PairLists pair_lists_;
 };
 
 /// Of several ranks.

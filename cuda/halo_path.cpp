@@ -12,6 +12,7 @@
 #include "cuda/peer_inboxes.hpp"
 #include "error.hpp"
 #include "force/halo.hpp"
+#include "mpi/first_rank.hpp"
 
 namespace catena::cuda {
 namespace {
@@ -105,11 +106,11 @@ class HaloPath final : public GpuPath {
         // The GPU may have been behind: its clock is the host's where both are known to be.
         if (has_lists_ && timed_) begun_ = exchange_.begin - is_shown_.seconds_since(events_->begun);
         bool const far = std::exchange(flags_->data()->far, 0) != 0;
-        if (halo_.are_used_up(far, take_trouble())) {
+        if (are_used_up(far)) {
             make_lists(beads);
             show(beads);
             is_shown_.wait();
-            if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived
+            if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived, or kernels wait
         }
         if (inboxes_)
             halo_.note_carried();
@@ -131,15 +132,18 @@ class HaloPath final : public GpuPath {
         if (!own_are_put_) put_own(beads);
         if (!std::exchange(ghosts_are_placed_, true)) place_ghosts();
         put_ghosts();
-        if (pairs_ && pairs_->choose(*openmm_, of_this_order_ == 0)) list_shown();
+        if (pairs_) choose_pairs();
         compute(beads);
     }
     void complete_forces() override {
         if (pairs_) pairs_->complete(particles_, ghosts_from(0).particles, stream_);
     }
 
-    /// From where own beads are now they may move until the next list of pairs.
-    void list_shown() {
+    /// Where their list is made anew, own beads may move from where they are now until the next one.
+    void choose_pairs() {
+        bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
+        ++(anew ? pair_lists_.made : pair_lists_.kept);
+        if (!anew) return;
         std::size_t const bytes = lists().sent.size() * sizeof(Vec3);
         check(cudaMemcpyAsync((*listed_).data(), shown_.shown, bytes, cudaMemcpyDeviceToDevice, stream_), "take lists");
     }
@@ -150,6 +154,17 @@ class HaloPath final : public GpuPath {
         for (std::size_t i = 0; i < own.size(); ++i) all[static_cast<std::size_t>(plan_.particle[i])] = own[i];
         for (std::size_t i = 0; i < in().size(); ++i) all[static_cast<std::size_t>(lists().particle[i])] = in()[i];
         return mean(all);
+    }
+
+    /// What was sent must not arrive in memory that is no more, where all ranks end.
+    bool are_used_up(bool far) {
+        try {
+            return halo_.are_used_up(far, take_trouble());
+        } catch (SharedError const&) {
+            is_sent_.wait();
+            halo_.communicator().barrier();
+            throw;
+        }
     }
 
     /// For the host.
@@ -178,7 +193,7 @@ class HaloPath final : public GpuPath {
         ghosts_are_placed_ = false;
         has_lists_ = true;
         list_sent(x);
-        if (!has_way_ && halo_.every_rank_has_beads()) inboxes_ = PeerInboxes::make(halo_.communicator());
+        if (!has_way_ && halo_.every_rank_has_beads()) inboxes_ = PeerInboxes::make(halo_.communicator(), 2);
         has_way_ = true;
         if (inboxes_ && !inboxes_->fit(lists().messages)) inboxes_.reset();
         if (pairs_ && !pairs_->fit(inboxes_ != nullptr)) inboxes_.reset();

@@ -32,6 +32,7 @@ std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene cons
 
 std::string const& why_no_device_path() { return why_not(); }
 std::string why_pairs_cannot_be_shared() { return why_not(); }
+bool gpus_are_alike(Communicator const&) { throw ComputationError(why_not()); }
 bool gpus_may_write_to_each_other(Communicator const&) { throw ComputationError(why_not()); }
 int chosen_device() { throw ComputationError(why_not()); }
 std::unique_ptr<DevicePath> make_device_path(OpenMM::Context&, DevicePathPlan) { throw ComputationError(why_not()); }

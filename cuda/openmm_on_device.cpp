@@ -21,14 +21,16 @@ class CudaKernelSources {
 namespace catena::cuda {
 namespace {
 
-/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list, those that a context computes. OpenMM
-/// defines them by the contexts of one process.
-constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE";
+/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list, those that a context computes, which OpenMM
+/// defines by the contexts of one process; and the reach by which a block of particles may be wrapped about its middle, which does not
+/// allow for what they have moved since their blocks were looked at, as they are whenever OpenMM makes or keeps a list by itself.
+constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE", *wrapped = "MAX_CUTOFF";
 
 bool shares_pairs() {
     if (&OpenMM::CudaKernelSources::nonbonded == nullptr) return false;
     std::string const& source = OpenMM::CudaKernelSources::nonbonded;
-    return source.find(first_tile) != std::string::npos && source.find(last_tile) != std::string::npos;
+    auto const has = [&](char const* word) { return source.find(word) != std::string::npos; };
+    return has(first_tile) && has(last_tile) && has(wrapped);
 }
 
 std::string with(std::string text, std::string const& word, std::string const& value) {
@@ -69,7 +71,8 @@ class OnDevice final : public OpenMmOnDevice {
         groups_ = groups;
         auto const tiles = static_cast<std::int64_t>(pairs().getExclusionTiles().getSize());
         std::string const begin = std::to_string(tiles * part / parts), end = std::to_string(tiles * (part + 1) / parts);
-        pairs().setKernelSource(with(with(OpenMM::CudaKernelSources::nonbonded, first_tile, begin), last_tile, end));
+        std::string const padded = gpu_.doubleToString(pairs().padCutoff(pairs().getMaxCutoffDistance()));
+        pairs().setKernelSource(with(with(with(OpenMM::CudaKernelSources::nonbonded, first_tile, begin), last_tile, end), wrapped, padded));
     }
     void make_list(double begin, double end) override { pairs().setAtomBlockRange(begin, end); }
     /// Without blocks OpenMM finds nothing to prepare, and goes on to compute what is in the list.
@@ -80,6 +83,7 @@ class OnDevice final : public OpenMmOnDevice {
     }
     double tiles() override {
         OpenMM::CudaArray& counts = pairs().getInteractionCount();
+        if (!counts.isInitialized()) return 0;
         std::vector<unsigned int> found(counts.getSize());
         counts.download(found);
         double constexpr pairs_of_a_tile = 32 * 32;

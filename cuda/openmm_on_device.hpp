@@ -32,11 +32,11 @@ class OpenMmOnDevice {
     /// Forces at the positions of its arrays. Returns once its neighbour list stands, maybe before the forces do.
     virtual void compute() = 0;
 
-    /// From now on compute() finds the forces of these groups (bits) alone, and among pairs those of part `part` of `parts`. Before the
-    /// first compute(). Throws what OpenMM throws.
+    /// From now on compute() finds the forces of these groups (bits) alone, and among pairs those of part `part` of `parts`; -1, 0 and 1:
+    /// all. Before the first compute(), as keep_list() wants it. Precondition: the module says that it is to be had.
     virtual void share(int groups, int part, int parts) = 0;
-    /// The next compute() makes its neighbour list anew: of pairs whose first block of 32 places is from `begin` to `end` of the row of
-    /// all, whose ends are 0 and 1. Whoever computes the others needs the same order and does so at the same evaluation.
+    /// The next compute() makes its neighbour list anew: of pairs whose first block of 32 places is from `begin` to `end` > `begin` of the
+    /// row of all, whose ends are 0 and 1. Whoever computes the others needs the same order and does so at the same evaluation.
     virtual void make_list(double begin, double end) = 0;
     /// From now on compute() takes the list that there is, and does not look for what has moved. Until make_list().
     virtual void keep_list() = 0;

@@ -17,7 +17,7 @@ bool PairShare::fit(bool direct) {
     Communicator const& communicator = halo_.communicator();
     messages_.clear();
     for (Halo::Message const& m : halo_.lists().messages) messages_.push_back({m.rank, m.received, m.sent});
-    if (direct && !inboxes_) inboxes_ = PeerInboxes::make(communicator);
+    if (direct && !inboxes_) inboxes_ = PeerInboxes::make(communicator, 1);
     if (inboxes_ && !memory_) memory_ = PeerMemory::connect(communicator);
     if (memory_ && boxes_.ranks == 0) boxes_ = memory_->boxes(0);
     if (!memory_ || (inboxes_ && !inboxes_->fit(messages_))) inboxes_.reset();
@@ -93,7 +93,8 @@ void PairShare::carry_by_host(cudaStream_t stream) {
     std::int64_t first_sent = 0, first_received = 0;
     for (Halo::Message const& m : messages_) {
         out.push_back({m.rank, std::as_bytes(std::span(out_->data() + 3 * first_sent, static_cast<std::size_t>(3 * m.sent)))});
-        in.push_back({m.rank, std::as_writable_bytes(std::span(in_->data() + 3 * first_received, static_cast<std::size_t>(3 * m.received)))});
+        in.push_back(
+            {m.rank, std::as_writable_bytes(std::span(in_->data() + 3 * first_received, static_cast<std::size_t>(3 * m.received)))});
         first_sent += m.sent;
         first_received += m.received;
     }

@@ -24,7 +24,8 @@ class PairShare {
     /// Whenever lists of positions are made, before they are of use. `direct`: GPUs write to each other's memory. Whether they do so here.
     /// Collective.
     bool fit(bool direct);
-    /// Before each evaluation: which pairs are this rank's. `new_order`: of OpenMM's particles. Whether their list is made anew. Collective.
+    /// Before each evaluation: which pairs are this rank's. `new_order`: of OpenMM's particles. Whether their list is made anew.
+    /// Collective.
     bool choose(OpenMmOnDevice&, bool new_order);
     /// Once the stream comes here every rank's has: what they were given before, positions, has arrived. Where GPUs write to each other's
     /// memory.

@@ -4,9 +4,9 @@
 
 namespace catena::cuda {
 
-std::unique_ptr<PeerInboxes> PeerInboxes::make(Communicator const& communicator) {
+std::unique_ptr<PeerInboxes> PeerInboxes::make(Communicator const& communicator, int inboxes) {
     if (!gpus_may_write_to_each_other(communicator)) return nullptr;
-    return std::unique_ptr<PeerInboxes>(new PeerInboxes(communicator));
+    return std::unique_ptr<PeerInboxes>(new PeerInboxes(communicator, inboxes));
 }
 
 /// Its own memory may be mapped elsewhere still: it goes with its CUDA context.
@@ -40,13 +40,11 @@ bool PeerInboxes::map_anew(std::int64_t received) {
     std::int64_t constexpr own_block = 1 << 16;  // less shares a block of the driver's with others', which cannot be mapped by itself
     capacity_ = std::max<std::int64_t>(received + received / 8, own_block);
     own_ = Buffer<double>();
-    own_ = Buffer<double>(static_cast<std::size_t>(2 * 3 * capacity_));
+    own_ = Buffer<double>(static_cast<std::size_t>(inboxes_ * 3 * capacity_));
     base_ = map_each_others(communicator_, own_.data());
     return !base_.empty();
 }
 
-void* PeerInboxes::box(int rank) const {
-    return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * turn_ * capacity_;
-}
+void* PeerInboxes::box(int rank) const { return static_cast<double*>(base_[static_cast<std::size_t>(rank)]) + 3 * turn_ * capacity_; }
 
 }  // namespace catena::cuda

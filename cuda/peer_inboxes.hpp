@@ -13,12 +13,12 @@
 
 namespace catena::cuda {
 
-/// Every rank has two inboxes, which are filled in turns: what arrived is read while the next positions come. Between two fillings of one
-/// of them every rank must have heard of every other that it has read it, which asking whether lists are used up does, in between.
+/// Every rank has as many inboxes, one or two, which are filled in turns: what arrived in one of two is read while the next positions come.
+/// Between two fillings of one of them every rank must have heard of every other that it has read it.
 class PeerInboxes {
   public:
     /// Null on all ranks where GPUs do not reach each other. Collective.
-    static std::unique_ptr<PeerInboxes> make(Communicator const&);
+    static std::unique_ptr<PeerInboxes> make(Communicator const&, int inboxes);
     ~PeerInboxes();
     PeerInboxes(PeerInboxes const&) = delete;
     PeerInboxes& operator=(PeerInboxes const&) = delete;
@@ -27,7 +27,7 @@ class PeerInboxes {
     /// writes or reads. Collective.
     bool fit(std::span<Halo::Message const> messages);
     /// From now on the other one is filled and read. On every rank.
-    void turn() { turn_ = 1 - turn_; }
+    void turn() { turn_ = (turn_ + 1) % inboxes_; }
     /// Sends `shown`, three numbers a position, one message after the other or one for all, once the stream comes here.
     template <class Number>
     void send(std::span<Halo::Message const> messages, Number const* shown, bool one_for_all, cudaStream_t stream) const {
@@ -49,13 +49,13 @@ class PeerInboxes {
     }
 
   private:
-    explicit PeerInboxes(Communicator const& communicator) : communicator_(communicator) {}
+    PeerInboxes(Communicator const& communicator, int inboxes) : communicator_(communicator), inboxes_(inboxes) {}
     bool map_anew(std::int64_t received);
     /// The inbox of a rank that is filled now.
     void* box(int rank) const;
 
     Communicator const& communicator_;
-    int turn_ = 0;
+    int inboxes_, turn_ = 0;
     std::int64_t capacity_ = 0;  // positions in each inbox, on every rank alike
     Buffer<double> own_;
     std::vector<void*> base_;          // of each rank

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "force/device_path.hpp"
 #include "mpi/gpu_exchange.hpp"
 
 namespace catena::cuda {
@@ -15,7 +16,24 @@ namespace {
 
 bool agreed(Communicator const& communicator, bool here) { return communicator.sum(here ? 0 : 1) == 0; }
 
-/// One host, each rank on a GPU of its own, whatever each of them calls it.
+bool equal(cudaUUID_t const& a, cudaUUID_t const& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; }
+
+/// Whether this GPU can reach those, as far as they can be seen here.
+bool reaches(int device, std::vector<cudaUUID_t> const& others) {
+    int count = 0;
+    check(cudaGetDeviceCount(&count), "say how many there are");
+    for (int other = 0; other < count; ++other) {
+        cudaDeviceProp gpu{};
+        check(cudaGetDeviceProperties(&gpu, other), "say what it is");
+        bool const asked = std::any_of(others.begin(), others.end(), [&](cudaUUID_t const& uuid) { return equal(uuid, gpu.uuid); });
+        int can = 1;
+        if (asked && other != device) check(cudaDeviceCanAccessPeer(&can, device, other), "say whom it reaches");
+        if (can == 0) return false;
+    }
+    return true;
+}
+
+/// One host, each rank on a GPU of its own, whatever each of them calls it, and none that cannot reach another.
 bool apart_on_one_host(Communicator const& communicator) {
     if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers) return false;
     int device = 0;
@@ -25,11 +43,10 @@ bool apart_on_one_host(Communicator const& communicator) {
     std::vector<cudaUUID_t> all(static_cast<std::size_t>(communicator.size()));
     communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)), std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(cudaUUID_t)));
-    auto const equal = [](cudaUUID_t const& a, cudaUUID_t const& b) { return std::memcmp(&a, &b, sizeof(a)) == 0; };
     for (std::size_t i = 0; i < all.size(); ++i)
         for (std::size_t j = 0; j < i; ++j)
             if (equal(all[i], all[j])) return false;
-    return true;
+    return reaches(device, all);
 }
 
 constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB; the widest segments of all ranks' units take three quarters of it
@@ -83,6 +100,19 @@ bool gpus_may_write_to_each_other(Communicator const& communicator) {
     return communicator.size() > 1 &&
            gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE")) != GpuExchange::host &&
            agreed(communicator, apart_on_one_host(communicator));
+}
+
+bool gpus_are_alike(Communicator const& communicator) {
+    int device = 0;
+    cudaDeviceProp gpu{};
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaGetDeviceProperties(&gpu, device), "say what it is");
+    std::vector<char> all(static_cast<std::size_t>(communicator.size()) * sizeof(gpu.name));
+    communicator.all_gather(std::as_bytes(std::span(gpu.name)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(static_cast<std::size_t>(communicator.size()), sizeof(gpu.name)));
+    bool alike = true;
+    for (std::size_t r = 0; r < all.size(); r += sizeof(gpu.name)) alike = alike && std::strcmp(gpu.name, all.data() + r) == 0;
+    return agreed(communicator, alike);
 }
 
 std::vector<void*> map_each_others(Communicator const& communicator, void* own) {

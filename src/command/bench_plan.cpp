@@ -76,14 +76,8 @@ Json json_of(Compared const& c) {
     Json phases = Json::object();
     for (std::size_t p = 0; p < plan::phases; ++p)
         phases[plan::phase_names[p]] = {{"predicted", c.predicted.seconds[p]}, {"measured", c.measured[p]}};
-    return {{"arrangement", c.name},
-            {"same_bits", c.predicted.alike},
-            {"seconds", phases},
-            {"median", c.typical()},
-            {"ratio", c.ratio()},
-            {"ratio_to_median", c.ratio_to_median()},
-            {"residual", c.residual},
-            {"residual_bound", c.bound},
+    return {{"arrangement", c.name}, {"same_bits", c.predicted.alike},         {"seconds", phases},      {"median", c.typical()},
+            {"ratio", c.ratio()},    {"ratio_to_median", c.ratio_to_median()}, {"residual", c.residual}, {"residual_bound", c.bound},
             {"valid", c.valid()}};
 }
 
@@ -127,8 +121,8 @@ void add_case(Outcome& outcome, Table& table, Worst& worst, plan::Planner& plann
     outcome.valid = outcome.valid && valid;
     table.add({family.name(), std::to_string(bodies), chosen.name, duration_text(chosen.predicted.seconds[plan::evaluation]),
                duration_text(chosen.measured[plan::evaluation]), fmt::format("{:.2f}", chosen.ratio()),
-               fmt::format("{:.2f}", chosen.ratio_to_median()), best.name,
-               duration_text(best.typical()), fmt::format("{:.0f} %", 100 * slower), fmt::format("{:.2f}", here.ratio), fmt::format("{:.2f}", here.to_median),
+               fmt::format("{:.2f}", chosen.ratio_to_median()), best.name, duration_text(best.typical()),
+               fmt::format("{:.0f} %", 100 * slower), fmt::format("{:.2f}", here.ratio), fmt::format("{:.2f}", here.to_median),
                valid ? "VALID" : "INVALID"});
     outcome.json["results"].push_back({{"kind", family.name()},
                                        {"bodies", bodies},
@@ -158,7 +152,7 @@ void add_case_or_failure(Outcome& outcome, Table& table, Worst& worst, plan::Pla
 Outcome bench_plan(Communicator const& communicator, BenchRequest const& request) {
     if (communicator.size() > 1) throw InputError("predictions are compared on one rank", "catena bench plan", "run it without mpirun");
     Table table({"kind", "bodies", "chosen", "predicted", "measured", "ratio", "to median", "best", "median", "slower by", "worst",
-                 "to median", ""},
+                 "worst to median", ""},
                 {0, 2, 7, 12});
     Outcome outcome;
     outcome.json = {{"bench", "plan"}, {"build", version_json()}, {"hardware", hardware_json()}, {"results", Json::array()}};
@@ -176,7 +170,8 @@ Outcome bench_plan(Communicator const& communicator, BenchRequest const& request
     outcome.json["worst_choice_slower_by"] = worst.choice;
     outcome.json["valid"] = outcome.valid;
     outcome.text = fmt::format(
-        "An evaluation, predicted over measured, the shortest of several and their median; worst: of all arrangements; best: the least median of all arrangements that give the same "
+        "An evaluation, predicted over measured, the shortest of several and their median; worst: of all arrangements; best: the least "
+        "median of all arrangements that give the same "
         "bits. "
         "{}; {}, {}\n",
         hardware_text(), compiler_name(), instruction_set());

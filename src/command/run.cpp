@@ -46,6 +46,8 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
                                     run.at("last_step").get<std::int64_t>(), number(run, "time"), time_unit(scene)));
     std::string rate = fmt::format("{}: {:.4g} steps/s", duration_text(number(speed, "seconds")), number(speed, "steps_per_second"));
     if (speed.contains("ns_per_day")) rate += fmt::format(", {:.4g} ns/day", number(speed, "ns_per_day"));
+    if (auto const later = speed.find("steps_per_second_of_second_half"); later != speed.end())
+        rate += fmt::format(", in the second half {:.4g} steps/s", later->get<double>());
     text.entry("time", rate);
     if (auto const inner = s.find("inner_steps"); inner != s.end())
         text.entry("inner steps",

@@ -78,20 +78,21 @@ struct DeviceParticles {
         Vec3 f;
         for (int c = 0; c < 3; ++c) {
             std::int64_t const fixed = force[at + c * places];
-            if (fixed > most || fixed < -most) *trouble = first + k;
+            if (!is_number(fixed)) *trouble = first + k;
             f[c] = (1.0 / 4294967296.0) * static_cast<double>(fixed);
         }
         return f;
     }
 
+    CATENA_HD static bool is_number(std::int64_t fixed) { return fixed <= most && fixed >= -most; }
     static constexpr double far_away = 1e30;                                // nm
     static constexpr std::int64_t most = std::int64_t{0x7ffffffffffff000};  // of fixed-point numbers; what is none lies beyond
 };
 
 /// Where beads go that other ranks have as ghosts, and how far they may be from where they stood. All addresses are the GPU's.
 struct ShownBeads {
-    DeviceParticles particles;  // whose beads they are, where `rounded` is there
-    float* rounded = nullptr;   // of each place what single precision has of its particle's coordinates
+    DeviceParticles particles;                              // whose beads they are, where `rounded` is there
+    float* rounded = nullptr;                               // of each place what single precision has of its particle's coordinates
     std::int32_t const *first = nullptr, *place = nullptr;  // bead k goes to places place[first[k]] to place[first[k + 1] - 1]
     double* shown = nullptr;                                // x, y, z of each place
     double const* listed = nullptr;                         // x, y, z of each bead when this was made; absent: it may go anywhere
@@ -144,9 +145,9 @@ struct SentForces {
     static constexpr int most_messages = 16;
     DeviceParticles particles;  // whose beads they are
     int messages = 0;
-    std::int64_t end[most_messages] = {};   // beads in each message and those before
-    std::int64_t* to[most_messages] = {};   // where bead 0 would be if the message had those before, too
-    bool all = true;                        // false: zeros stay away
+    std::int64_t end[most_messages] = {};  // beads in each message and those before
+    std::int64_t* to[most_messages] = {};  // where bead 0 would be if the message had those before, too
+    bool all = true;                       // false: zeros stay away
     std::int64_t count() const { return messages > 0 ? end[messages - 1] : 0; }
     /// `box`: where its numbers go
     void add(std::int64_t beads, std::int64_t* box) {
@@ -171,9 +172,15 @@ struct ReturnedForces {
     int messages = 0;
     /// i: as above
     CATENA_HD void operator()(std::int64_t i) const {
-        std::int64_t sum = 0;
-        for (int m = 0; m < messages; ++m) sum += arrived[3 * m * beads + i];
-        particles.force[particles.bead[i / 3].place + i % 3 * particles.places] += sum;
+        std::int64_t& force = particles.force[particles.bead[i / 3].place + i % 3 * particles.places];
+        std::int64_t sum = force;
+        bool is_number = DeviceParticles::is_number(sum);
+        for (int m = 0; m < messages; ++m) {
+            std::int64_t const part = arrived[3 * m * beads + i];
+            is_number = is_number && DeviceParticles::is_number(part);
+            sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) + static_cast<std::uint64_t>(part));
+        }
+        force = is_number ? sum : INT64_MAX;  // two that are none may add up to one
     }
 };
 

@@ -30,6 +30,7 @@ struct DevicePathPlan {
     std::optional<Vec3> box;         // particles may be moved by its edges, one by one
     bool shifted = false;            // all particles may be moved by one vector
     bool overlap = true;             // the chains' own work goes on while OpenMM computes
+    bool keeps_list = false;         // no force looks for pairs but by the list that all share
     Halo* halo = nullptr;            // of a rank among several
 };
 
@@ -58,6 +59,11 @@ class DevicePath {
         Interval openmm, chains, exchange;
     };
     virtual Clock clock() = 0;
+    /// At how many evaluations OpenMM's list of pairs was made, and at how many it was kept without OpenMM being asked.
+    struct PairLists {
+        std::int64_t made = 0, kept = 0;
+    };
+    virtual PairLists pair_lists() const { return {}; }
     /// Of the last evaluation's beads, as they are now, nm, W. Waits for them.
     virtual std::vector<Vec3> positions() = 0;
 };
@@ -69,8 +75,11 @@ namespace cuda {
 
 /// Empty where OpenMM's arrays can be reached on a GPU by this build and on this machine, else why not.
 std::string const& why_no_device_path();
-/// Empty where such a path can compute some of the pairs of a Context alone, else why not. Precondition: why_no_device_path() is empty.
+/// Empty where such a path can compute some of the pairs of a Context alone, and can keep their list, else why not. Precondition:
+/// why_no_device_path() is empty.
 std::string why_pairs_cannot_be_shared();
+/// Whether the ranks' GPUs are of one kind, so that they find the same order of particles and blocks. Collective.
+bool gpus_are_alike(Communicator const&);
 /// Whether the ranks' GPUs may write to each other's memory. Collective.
 bool gpus_may_write_to_each_other(Communicator const&);
 /// The GPU that choose_device chose.

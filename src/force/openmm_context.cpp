@@ -74,9 +74,7 @@ void ForceContext::set_positions(std::span<Vec3 const> positions, std::size_t ce
     context_->setPositions(positions_);
 }
 
-std::vector<OpenMM::Vec3> ForceContext::forces(int groups) {
-    return context_->getState(OpenMM::State::Forces, false, groups).getForces();
-}
+std::vector<OpenMM::Vec3> ForceContext::forces(int groups) { return context_->getState(OpenMM::State::Forces, false, groups).getForces(); }
 
 void ForceContext::find_energies(std::span<double> of_group) {
     for (int i = 0; i < system_->getNumForces(); ++i) {

@@ -295,6 +295,9 @@ OpenMmModel model_of(OpenMmSpec const& spec, BeadSystem const& beads, Communicat
     return model;
 }
 
+/// OpenMM takes about a kilobyte a bead, and the chains' part of the GPU's memory is their own.
+constexpr std::int64_t most_beads_of_a_gpu = 20'000'000;
+
 /// Why ranks cannot share out the pairs of beads that all of them know; empty where they can. `why_no_device`: the same on every rank.
 std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads,
                                std::string const& why_no_device) {
@@ -303,14 +306,19 @@ std::string cannot_share_pairs(OpenMmSpec const& spec, OpenMM::System const& sys
     auto const& first = beads.first_of_rank;
     if (std::adjacent_find(first.begin(), first.end()) != first.end()) return "a rank has no beads";
     if (std::string why = why_not_by_pairs(system); !why.empty()) return why;
+    if (spec.split == "auto" && beads.size() > most_beads_of_a_gpu) return "there may be no room for so many beads on each GPU";
     return cuda::why_pairs_cannot_be_shared();
 }
 
 /// Whether they do. The same on every rank. Collective.
 bool goes_by_pairs(OpenMmSpec const& spec, OpenMM::System const& system, BeadSystem const& beads, Communicator const& communicator,
                    std::string const& why_no_device) {
+    if (spec.replicate && spec.split != "auto")
+        throw InputError("forces.openmm.replicate leaves nothing to split", beads.scene_file + ": forces.openmm.split",
+                         "leave one of them out");
     if (communicator.size() == 1 || spec.replicate || spec.split == "ghosts") return false;
-    std::string const why_not = first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
+    std::string why_not = first_words(communicator, cannot_share_pairs(spec, system, beads, why_no_device));
+    if (why_not.empty() && !cuda::gpus_are_alike(communicator)) why_not = "their GPUs are not alike";
     if (spec.split == "pairs" && !why_not.empty())
         throw InputError(fmt::format("ranks cannot share out OpenMM's pairs: {}", why_not), beads.scene_file + ": forces.openmm.split",
                          "take auto or ghosts, or chains of beads, --backend cuda and pair forces with a cutoff on GPUs");
@@ -347,7 +355,8 @@ std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSyste
     std::unique_ptr<OpenMmForce> force;
     on_all(communicator, [&] {
         force = accepted(where, [&]() -> std::unique_ptr<OpenMmForce> {
-            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model), std::move(platform), why_no_device, by_pairs);
+            return std::make_unique<OpenMmForces>(spec, beads, communicator, std::move(model), std::move(platform), why_no_device,
+                                                  by_pairs);
         });
     });
     return force;

@@ -90,15 +90,12 @@ DevicePathPlan PairForces::plan(bool overlap) {
     return plan;
 }
 
-std::unique_ptr<DevicePath> PairForces::device_path(bool overlap) {
-    return cuda::make_device_path(context_->context(), plan(overlap));
-}
+std::unique_ptr<DevicePath> PairForces::device_path(bool overlap) { return cuda::make_device_path(context_->context(), plan(overlap)); }
 
 bool PairForces::are_used_up(bool far, std::int64_t bead) {
     double constexpr good = 0, far_away = 1, used_up = 2, trouble = 3;  // and the bead's number
     bool const renew = std::exchange(renew_, false);
-    double const state =
-        communicator_.max(bead >= 0 ? trouble + static_cast<double>(bead) : renew ? used_up : far ? far_away : good);
+    double const state = communicator_.max(bead >= 0 ? trouble + static_cast<double>(bead) : renew ? used_up : far ? far_away : good);
     if (state >= trouble) throw_trouble(state - trouble, in_trouble);
     some_are_far_ = state > good;
     return state == used_up;
@@ -141,9 +138,8 @@ void PairForces::audit(std::span<Vec3 const> own_positions, std::span<Vec3 const
     communicator_.all_gather(std::as_bytes(own_positions), std::as_writable_bytes(std::span(all)), bytes);
     auto const begin = all.begin() + first_of_rank_[static_cast<std::size_t>(communicator_.rank())];
     all.erase(begin, begin + own());
-    bool const equal = std::equal(all.begin(), all.end(), received.begin(), received.end(), [](Vec3 const& a, Vec3 const& b) {
-        return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-    });
+    bool const equal = std::equal(all.begin(), all.end(), received.begin(), received.end(),
+                                  [](Vec3 const& a, Vec3 const& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; });
     if (communicator_.sum(equal ? 0 : 1) > 0) throw SharedError("a rank computes with beads of others that are not where they are");
 }
 

@@ -54,7 +54,9 @@ class PairForces final : public RankForces, public Halo {
 
   private:
     std::int64_t own() const { return std::ssize(particle_); }
-    std::int64_t beads_of(int rank) const { return first_of_rank_[static_cast<std::size_t>(rank) + 1] - first_of_rank_[static_cast<std::size_t>(rank)]; }
+    std::int64_t beads_of(int rank) const {
+        return first_of_rank_[static_cast<std::size_t>(rank) + 1] - first_of_rank_[static_cast<std::size_t>(rank)];
+    }
     void note(bool direct);
 
     Communicator const& communicator_;

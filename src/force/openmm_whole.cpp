@@ -58,6 +58,7 @@ class WholeForces final : public RankForces {
         if (context_->placement() == Placement::wrapped) plan.box = box_;
         plan.shifted = context_->placement() == Placement::shifted;
         plan.overlap = overlap;
+        plan.keeps_list = why_not_by_pairs(*model_.system).empty();
         return cuda::make_device_path(context_->context(), std::move(plan));
     }
     std::vector<Vec3> forces_again() override {

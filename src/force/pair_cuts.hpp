@@ -16,11 +16,13 @@ inline std::vector<double> equal_cuts(int ranks) {
 }
 
 /// Cuts that give every rank as much work, were that of each, `work`, spread evenly over what it has now. Where there is none they stay.
+/// Every rank keeps an eighth of an equal share at least: whoever has none would not notice that others have what was its own.
 inline std::vector<double> evened_cuts(std::vector<double> const& cuts, std::span<double const> work) {
     std::size_t const ranks = work.size();
     double total = 0;
     for (double const w : work) total += w;
     if (!(total > 0)) return cuts;
+    double const least = 0.125 / static_cast<double>(ranks);
     std::vector<double> evened{0};
     std::size_t r = 0;
     double before = 0;  // work of ranks before r
@@ -28,7 +30,8 @@ inline std::vector<double> evened_cuts(std::vector<double> const& cuts, std::spa
         double const wanted = total * static_cast<double>(next) / static_cast<double>(ranks);
         while (r + 1 < ranks && before + work[r] < wanted) before += work[r++];
         double const part = work[r] > 0 ? std::min(1.0, (wanted - before) / work[r]) : 1.0;
-        evened.push_back(std::max(evened.back(), cuts[r] + part * (cuts[r + 1] - cuts[r])));
+        evened.push_back(
+            std::clamp(cuts[r] + part * (cuts[r + 1] - cuts[r]), evened.back() + least, 1 - least * static_cast<double>(ranks - next)));
     }
     evened.push_back(1);
     return evened;

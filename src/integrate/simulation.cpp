@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "integrate/force_summary.hpp"
+#include "integrate/pace.hpp"
 #include "integrate/run_folder.hpp"
 #include "integrate/share.hpp"
 #include "integrate/sites.hpp"
@@ -93,6 +94,7 @@ class Run {
             of_step += chains_traffic() - prepared;
             if (n > first && !renews) count_messages(of_step);  // others may evaluate once more
             progress.update(n + 1);
+            pace_.note(n + 1, first + (last_ - first + 1) / 2, seconds_now());
         }
         progress.finish();
         seconds_ = seconds_now() - start;
@@ -307,6 +309,7 @@ class Run {
         if (json const inner = stepper_->inner_steps(); !inner.is_null()) s["inner_steps"] = inner;
         if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
+        if (double const rate = pace_.steps_per_second(); rate > 0) s["speed"]["steps_per_second_of_second_half"] = rate;
         if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
         s["parallel"] = {{"ranks", communicator_.size()},
                          {"threads", system_.executor().threads()},
@@ -368,6 +371,7 @@ class Run {
     std::vector<std::string> notes_;
     SweepWatch watch_;
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
+    Pace pace_;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;
     int stopped_by_ = 0;
     std::optional<PendingFrame> pending_;

@@ -64,8 +64,9 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 }
 
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
-    Fields const fields(node, {"builder", "system", "topology", "map", "temperature", "ionic_strength", "ph", "switch_width", "platform",
-                               "precision", "threads", "device", "path", "overlap", "layers", "split", "replicate", "audit", "force_groups"});
+    Fields const fields(
+        node, {"builder", "system", "topology", "map", "temperature", "ionic_strength", "ph", "switch_width", "platform", "precision",
+               "threads", "device", "path", "overlap", "layers", "split", "replicate", "audit", "force_groups"});
     if (si) fail(node, "OpenMM's forces in SI units", "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);

@@ -32,6 +32,7 @@ struct Found {
     std::vector<EnergyTerm> energies;
     GhostTraffic traffic;
     std::int64_t contexts = 0;
+    DevicePath::PairLists lists;
 };
 
 class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
@@ -85,6 +86,7 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         share(world_, f.checkpoint);
         f.traffic = system.openmm()->traffic();
         f.contexts = system.openmm()->contexts();
+        if (DevicePath const* const path = system.openmm()->device_path()) f.lists = path->pair_lists();
         return f;
     }
     static std::int64_t scene_beads(Scene const& scene) {
@@ -229,9 +231,33 @@ TEST_P(PairsOnGpus, AfterManySteps) {
         EXPECT_EQ(device.traffic.rebuilds, 2);
         EXPECT_EQ(device.traffic.updates, 401);
         EXPECT_EQ(device.contexts, 1);
+        EXPECT_EQ(device.lists.made + device.lists.kept, 401);
+        if (std::ssize(device.own) * world_.size() > 2100) {  // OpenMM has lists
+            EXPECT_GT(device.lists.kept, 4 * device.lists.made);
+            EXPECT_GT(device.lists.made, 6);
+        }
         expect_close(device, found(scene_with(precision, false), 400, &device), tolerance(precision));
         expect_close(device, found(scene_with(precision, true, "pairs"), 400, &device), tolerance(precision));
     }
+}
+
+/// An order lasts 4,000 evaluations.
+TEST_P(PairsOnGpus, AfterAnotherOrder) {
+    Found const device = found(scene_with("double", true, "pairs"), 4020);
+    expect_close(device, found(scene_with("double", false), 4020, &device), tolerance("double"));
+}
+
+TEST_P(PairsOnGpus, ListsAreMadeAnewWhenAsked) {
+    Scene const scene = scene_with("double", true, "pairs");
+    ChainSystem system(scene, Axes::world, world_);
+    system.evaluate();
+    std::vector<Vec3> const before = system.bead_forces();
+    for (int i = 0; i < 5; ++i) {
+        system.openmm()->renew_ghosts();
+        system.evaluate();
+    }
+    EXPECT_EQ(system.openmm()->traffic().rebuilds, 6);
+    EXPECT_LE(difference(system.bead_forces(), before), rounding);
 }
 
 TEST_P(PairsOnGpus, WithoutOverlap) {
@@ -264,6 +290,11 @@ INSTANTIATE_TEST_SUITE_P(
                            "{name: a, count: 120, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
                            "velocities: thermal}",
                            "box: {periodic: [90, 13, 12]}", 90},
+                      // Half an edge is a cutoff and half of a block of 32 beads: what has moved must not be taken from another cell.
+                      Case{"narrow",
+                           "{name: a, count: 110, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
+                           "velocities: thermal}",
+                           "box: {periodic: [11.2, 11, 42]}", 42},
                       Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""}),
     [](auto const& scene) { return scene.param.name; });
 

@@ -25,6 +25,7 @@ struct Found {
     std::vector<Vec3> forces, again, positions;
     std::vector<EnergyTerm> energies;
     std::map<std::string, std::vector<double>> state;
+    DevicePath::PairLists lists;
 };
 
 class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
@@ -68,6 +69,7 @@ class OpenMmOnGpu : public ::testing::TestWithParam<Case> {
         f.energies = system.potential_energy();
         f.again = system.bead_forces();
         f.state = system.state();
+        if (DevicePath const* const device = system.openmm()->device_path()) f.lists = device->pair_lists();
         if (steps > 0) {
             EXPECT_GT(system.matrix_seconds(), 0);
             EXPECT_LE(system.hidden_seconds(), system.matrix_seconds() * (1 + 1e-12));
@@ -128,7 +130,28 @@ TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
         Found const device = found("device", precision, steps);
         expect_close(device, found("host", precision, steps, &device), tolerance);
         expect_close(device, found("device", precision, steps, &device), tolerance);
+        if (device.positions.size() < 2100) continue;  // OpenMM has no list of their pairs
+        EXPECT_EQ(device.lists.made + device.lists.kept, steps);
+        EXPECT_GT(device.lists.kept, 4 * device.lists.made);
+        EXPECT_GT(device.lists.made, 6);
     }
+}
+
+/// Where they stand after many steps comes between two evaluations: no list of pairs is kept across that.
+TEST_P(OpenMmOnGpu, BeadsThatAreSetElsewhere) {
+    Found const there = found("host", "double", 300), expected = found("host", "double", 300, &there);
+    Scene scene = parse_scene(openmm_scene(GetParam().chains, GetParam().rest, ", precision: double"), "scene.yaml");
+    scene.solver.backend = Backend::cuda;
+    scene.forces.openmm->path = "device";
+    ChainSystem system(scene, Axes::world, *communicator_);
+    auto const start = system.state();
+    for (int i = 0; i < 4; ++i) system.evaluate();
+    system.set_state(there.state);
+    system.evaluate();
+    EXPECT_LE(difference(system.bead_forces(), expected.again), 1e-12 * largest(expected.again));
+    system.set_state(start);
+    system.evaluate();
+    EXPECT_GT(difference(system.bead_forces(), expected.again), 1e-3 * largest(expected.again));
 }
 
 TEST_P(OpenMmOnGpu, ABeadAtNoFinitePlaceEndsTheRun) {
@@ -159,6 +182,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"many",
                            "{name: a, count: 40, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}",
                            "box: {periodic: [36, 30, 28]}"},
+                      // Half an edge is a cutoff and half of a block of 32 beads: what has moved must not be taken from another cell.
+                      Case{"narrow",
+                           "{name: a, count: 110, sequence: MKDEGFYRSAKDWLNQHITVCP, model: calvados2, conformation: self_avoiding, "
+                           "velocities: thermal}",
+                           "box: {periodic: [11.2, 11, 42]}"},
                       Case{"open", "{name: a, sequence: SEQSEQ, model: calvados2, conformation: self_avoiding, velocities: thermal}", ""},
                       Case{"held",
                            "{name: a, base: fixed, sequence: SEQ, model: calvados2, conformation: self_avoiding, velocities: "

@@ -121,8 +121,7 @@ TEST(Hash, tells_what_decides_the_motion) {
     for (char const* const same :
          {"title=other", "dynamics.steps=5", "solver.backend=serial", "solver.threads=1", "output.every=7", "output.observables=[energy]",
           "forces.openmm.platform=Reference", "forces.openmm.threads=1", "forces.openmm.path=host", "forces.openmm.layers=all",
-          "forces.openmm.split=ghosts",
-          "forces.openmm.replicate=false", "forces.openmm.audit=false"})
+          "forces.openmm.split=ghosts", "forces.openmm.replicate=false", "forces.openmm.audit=false"})
         EXPECT_EQ(hash({same}), plain) << same;
     for (char const* const other :
          {"dynamics.step=0.011", "dynamics.seed=2", "dynamics.friction=0.4", "dynamics.temperature=301", "dynamics.integrator=rattle",
