@@ -43,7 +43,7 @@ json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, s
 }  // namespace
 
 json summary_of_forces(ChainSystem const& system, std::int64_t steps) {
-    OpenMmForce const* const openmm = system.openmm();
+    OpenMmForce* const openmm = system.openmm();
     if (openmm == nullptr) return nullptr;
     double const matrix = system.matrix_seconds();
     json summary = {{"openmm", openmm_version()},
@@ -53,6 +53,8 @@ json summary_of_forces(ChainSystem const& system, std::int64_t steps) {
                     {"matrix_sweep_seconds", matrix},
                     {"matrix_sweep_hidden", matrix > 0 ? system.hidden_seconds() / matrix : 0.0},
                     {"largest_context", openmm->largest_context()}};
+    if (DevicePath const* const path = openmm->device_path())
+        if (auto const [made, kept] = path->pair_lists(); made > 0) summary["pair_lists"] = {{"made", made}, {"kept", kept}};
     GhostTraffic const traffic = openmm->traffic();
     if (traffic.updates > 0) summary["ghosts"] = summary_of_ghosts(system, traffic, steps);
     return summary;

@@ -132,7 +132,7 @@ TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
         expect_close(device, found("device", precision, steps, &device), tolerance);
         if (device.positions.size() < 2100) continue;  // OpenMM has no list of their pairs
         EXPECT_EQ(device.lists.made + device.lists.kept, steps);
-        EXPECT_GT(device.lists.kept, 4 * device.lists.made);
+        EXPECT_GT(device.lists.kept, 2 * device.lists.made);  // fewer where nothing falls
         EXPECT_GT(device.lists.made, 6);
     }
 }
@@ -148,7 +148,7 @@ TEST_P(OpenMmOnGpu, BeadsThatAreSetElsewhere) {
     for (int i = 0; i < 4; ++i) system.evaluate();
     system.set_state(there.state);
     system.evaluate();
-    EXPECT_LE(difference(system.bead_forces(), expected.again), 1e-12 * largest(expected.again));
+    EXPECT_LE(difference(system.bead_forces(), expected.again), 1e-12 * largest(expected.again) + rounding);
     system.set_state(start);
     system.evaluate();
     EXPECT_GT(difference(system.bead_forces(), expected.again), 1e-3 * largest(expected.again));
