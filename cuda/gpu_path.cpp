@@ -47,9 +47,6 @@ class LonePath final : public GpuPath {
     }
 
   private:
-    /// OpenMM's own integrators do so after 250, which would be a twentieth of a step of 100,000 beads; chains move little meanwhile.
-    static constexpr int evaluations_of_an_order = 1000;
-
     /// Of thousands of particles OpenMM keeps a list of pairs, and sorts blocks of them at every evaluation before it looks whether one has
     /// moved far. Here that is found while they are moved, and the host asks while the chains go on.
     void choose_list_and_compute(std::span<DeviceBeads* const> beads) {
@@ -66,10 +63,11 @@ class LonePath final : public GpuPath {
                 make_list();
             else
                 openmm_->keep_list();
-            ++(anew ? pair_lists_.made : pair_lists_.kept);
+            note_list(anew);
         }
         compute(beads);
         if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
+        if (asks_) of_an_order_ = evaluations_of_a_listed_order;
     }
 
     void make_list() {
@@ -105,8 +103,8 @@ class LonePath final : public GpuPath {
 
 }  // namespace
 
-GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations_of_an_order)
-    : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations_of_an_order) {
+GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
+    : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations) {
     // What lives in OpenMM's context is made there.
     if (!home_->make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
     flags_ = std::make_unique<PinnedBuffer<Flags>>(1);
@@ -175,7 +173,12 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others, 
     particles_.correction = static_cast<float*>(arrays.correction);
     particles_.force = static_cast<std::int64_t*>(arrays.force);
     particles_.places = arrays.places;
-    of_this_order_ = 0;
+    of_this_order_ = lists_of_this_order_ = 0;
+}
+
+void GpuPath::note_list(bool anew) {
+    ++(anew ? pair_lists_.made : pair_lists_.kept);
+    lists_of_this_order_ += anew ? 1 : 0;
 }
 
 void GpuPath::put_own(std::span<DeviceBeads* const> beads) {
@@ -196,7 +199,7 @@ void GpuPath::compute(std::span<DeviceBeads* const> beads) {
     events_->forces.record(stream_);
     for (DeviceBeads* group : beads)
         if (!plan_.overlap) events_->forces.hold(stream_of(*group));
-    of_this_order_ = (of_this_order_ + 1) % of_an_order_;
+    of_this_order_ = lists_of_this_order_ < lists_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
 }
 
 void GpuPath::finish(std::span<DeviceBeads* const> beads) {

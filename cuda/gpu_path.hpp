@@ -27,8 +27,8 @@ void add(std::int64_t count, ReturnedForces const&, cudaStream_t);
 class GpuPath : public DevicePath {
   public:
     /// `home`: a Context that outlives this; what the chains and this keep on the GPU is kept in its CUcontext.
-    /// `evaluations_of_an_order`: particles are brought into a new order after so many.
-    GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations_of_an_order);
+    /// `evaluations`: particles are brought into a new order after so many.
+    GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations);
     ~GpuPath() override;
 
     bool make_current() noexcept override { return home_->make_current(); }
@@ -38,6 +38,12 @@ class GpuPath : public DevicePath {
     PairLists pair_lists() const override { return pair_lists_; }
 
   protected:
+    /// OpenMM's own integrators bring particles into a new order after 250, which would be a twentieth of a step of 100,000 beads. Chains
+    /// move little meanwhile: of a condensate of 7,143 OpenMM's forces take as long after 1,700 evaluations as after 150. Where nobody asks
+    /// how far beads are, they come into an order four times as often; where somebody does, also once that many lists of pairs have been
+    /// made, since each bead has gone some 0.2 nm at most for each: coordinates far from their cell lose digits in single precision.
+    static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 4000, lists_of_an_order = 400;
+
     struct Flags {
         std::int64_t trouble = -1, far = 0, of_ghosts = -1;
     };
@@ -66,6 +72,8 @@ class GpuPath : public DevicePath {
     /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.
     void put_own(std::span<DeviceBeads* const> beads);
     void compute(std::span<DeviceBeads* const> beads);
+    /// Of compute(): whether OpenMM's list of pairs is made anew.
+    void note_list(bool anew);
     /// Of compute(), once OpenMM has been given its work: what its forces lack yet.
     virtual void complete_forces() {}
     template <class T>
@@ -80,9 +88,9 @@ class GpuPath : public DevicePath {
     std::unique_ptr<Events> events_;
     std::unique_ptr<Buffer<DeviceBead>> own_;
     DeviceParticles particles_;
-    std::vector<std::int32_t> place_;      // of each particle
-    std::vector<DeviceBeads*> beads_;      // of the last evaluation
-    int of_an_order_, of_this_order_ = 0;  // evaluations
+    std::vector<std::int32_t> place_;                                // of each particle
+    std::vector<DeviceBeads*> beads_;                                // of the last evaluation
+    int of_an_order_, of_this_order_ = 0, lists_of_this_order_ = 0;  // evaluations, and lists of pairs made
     bool timed_ = false;
     double begun_ = 0;
     Interval exchange_;  // clock()'s

@@ -38,9 +38,9 @@ class Room {
 
 class HaloPath final : public GpuPath {
   public:
-    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan), evaluations_of_an_order), halo_(*plan_.halo) {
+    HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan), evaluations_of_ghosts), halo_(*plan_.halo) {
         if (!halo_.groups_of_share()) return;
-        of_an_order_ = evaluations_of_all_beads;
+        of_an_order_ = evaluations_of_a_listed_order;
         pairs_ = std::make_unique<PairShare>(halo_);
     }
     ~HaloPath() override { make_current(); }  // what it owns lives there
@@ -61,7 +61,7 @@ class HaloPath final : public GpuPath {
 
   private:
     /// Where lists are made anew ghosts come from elsewhere.
-    static constexpr int evaluations_of_an_order = 250, evaluations_of_all_beads = 4000;
+    static constexpr int evaluations_of_ghosts = 250;
 
     Halo::Lists const& lists() const { return halo_.lists(); }
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
@@ -142,7 +142,7 @@ class HaloPath final : public GpuPath {
     /// Where their list is made anew, own beads may move from where they are now until the next one.
     void choose_pairs() {
         bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
-        ++(anew ? pair_lists_.made : pair_lists_.kept);
+        if (pairs_->has_list()) note_list(anew);
         if (!anew) return;
         std::size_t const bytes = lists().sent.size() * sizeof(Vec3);
         check(cudaMemcpyAsync((*listed_).data(), shown_.shown, bytes, cudaMemcpyDeviceToDevice, stream_), "take lists");

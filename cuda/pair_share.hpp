@@ -27,6 +27,8 @@ class PairShare {
     /// Before each evaluation: which pairs are this rank's. `new_order`: of OpenMM's particles. Whether their list is made anew.
     /// Collective.
     bool choose(OpenMmOnDevice&, bool new_order);
+    /// Whether some rank's OpenMM keeps a list of pairs, as far as is known.
+    bool has_list() const { return has_list_; }
     /// Once the stream comes here every rank's has: what they were given before, positions, has arrived. Where GPUs write to each other's
     /// memory.
     void wait_for_positions(cudaStream_t) const;
@@ -46,7 +48,7 @@ class PairShare {
     std::vector<Halo::Message> messages_;  // with forces: those of positions, the other way
     std::vector<double> cuts_;             // of the row of blocks, between ranks
     std::int64_t evaluations_ = 0;
-    bool has_list_ = false;                 // some rank's OpenMM has one of pairs
+    bool has_list_ = false;
     std::unique_ptr<PeerInboxes> inboxes_;  // null: forces pass through the host
     std::shared_ptr<PeerMemory> memory_;
     PeerBoxes boxes_;

@@ -126,14 +126,14 @@ TEST_P(OpenMmOnGpu, ARestartGoesOn) {
 TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
     constexpr double of_places = 14 * 40 / 0.4 * 0x1p-24;
     for (auto const& [precision, tolerance] : {std::pair{"double", 1e-12}, {"mixed", of_places}}) {
-        int constexpr steps = 1050;  // an order lasts 1,000 evaluations
+        int constexpr steps = 1500;  // an order lasts 1,000 evaluations, or 400 lists of pairs
         Found const device = found("device", precision, steps);
         expect_close(device, found("host", precision, steps, &device), tolerance);
         expect_close(device, found("device", precision, steps, &device), tolerance);
         if (device.positions.size() < 2100) continue;  // OpenMM has no list of their pairs
         EXPECT_EQ(device.lists.made + device.lists.kept, steps);
-        EXPECT_GT(device.lists.kept, 2 * device.lists.made);  // fewer where nothing falls
-        EXPECT_GT(device.lists.made, 6);
+        EXPECT_GT(device.lists.kept, device.lists.made / 2);
+        EXPECT_GT(device.lists.made, 400);  // what falls moves fast
     }
 }
 
