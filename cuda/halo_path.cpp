@@ -40,7 +40,7 @@ class HaloPath final : public GpuPath {
   public:
     HaloPath(OpenMM::Context& home, DevicePathPlan plan) : GpuPath(home, std::move(plan), evaluations_of_ghosts), halo_(*plan_.halo) {
         if (!halo_.groups_of_share()) return;
-        of_an_order_ = evaluations_of_a_listed_order;
+        of_an_order_ = evaluations_of_an_order;
         pairs_ = std::make_unique<PairShare>(halo_);
     }
     ~HaloPath() override { make_current(); }  // what it owns lives there
@@ -142,7 +142,10 @@ class HaloPath final : public GpuPath {
     /// Where their list is made anew, own beads may move from where they are now until the next one.
     void choose_pairs() {
         bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
-        if (pairs_->has_list()) note_list(anew);
+        if (pairs_->has_list()) {
+            of_an_order_ = evaluations_of_a_listed_order;
+            note_list(anew);
+        }
         if (!anew) return;
         std::size_t const bytes = lists().sent.size() * sizeof(Vec3);
         check(cudaMemcpyAsync((*listed_).data(), shown_.shown, bytes, cudaMemcpyDeviceToDevice, stream_), "take lists");

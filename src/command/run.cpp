@@ -65,8 +65,8 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
         text.entry("matrix sweep hidden", fmt::format("{:.0f} % behind the forces", 100 * number(*forces, "matrix_sweep_hidden")));
         if (auto const lists = forces->find("pair_lists"); lists != forces->end())
             text.entry("lists of pairs",
-                       fmt::format("made {}, kept at {} others", counted(lists->at("made").get<std::int64_t>(), "time", "times"),
-                                   counted(lists->at("kept").get<std::int64_t>(), "evaluation", "evaluations")));
+                       fmt::format("made {}, kept at {}", counted(lists->at("made").get<std::int64_t>(), "time", "times"),
+                                   counted(lists->at("kept").get<std::int64_t>(), "other evaluation", "other evaluations")));
         if (auto const ghosts = forces->find("ghosts"); ghosts != forces->end()) text.entry("ghosts", ghosts_text(*ghosts));
         for (auto const& line : forces->at("description")) {
             std::string const words = line.get<std::string>();

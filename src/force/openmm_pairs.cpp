@@ -123,12 +123,13 @@ void PairForces::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     note(false);
 }
 
-/// Positions go to every rank, and forces come back.
+/// Positions go to every rank, from GPU to GPU in single precision, and forces come back, of which zeros stay away then: so many at most.
 void PairForces::note(bool direct) {
     traffic_.direct = direct;
     ++traffic_.updates;
     traffic_.messages += 2 * std::ssize(lists_.messages);
-    for (Message const& m : lists_.messages) traffic_.bytes += (m.sent + m.received) * static_cast<std::int64_t>(sizeof(Vec3));
+    std::int64_t const of_position = direct ? 3 * sizeof(float) : sizeof(Vec3), of_force = sizeof(Vec3);
+    for (Message const& m : lists_.messages) traffic_.bytes += m.sent * of_position + m.received * of_force;
 }
 
 void PairForces::audit(std::span<Vec3 const> own_positions, std::span<Vec3 const> received) const {

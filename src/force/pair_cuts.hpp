@@ -30,8 +30,8 @@ inline std::vector<double> evened_cuts(std::vector<double> const& cuts, std::spa
         double const wanted = total * static_cast<double>(next) / static_cast<double>(ranks);
         while (r + 1 < ranks && before + work[r] < wanted) before += work[r++];
         double const part = work[r] > 0 ? std::min(1.0, (wanted - before) / work[r]) : 1.0;
-        evened.push_back(
-            std::clamp(cuts[r] + part * (cuts[r + 1] - cuts[r]), evened.back() + least, 1 - least * static_cast<double>(ranks - next)));
+        double const most = 1 - least * static_cast<double>(ranks - next), even = cuts[r] + part * (cuts[r + 1] - cuts[r]);
+        evened.push_back(std::min(most, std::max(evened.back() + least, even)));
     }
     evened.push_back(1);
     return evened;

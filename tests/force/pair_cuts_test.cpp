@@ -34,7 +34,7 @@ TEST(PairCuts, RanksWithoutWork) {
 
 /// One block in `apart` has all the work: nobody's share may become empty, however often they are evened.
 TEST(PairCuts, NoShareBecomesEmpty) {
-    for (int ranks : {2, 3, 4, 8, 16})
+    for (int ranks : {2, 3, 4, 5, 6, 7, 8, 11, 16})
         for (int apart : {1, 10, 75}) {
             std::vector<double> cuts = equal_cuts(ranks);
             for (int round = 0; round < 100; ++round) {

@@ -212,7 +212,7 @@ TEST_P(PairsOnGpus, ForcesComeEitherWay) {
     Found const by_host = found(scene, 40);
     EXPECT_FALSE(by_host.traffic.direct);
     EXPECT_EQ(by_host.traffic.ghosts, scene_beads(scene) - std::ssize(by_host.own));
-    EXPECT_EQ(either.traffic.bytes, by_host.traffic.bytes);
+    EXPECT_EQ(either.traffic.messages, by_host.traffic.messages);
     double constexpr after_steps = 1e-8;  // rounding, grown by the chains' own chaos
     expect_close(either, by_host, after_steps);
     if (world_.max(either.traffic.direct ? 0 : 1) > 0)
@@ -244,8 +244,9 @@ TEST_P(PairsOnGpus, AfterManySteps) {
 /// An order lasts 400 lists of pairs, or 4,000 evaluations.
 TEST_P(PairsOnGpus, AfterAnotherOrder) {
     if (scene_beads(scene_with("double", true)) < 2100) return;  // OpenMM has no list of their pairs
-    Found const device = found(scene_with("double", true, "pairs"), 1500);
-    expect_close(device, found(scene_with("double", false), 1500, &device), tolerance("double"));
+    Found const device = found(scene_with("double", true, "pairs"), 1700);
+    expect_close(device, found(scene_with("double", false), 1700, &device), tolerance("double"));
+    EXPECT_GT(device.lists.made, 420);  // what falls moves fast
 }
 
 TEST_P(PairsOnGpus, ListsAreMadeAnewWhenAsked) {

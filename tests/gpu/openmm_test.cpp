@@ -126,7 +126,7 @@ TEST_P(OpenMmOnGpu, ARestartGoesOn) {
 TEST_P(OpenMmOnGpu, AfterAnotherOrder) {
     constexpr double of_places = 14 * 40 / 0.4 * 0x1p-24;
     for (auto const& [precision, tolerance] : {std::pair{"double", 1e-12}, {"mixed", of_places}}) {
-        int constexpr steps = 1500;  // an order lasts 1,000 evaluations, or 400 lists of pairs
+        int constexpr steps = 1700;  // an order lasts 1,000 evaluations, or 400 lists of pairs
         Found const device = found("device", precision, steps);
         expect_close(device, found("host", precision, steps, &device), tolerance);
         expect_close(device, found("device", precision, steps, &device), tolerance);
