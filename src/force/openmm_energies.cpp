@@ -4,9 +4,7 @@ namespace catena {
 
 WholeEnergies::WholeEnergies(RankPlan const& plan)
     : model_(plan.model), platform_(plan.platform), communicator_(plan.communicator), box_(plan.box) {
-    std::vector<std::int64_t> particle_of_bead(model_.bead_of_particle.size());
-    for (std::size_t p = 0; p < particle_of_bead.size(); ++p)
-        particle_of_bead[static_cast<std::size_t>(model_.bead_of_particle[p])] = static_cast<std::int64_t>(p);
+    std::vector<int> const particle_of_bead = particles_of_beads(model_.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank) {
         std::vector<std::int64_t> const of_rank = plan.beads.beads_of(rank);
         bytes_of_rank_.push_back(std::ssize(of_rank) * static_cast<std::int64_t>(sizeof(Vec3)));

@@ -18,6 +18,13 @@ struct OpenMmModel {
     std::vector<std::string> notes;  // for people: what the model is, what was left out
 };
 
+/// The particle of each bead.
+inline std::vector<int> particles_of_beads(std::vector<std::int64_t> const& bead_of_particle) {
+    std::vector<int> particle(bead_of_particle.size());
+    for (std::size_t p = 0; p < particle.size(); ++p) particle[static_cast<std::size_t>(bead_of_particle[p])] = static_cast<int>(p);
+    return particle;
+}
+
 /// The CALVADOS 2 model on every chain of beads. Two forces: ashbaugh-hatch and yukawa.
 OpenMmModel calvados2_model(OpenMmSpec const&, BeadSystem const&);
 

@@ -64,9 +64,7 @@ PairForces::PairForces(RankPlan const& plan)
       groups_(groups_of(*plan.model.system, plan.communicator.rank())),
       context_(std::make_unique<ForceContext>(plan.model.system, plan.platform, plan.box)),
       energies_(plan) {
-    std::vector<int> particle_of_bead(plan.model.bead_of_particle.size());
-    for (std::size_t p = 0; p < particle_of_bead.size(); ++p)
-        particle_of_bead[static_cast<std::size_t>(plan.model.bead_of_particle[p])] = static_cast<int>(p);
+    std::vector<int> const particle_of_bead = particles_of_beads(plan.model.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : plan.beads.beads_of(rank)) {
             bool const own = rank == communicator_.rank();

@@ -29,13 +29,12 @@ SplitShare::SplitShare(RankPlan const& plan, double skin_of_reach)
       beads_(plan.beads),
       box_(plan.box),
       own_(plan.beads.beads_of(plan.communicator.rank())),
-      particle_of_bead_(plan.model.bead_of_particle.size()),
+      particle_of_bead_(particles_of_beads(plan.model.bead_of_particle)),
       ends_(std::isfinite(reach_of(*plan.model.system))),
       ranges_(ends_ ? pair_ranges(*plan.model.system, plan.model.bead_of_particle) : std::vector<PairRange>{}),
       skin_(skin_of_reach * std::max(longest_reach(ranges_), plan.longest_reach)),
       exchanges_(can_exchange_particles(*plan.model.system)),
       energies_(plan) {
-    for (std::size_t p = 0; p < particle_of_bead_.size(); ++p) particle_of_bead_[model_.bead_of_particle[p]] = static_cast<int>(p);
     for (std::int64_t const bead : own_) own_numbers_.push_back(beads_.name(bead));
     if (own_.empty()) return;
     if (!ends_) {

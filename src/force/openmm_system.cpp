@@ -269,8 +269,7 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     model.bead_of_particle = beads_of_particles(spec, beads);
     check_masses(*model.system, beads, model.bead_of_particle);
 
-    std::vector<int> particle_of_bead(model.bead_of_particle.size());
-    for (std::size_t p = 0; p < particle_of_bead.size(); ++p) particle_of_bead[model.bead_of_particle[p]] = static_cast<int>(p);
+    std::vector<int> const particle_of_bead = particles_of_beads(model.bead_of_particle);
     LinkTable const links(beads, particle_of_bead);
     auto const add = [&](std::vector<std::string> const& notes) { model.notes.insert(model.notes.end(), notes.begin(), notes.end()); };
     add({fmt::format("System {}", spec.system)});

@@ -117,6 +117,31 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
             EXPECT_NEAR(a.energies[i].value, b.energies[i].value, tolerance * (1 + std::abs(b.energies[i].value)));
         }
     }
+    /// When somebody asks for them, wherever beads are.
+    void expect_lists_made_anew(char const* split) {
+        Scene const scene = scene_with("double", true, split);
+        ChainSystem system(scene, Axes::world, world_);
+        system.evaluate();
+        std::vector<Vec3> const before = system.bead_forces();
+        for (int i = 0; i < 5; ++i) {
+            system.openmm()->renew_ghosts();
+            system.evaluate();
+        }
+        EXPECT_EQ(system.openmm()->traffic().rebuilds, 6);
+        EXPECT_LE(difference(system.bead_forces(), before), rounding);
+    }
+    /// Of a run with a bead at no finite place.
+    void expect_the_end_on_every_rank(char const* split) {
+        Scene const scene = scene_with("mixed", true, split);
+        ChainSystem system(scene, Axes::world, world_);
+        system.evaluate();
+        Checkpoint c;
+        c.arrays = system.state();
+        share(world_, c);
+        c.arrays["position"][3 * 10 + 1] = NAN;
+        system.set_state(c.arrays);
+        EXPECT_THROW(system.evaluate(), SharedError);
+    }
     /// OpenMM's pair forces take positions x from some origin and out of some cell, which differ, with a rounding of eps x of their
     /// precision: 1e-6 nm at 20 nm in single and mixed. Overlaps of 0.05 nm make forces change by all of themselves: 2e-5 of the largest.
     static double tolerance(std::string const& precision) {
@@ -176,30 +201,9 @@ TEST_P(OpenMmOnGpus, WithoutOverlap) {
     expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
 }
 
-TEST_P(OpenMmOnGpus, ListsAreMadeAnewWhenAsked) {
-    Scene const scene = scene_with("double", true);
-    ChainSystem system(scene, Axes::world, world_);
-    system.evaluate();
-    std::vector<Vec3> const before = system.bead_forces();
-    for (int i = 0; i < 5; ++i) {
-        system.openmm()->renew_ghosts();
-        system.evaluate();
-    }
-    EXPECT_EQ(system.openmm()->traffic().rebuilds, 6);
-    EXPECT_LE(difference(system.bead_forces(), before), rounding);
-}
+TEST_P(OpenMmOnGpus, ListsAreMadeAnewWhenAsked) { expect_lists_made_anew("ghosts"); }
 
-TEST_P(OpenMmOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) {
-    Scene const scene = scene_with("mixed", true);
-    ChainSystem system(scene, Axes::world, world_);
-    system.evaluate();
-    Checkpoint c;
-    c.arrays = system.state();
-    share(world_, c);
-    c.arrays["position"][3 * 10 + 1] = NAN;
-    system.set_state(c.arrays);
-    EXPECT_THROW(system.evaluate(), SharedError);
-}
+TEST_P(OpenMmOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) { expect_the_end_on_every_rank("ghosts"); }
 
 /// Every rank has every bead, and computes some of the pairs.
 class PairsOnGpus : public OpenMmOnGpus {};
@@ -249,18 +253,7 @@ TEST_P(PairsOnGpus, AfterAnotherOrder) {
     EXPECT_GT(device.lists.made, 420);  // what falls moves fast
 }
 
-TEST_P(PairsOnGpus, ListsAreMadeAnewWhenAsked) {
-    Scene const scene = scene_with("double", true, "pairs");
-    ChainSystem system(scene, Axes::world, world_);
-    system.evaluate();
-    std::vector<Vec3> const before = system.bead_forces();
-    for (int i = 0; i < 5; ++i) {
-        system.openmm()->renew_ghosts();
-        system.evaluate();
-    }
-    EXPECT_EQ(system.openmm()->traffic().rebuilds, 6);
-    EXPECT_LE(difference(system.bead_forces(), before), rounding);
-}
+TEST_P(PairsOnGpus, ListsAreMadeAnewWhenAsked) { expect_lists_made_anew("pairs"); }
 
 TEST_P(PairsOnGpus, WithoutOverlap) {
     Scene apart = scene_with("double", true, "pairs");
@@ -270,17 +263,7 @@ TEST_P(PairsOnGpus, WithoutOverlap) {
     expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
 }
 
-TEST_P(PairsOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) {
-    Scene const scene = scene_with("mixed", true, "pairs");
-    ChainSystem system(scene, Axes::world, world_);
-    system.evaluate();
-    Checkpoint c;
-    c.arrays = system.state();
-    share(world_, c);
-    c.arrays["position"][3 * 10 + 1] = NAN;
-    system.set_state(c.arrays);
-    EXPECT_THROW(system.evaluate(), SharedError);
-}
+TEST_P(PairsOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) { expect_the_end_on_every_rank("pairs"); }
 
 INSTANTIATE_TEST_SUITE_P(
     Scenes, PairsOnGpus,
