@@ -28,8 +28,20 @@ struct NoNumbers {
 }  // namespace
 
 void put(std::int64_t count, ArrivedBeads const& arrived, cudaStream_t stream) { each(count, arrived, stream); }
-void send(SentForces const& sent, cudaStream_t stream) { each(3 * sent.count(), sent, stream); }
-void add(std::int64_t count, ReturnedForces const& returned, cudaStream_t stream) { each(3 * count, returned, stream); }
+void send(std::int64_t count, SentPositions const& sent, cudaStream_t stream) { each(3 * count, sent, stream); }
+void take(std::int64_t count, ArrivedPositions const& arrived, cudaStream_t stream) { each(3 * count, arrived, stream); }
+template <class Number>
+void send(SentForces<Number> const& sent, cudaStream_t stream) {
+    each(3 * sent.count(), sent, stream);
+}
+template <class Number>
+void add(std::int64_t count, ReturnedForces<Number> const& returned, cudaStream_t stream) {
+    each(3 * count, returned, stream);
+}
+template void send(SentForces<std::int64_t> const&, cudaStream_t);
+template void send(SentForces<float> const&, cudaStream_t);
+template void add(std::int64_t, ReturnedForces<std::int64_t> const&, cudaStream_t);
+template void add(std::int64_t, ReturnedForces<float> const&, cudaStream_t);
 
 void meet(PeerBoxes const& boxes, cudaStream_t stream) {
     PeerCall call{boxes};

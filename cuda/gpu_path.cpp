@@ -58,9 +58,9 @@ class LonePath final : public GpuPath {
             // The GPU may have been behind: its clock is the host's where both are known to be.
             if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
             bool const far = std::exchange(flags_->data()->far, 0) != 0;
-            bool const anew = far || of_this_order_ == 0 || !listed_;
+            bool const anew = far || of_this_order_ == 0 || !std::exchange(has_list_, true);
             if (anew)
-                make_list();
+                openmm_->make_list(0, 1);
             else
                 openmm_->keep_list();
             note_list(anew);
@@ -68,23 +68,6 @@ class LonePath final : public GpuPath {
         compute(beads);
         if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
         if (asks_) of_an_order_ = evaluations_of_a_listed_order;
-    }
-
-    void make_list() {
-        auto const numbers = static_cast<std::size_t>(4 * particles_.places);
-        openmm_->make_list(0, 1);
-        if (!listed_) listed_ = std::make_unique<Buffer<double>>(numbers);  // of floats half
-        bool const twice = particles_.double_position != nullptr;
-        void const* const now = twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
-        check(cudaMemcpyAsync(listed_->data(), now, numbers * (twice ? sizeof(double) : sizeof(float)), cudaMemcpyDeviceToDevice, stream_),
-              "take lists");
-        auto const lasts = static_cast<float>(openmm_->list_lasts());
-        if (twice)
-            particles_.double_listed = listed_->data();
-        else
-            particles_.listed = reinterpret_cast<float const*>(listed_->data());
-        particles_.farthest_squared = lasts * lasts;
-        particles_.far = &flags_->data()->far;
     }
 
     void order_anew(std::span<DeviceBeads* const> beads) {
@@ -96,9 +79,8 @@ class LonePath final : public GpuPath {
         order(x, {}, mean(x));
     }
 
-    bool may_ask_ = false, has_computed_ = false, asks_ = false, computes_later_ = false;
+    bool may_ask_ = false, has_computed_ = false, has_list_ = false, asks_ = false, computes_later_ = false;
     Event placed_{Event::For::clock};
-    std::unique_ptr<Buffer<double>> listed_;  // positions of the last list
 };
 
 }  // namespace
@@ -173,12 +155,29 @@ void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others, 
     particles_.correction = static_cast<float*>(arrays.correction);
     particles_.force = static_cast<std::int64_t*>(arrays.force);
     particles_.places = arrays.places;
+    particles_.listed = nullptr;
+    particles_.double_listed = nullptr;
+    particles_.far = nullptr;
     of_this_order_ = lists_of_this_order_ = 0;
 }
 
 void GpuPath::note_list(bool anew) {
     ++(anew ? pair_lists_.made : pair_lists_.kept);
-    lists_of_this_order_ += anew ? 1 : 0;
+    if (!anew) return;
+    ++lists_of_this_order_;
+    bool const twice = particles_.double_position != nullptr;
+    void const* const now = twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
+    auto const numbers = static_cast<std::size_t>(4 * particles_.places);
+    double* const listed = listed_.of(numbers).data();  // of floats half
+    check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)), cudaMemcpyDeviceToDevice, stream_),
+          "take lists");
+    auto const lasts = static_cast<float>(openmm_->list_lasts());
+    if (twice)
+        particles_.double_listed = listed;
+    else
+        particles_.listed = reinterpret_cast<float const*>(listed);
+    particles_.farthest_squared = lasts * lasts;
+    particles_.far = &flags_->data()->far;
 }
 
 void GpuPath::put_own(std::span<DeviceBeads* const> beads) {

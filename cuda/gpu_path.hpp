@@ -18,11 +18,27 @@ std::unique_ptr<OpenMmOnDevice> on_device(OpenMM::Context&);
 
 Vec3 mean(std::span<Vec3 const> x);
 
+/// Memory that grows where more is needed.
+template <class Owner>
+class Room {
+  public:
+    Owner& of(std::size_t count) {
+        if (!owner_ || capacity_ < count) {
+            owner_.reset();
+            capacity_ = count + count / 8;
+            owner_ = std::make_unique<Owner>(capacity_);
+        }
+        return *owner_;
+    }
+    Owner& operator*() const { return *owner_; }
+
+  private:
+    std::unique_ptr<Owner> owner_;
+    std::size_t capacity_ = 0;
+};
+
 /// Ghosts that arrived go where they belong.
 void put(std::int64_t count, ArrivedBeads const&, cudaStream_t);
-/// Forces on beads go to their ranks, and those on so many own ones that came from there are added.
-void send(SentForces const&, cudaStream_t);
-void add(std::int64_t count, ReturnedForces const&, cudaStream_t);
 
 class GpuPath : public DevicePath {
   public:
@@ -39,10 +55,11 @@ class GpuPath : public DevicePath {
 
   protected:
     /// OpenMM's own integrators bring particles into a new order after 250, which would be a twentieth of a step of 100,000 beads. Chains
-    /// move little meanwhile: of a condensate of 7,143 OpenMM's forces take as long after 1,700 evaluations as after 150. Where nobody asks
-    /// how far beads are, they come into an order four times as often; where somebody does, also once that many lists of pairs have been
-    /// made, since each bead has gone some 0.2 nm at most for each: coordinates far from their cell lose digits in single precision.
-    static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 4000, lists_of_an_order = 400;
+    /// move little meanwhile: of a condensate of 7,143 OpenMM's forces take as long before an order that comes after 6,600 evaluations as
+    /// after it (2.11 ms, H200). Where nobody asks how far beads are, they come into an order more often; where somebody does, also once
+    /// that many lists of pairs have been made, since each bead has gone some 0.2 nm at most for each: coordinates far from their cell lose
+    /// digits in single precision.
+    static constexpr int evaluations_of_an_order = 1000, evaluations_of_a_listed_order = 8000, lists_of_an_order = 400;
 
     struct Flags {
         std::int64_t trouble = -1, far = 0, of_ghosts = -1;
@@ -72,7 +89,7 @@ class GpuPath : public DevicePath {
     /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.
     void put_own(std::span<DeviceBeads* const> beads);
     void compute(std::span<DeviceBeads* const> beads);
-    /// Of compute(): whether OpenMM's list of pairs is made anew.
+    /// Before compute(): whether OpenMM's list of pairs is made anew. Where it is, particles that move far from here are noted from now on.
     void note_list(bool anew);
     /// Of compute(), once OpenMM has been given its work: what its forces lack yet.
     virtual void complete_forces() {}
@@ -87,6 +104,7 @@ class GpuPath : public DevicePath {
     std::unique_ptr<PinnedBuffer<Flags>> flags_;
     std::unique_ptr<Events> events_;
     std::unique_ptr<Buffer<DeviceBead>> own_;
+    Room<Buffer<double>> listed_;  // positions of the last list of pairs
     DeviceParticles particles_;
     std::vector<std::int32_t> place_;                                // of each particle
     std::vector<DeviceBeads*> beads_;                                // of the last evaluation

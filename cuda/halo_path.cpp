@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "clock.hpp"
@@ -16,25 +17,6 @@
 
 namespace catena::cuda {
 namespace {
-
-/// Memory that grows where more is needed.
-template <class Owner>
-class Room {
-  public:
-    Owner& of(std::size_t count) {
-        if (!owner_ || capacity_ < count) {
-            owner_.reset();
-            capacity_ = count + count / 8;
-            owner_ = std::make_unique<Owner>(capacity_);
-        }
-        return *owner_;
-    }
-    Owner& operator*() const { return *owner_; }
-
-  private:
-    std::unique_ptr<Owner> owner_;
-    std::size_t capacity_ = 0;
-};
 
 class HaloPath final : public GpuPath {
   public:
@@ -49,7 +31,11 @@ class HaloPath final : public GpuPath {
         start(beads, timed);
         own_are_put_ = of_this_order_ > 0;
         if (own_are_put_) put_own(beads);  // now: OpenMM is not to wait for what the streams are given next
-        if (has_lists_) show(beads);
+        from_array_to_array_ = are_arrays_shared();
+        if (from_array_to_array_)
+            send_places();
+        else if (has_lists_)
+            show(beads);
         if (!plan_.overlap) exchange_and_compute(beads);
         if (timed) events_->chains_begin.record(stream_of(*beads.front()));
     }
@@ -67,34 +53,38 @@ class HaloPath final : public GpuPath {
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
     std::span<Vec3> in() const { return {(*in_).data(), lists().particle.size()}; }
 
+    /// Into a new order positions come as they are. After that OpenMM's forces do not see more of them than its arrays have.
+    bool are_arrays_shared() const { return pairs_ && inboxes_ && of_this_order_ > 0 && particles_.position && !halo_.is_audited(); }
+
+    /// Own beads' particles to the arrays of all others, and theirs to here, while the host asks how far beads are.
+    void send_places() {
+        is_shown_.record(stream_);
+        inboxes_->turn();
+        pairs_->send_positions(particles_.position, *inboxes_, stream_);
+        is_sent_.record(stream_);
+        pairs_->wait_for_positions(stream_);
+        pairs_->take_positions(particles_.position, *inboxes_, stream_);
+    }
+
     /// What the streams do here comes after OpenMM's last forces, for which they waited, and so after the ghosts that these waited for:
     /// the buffers of the messages before are free again.
     void show(std::span<DeviceBeads* const> beads) {
         cudaStream_t const last = stream_of(*beads.back());
         std::int64_t next = 0;
-        // Into a new order they come as they are. OpenMM's forces do not see more than single precision has.
-        bool const rounded = pairs_ && inboxes_ && of_this_order_ > 0 && particles_.position && !halo_.is_audited();
-        shown_.particles = particles_;
-        shown_.rounded = rounded ? rounded_.of(3 * lists().sent.size()).data() : nullptr;
         for (DeviceBeads* group : beads) {
             group->show(shown_.from(next));
             events_->positions.record(stream_of(*group));
             events_->positions.hold(last);
             next += group->count();
         }
-        bool const kernel_waits = pairs_ && inboxes_;  // for what is sent: the host asks how far beads are meanwhile
-        if (kernel_waits) is_shown_.record(last);
         if (inboxes_) {
             inboxes_->turn();
-            if (shown_.rounded)
-                inboxes_->send(lists().messages, shown_.rounded, lists().one_for_all, last);
-            else
-                inboxes_->send(lists().messages, shown_.shown, lists().one_for_all, last);
-            is_sent_.record(last);
+            inboxes_->send(lists().messages, shown_.shown, lists().one_for_all, last);
         } else if (!out().empty()) {
             check(cudaMemcpyAsync(out().data(), shown_.shown, out().size_bytes(), cudaMemcpyDeviceToHost, last), "show its beads");
         }
-        if (!kernel_waits) is_shown_.record(last);
+        is_shown_.record(last);
+        is_sent_.record(last);
     }
 
     void exchange_and_compute(std::span<DeviceBeads* const> beads) {
@@ -110,45 +100,61 @@ class HaloPath final : public GpuPath {
             make_lists(beads);
             show(beads);
             is_shown_.wait();
-            if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived, or kernels wait
+            if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived
+            from_array_to_array_ = false;
         }
         if (inboxes_)
             halo_.note_carried();
         else
             halo_.carry(out(), in());
-        if (pairs_ && inboxes_) {
-            is_sent_.hold(stream_);
-            pairs_->wait_for_positions(stream_);
-        }
+        if (!from_array_to_array_) place_all(beads);
+        exchange_.end = seconds_now();
+        if (pairs_) choose_pairs();
+        compute(beads);
+    }
+
+    /// What has arrived goes where it belongs.
+    void place_all(std::span<DeviceBeads* const> beads) {
         if (inboxes_ && (halo_.is_audited() || of_this_order_ == 0 || !ghosts_are_placed_)) look_into_inbox();
         if (halo_.is_audited()) halo_.audit(positions(), in());
-        exchange_.end = seconds_now();
         if (of_this_order_ == 0) {
             Others const others[] = {{lists().particle, in()}, {lists().idle, lists().aside}};
             std::vector<Vec3> const own = positions();
             order(own, others, pairs_ ? middle_of_all(own) : mean(own));
             own_are_put_ = ghosts_are_placed_ = false;
+            if (pairs_) send_in_order(own);
         }
         if (!own_are_put_) put_own(beads);
         if (!std::exchange(ghosts_are_placed_, true)) place_ghosts();
         put_ghosts();
-        if (pairs_) choose_pairs();
-        compute(beads);
-    }
-    void complete_forces() override {
-        if (pairs_) pairs_->complete(particles_, ghosts_from(0).particles, stream_);
     }
 
-    /// Where their list is made anew, own beads may move from where they are now until the next one.
+    /// Neighbours in OpenMM's arrays are neighbours in messages, too: the GPU reads and writes them together.
+    void send_in_order(std::vector<Vec3> const& own) {
+        auto const place_of = [&](std::int64_t k) { return place_[static_cast<std::size_t>(plan_.particle[static_cast<std::size_t>(k)])]; };
+        std::vector<std::int64_t> sequence(own.size());
+        std::iota(sequence.begin(), sequence.end(), 0);
+        std::sort(sequence.begin(), sequence.end(), [&](std::int64_t a, std::int64_t b) { return place_of(a) < place_of(b); });
+        std::vector<Vec3> of_particle(place_.size());
+        for (std::size_t i = 0; i < in().size(); ++i) of_particle[static_cast<std::size_t>(lists().particle[i])] = in()[i];
+        halo_.send_in(sequence);
+        for (std::size_t i = 0; i < in().size(); ++i) in()[i] = of_particle[static_cast<std::size_t>(lists().particle[i])];
+        list_sent(own);
+        std::vector<std::int32_t> of_own, of_others;
+        for (std::int64_t const k : lists().sent) of_own.push_back(place_of(k));
+        for (int const particle : lists().particle) of_others.push_back(place_[static_cast<std::size_t>(particle)]);
+        pairs_->place(of_own, of_others);
+    }
+
+    void complete_forces() override {
+        if (pairs_) pairs_->complete(particles_, stream_);
+    }
+
     void choose_pairs() {
         bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
-        if (pairs_->has_list()) {
-            of_an_order_ = evaluations_of_a_listed_order;
-            note_list(anew);
-        }
-        if (!anew) return;
-        std::size_t const bytes = lists().sent.size() * sizeof(Vec3);
-        check(cudaMemcpyAsync((*listed_).data(), shown_.shown, bytes, cudaMemcpyDeviceToDevice, stream_), "take lists");
+        if (!pairs_->has_list()) return;
+        of_an_order_ = evaluations_of_a_listed_order;
+        note_list(anew);
     }
 
     /// The same on every rank, to the bit: ranks that share out pairs must find them in one order.
@@ -209,16 +215,15 @@ class HaloPath final : public GpuPath {
         ShownTable const table = shown_table(lists().sent, x.size());
         upload(first_.of(table.first.size()), table.first.data(), table.first.size());
         upload(place_of_shown_.of(table.place.size()), table.place.data(), table.place.size());
-        upload(listed_.of(3 * x.size()), x.front().data, 3 * x.size());
+        upload(shown_from_.of(3 * x.size()), x.front().data, 3 * x.size());
         check(cudaStreamSynchronize(stream_), "take lists");
         shown_.first = (*first_).data();
         shown_.place = (*place_of_shown_).data();
         shown_.shown = show_.of(3 * lists().sent.size()).data();
-        std::optional<double> const lasts = pairs_ ? openmm_->list_lasts() : lists().farthest;
-        shown_.listed = lasts ? (*listed_).data() : nullptr;
-        double const farthest = lasts.value_or(0);
+        shown_.listed = lists().farthest ? (*shown_from_).data() : nullptr;
+        double const farthest = lists().farthest.value_or(0);
         shown_.farthest_squared = farthest * farthest;
-        shown_.far = &flags_->data()->far;
+        shown_.far = lists().farthest ? &flags_->data()->far : nullptr;
         shown_.trouble = &flags_->data()->trouble;
     }
 
@@ -249,9 +254,8 @@ class HaloPath final : public GpuPath {
     void put_ghosts() {
         if (in().empty()) return;
         ArrivedBeads arrived = ghosts_from(0);
-        if (inboxes_ && shown_.rounded)
-            arrived.rounded = inboxes_->arrived<float>();
-        else if (inboxes_)
+        bool const in_sequence = !pairs_ || of_this_order_ > 0;  // those that arrived; the host has them in the new one
+        if (inboxes_ && in_sequence)
             arrived.position = inboxes_->arrived<double>();
         else
             check(cudaMemcpyAsync((*arrived_).data(), in().data(), in().size_bytes(), cudaMemcpyHostToDevice, stream_), "take ghosts");
@@ -259,14 +263,13 @@ class HaloPath final : public GpuPath {
     }
 
     Halo& halo_;
-    bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false;
+    bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false, from_array_to_array_ = false;
     std::unique_ptr<PeerInboxes> inboxes_;  // null: positions pass through the host
     std::unique_ptr<PairShare> pairs_;      // null: OpenMM computes all that acts on own beads
     ShownBeads shown_;
     Event is_shown_{Event::For::clock}, is_sent_{Event::For::order};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;
-    Room<Buffer<double>> listed_, show_, arrived_;
-    Room<Buffer<float>> rounded_;
+    Room<Buffer<double>> shown_from_, show_, arrived_;
     Room<Buffer<DeviceBead>> ghost_;
     Room<PinnedBuffer<Vec3>> out_, in_;
 };

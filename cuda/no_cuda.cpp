@@ -15,6 +15,7 @@ std::string version() { return "none"; }
 std::string device_name() { throw ComputationError(why_not()); }
 
 std::string choose_device(Communicator const&) { return why_not(); }
+int most_ranks_of_a_gpu(Communicator const&) { throw ComputationError(why_not()); }
 std::int64_t free_memory(Communicator const&) { throw ComputationError(why_not()); }
 bool knows_clusters() { throw ComputationError(why_not()); }
 std::int64_t stacks(std::int64_t) { throw ComputationError(why_not()); }

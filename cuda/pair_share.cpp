@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "cuda/gpu_path.hpp"
 #include "force/pair_cuts.hpp"
 
 namespace catena::cuda {
@@ -22,7 +21,9 @@ bool PairShare::fit(bool direct) {
     if (memory_ && boxes_.ranks == 0) boxes_ = memory_->boxes(0);
     if (!memory_ || (inboxes_ && !inboxes_->fit(messages_))) inboxes_.reset();
     if (inboxes_) {
-        clear_inbox(nullptr);
+        // Zeros are not sent: most beads of other ranks are far from the pairs of this one.
+        auto const bytes = static_cast<std::size_t>(received()) * 3 * sizeof(std::int64_t);
+        if (bytes > 0) check(cudaMemsetAsync(inboxes_->box_of<std::int64_t>(communicator.rank()), 0, bytes, nullptr), "clear memory");
         check(cudaStreamSynchronize(nullptr), "clear memory");
         communicator.barrier();  // nobody sends before
         return true;
@@ -57,31 +58,56 @@ bool PairShare::choose(OpenMmOnDevice& openmm, bool new_order) {
     return true;
 }
 
+void PairShare::place(std::span<std::int32_t const> own, std::span<std::int32_t const> others) {
+    auto const upload = [](Room<Buffer<std::int32_t>>& to, std::span<std::int32_t const> from) {
+        check(cudaMemcpy(to.of(from.size()).data(), from.data(), from.size_bytes(), cudaMemcpyHostToDevice), "take OpenMM's order");
+    };
+    upload(place_of_own_, own);
+    upload(place_of_others_, others);
+}
+
+void PairShare::send_positions(float const* position, PeerInboxes const& inboxes, cudaStream_t stream) const {
+    SentPositions sent{position, (*place_of_own_).data()};
+    for (Halo::Message const& m : messages_) sent.to[sent.messages++] = inboxes.box_of<float>(m.rank);
+    send(own(), sent, stream);
+}
+
+void PairShare::take_positions(float* position, PeerInboxes const& inboxes, cudaStream_t stream) const {
+    take(sent(), {position, (*place_of_others_).data(), inboxes.arrived<float>()}, stream);
+}
+
 void PairShare::wait_for_positions(cudaStream_t stream) const {
     if (inboxes_) meet(boxes_, stream);
 }
 
-void PairShare::complete(DeviceParticles const& own_beads, DeviceParticles const& others, cudaStream_t stream) {
-    SentForces forces{others};
-    forces.all = !inboxes_;
-    if (inboxes_)
-        for (Halo::Message const& m : messages_) forces.add(m.sent, inboxes_->box_of<std::int64_t>(m.rank));
+void PairShare::complete(DeviceParticles const& particles, cudaStream_t stream) {
+    if (!inboxes_)
+        exchange_by_host(particles, stream);
+    else if (particles.double_position)
+        exchange<std::int64_t>(particles, stream);
     else
-        forces.add(sent(), sent_.data());
-    send(forces, stream);
-    if (inboxes_)
-        meet(boxes_, stream);
-    else
-        carry_by_host(stream);
-    std::int64_t const* const arrived = inboxes_ ? inboxes_->arrived<std::int64_t>() : arrived_.data();
-    add(own(), {own_beads, arrived, own(), static_cast<int>(messages_.size())}, stream);
-    if (inboxes_) clear_inbox(stream);
+        exchange<float>(particles, stream);
 }
 
-/// Zeros are not sent: most beads of other ranks are far from the pairs of this one.
-void PairShare::clear_inbox(cudaStream_t stream) const {
-    auto const bytes = static_cast<std::size_t>(received()) * 3 * sizeof(std::int64_t);
-    if (bytes > 0) check(cudaMemsetAsync(inboxes_->box_of<std::int64_t>(halo_.communicator().rank()), 0, bytes, stream), "clear memory");
+template <class Number>
+void PairShare::exchange(DeviceParticles const& particles, cudaStream_t stream) const {
+    SentForces<Number> forces{{particles.force, particles.places, (*place_of_others_).data()}};
+    forces.all = false;
+    for (Halo::Message const& m : messages_) forces.add(m.sent, inboxes_->box_of<Number>(m.rank));
+    send(forces, stream);
+    meet(boxes_, stream);
+    Number* const arrived = inboxes_->box_of<Number>(halo_.communicator().rank());
+    int const messages = static_cast<int>(messages_.size());
+    add<Number>(own(), {{particles.force, particles.places, (*place_of_own_).data()}, arrived, own(), messages}, stream);
+}
+
+void PairShare::exchange_by_host(DeviceParticles const& particles, cudaStream_t stream) {
+    SentForces<std::int64_t> forces{{particles.force, particles.places, (*place_of_others_).data()}};
+    forces.add(sent(), sent_.data());
+    send(forces, stream);
+    carry_by_host(stream);
+    int const messages = static_cast<int>(messages_.size());
+    add<std::int64_t>(own(), {{particles.force, particles.places, (*place_of_own_).data()}, arrived_.data(), own(), messages}, stream);
 }
 
 void PairShare::carry_by_host(cudaStream_t stream) {

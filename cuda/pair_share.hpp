@@ -6,14 +6,20 @@
 #include <span>
 #include <vector>
 
-#include "cuda/openmm_on_device.hpp"
-#include "cuda/owners.hpp"
+#include "cuda/gpu_path.hpp"
 #include "cuda/peer_inboxes.hpp"
-#include "force/device_beads.hpp"
 #include "force/halo.hpp"
+#include "force/shared_particles.hpp"
 
 namespace catena::cuda {
 
+/// Each of so many beads in turn.
+void send(std::int64_t count, SentPositions const&, cudaStream_t);
+void take(std::int64_t count, ArrivedPositions const&, cudaStream_t);
+template <class Number>
+void send(SentForces<Number> const&, cudaStream_t);
+template <class Number>
+void add(std::int64_t count, ReturnedForces<Number> const&, cudaStream_t);
 /// Once the stream comes here it waits until every rank's has.
 void meet(PeerBoxes const&, cudaStream_t);
 
@@ -29,19 +35,27 @@ class PairShare {
     bool choose(OpenMmOnDevice&, bool new_order);
     /// Whether some rank's OpenMM keeps a list of pairs, as far as is known.
     bool has_list() const { return has_list_; }
-    /// Once the stream comes here every rank's has: what they were given before, positions, has arrived. Where GPUs write to each other's
-    /// memory.
+    /// Where beads stand in OpenMM's arrays from now on, own ones in the sequence in which they are sent, others in that in which they are
+    /// received.
+    void place(std::span<std::int32_t const> own, std::span<std::int32_t const> others);
+    // Where GPUs write to each other's memory, each once the stream comes to it; `position`: DeviceParticles's.
+    /// Own beads' positions go to all other ranks' inboxes.
+    void send_positions(float const* position, PeerInboxes const& inboxes, cudaStream_t) const;
+    /// Every rank's stream has come here: what they were given before has arrived.
     void wait_for_positions(cudaStream_t) const;
+    void take_positions(float* position, PeerInboxes const& inboxes, cudaStream_t) const;
     /// Once OpenMM has been given its work: forces on other ranks' beads go to these, and what comes from there is added. Forces of the
-    /// evaluation before must have been used on every rank. `own`: of this rank's beads, `others`: in the order of received positions.
-    /// Collective where GPUs do not write to each other's memory.
-    void complete(DeviceParticles const& own, DeviceParticles const& others, cudaStream_t);
+    /// evaluation before must have been used on every rank. Collective where GPUs do not write to each other's memory.
+    void complete(DeviceParticles const&, cudaStream_t);
 
   private:
     std::int64_t own() const { return static_cast<std::int64_t>(halo_.lists().sent.size()); }
     std::int64_t sent() const { return static_cast<std::int64_t>(halo_.lists().particle.size()); }  // forces, on beads of others
     std::int64_t received() const { return own() * static_cast<std::int64_t>(messages_.size()); }
-    void clear_inbox(cudaStream_t) const;
+    /// From GPU to GPU.
+    template <class Number>
+    void exchange(DeviceParticles const&, cudaStream_t) const;
+    void exchange_by_host(DeviceParticles const&, cudaStream_t);
     void carry_by_host(cudaStream_t);
 
     Halo& halo_;
@@ -52,6 +66,7 @@ class PairShare {
     std::unique_ptr<PeerInboxes> inboxes_;  // null: forces pass through the host
     std::shared_ptr<PeerMemory> memory_;
     PeerBoxes boxes_;
+    Room<Buffer<std::int32_t>> place_of_own_, place_of_others_;
     Buffer<std::int64_t> sent_, arrived_;
     std::unique_ptr<PinnedBuffer<std::int64_t>> out_, in_;
 };

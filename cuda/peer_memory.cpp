@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "cuda/solver.hpp"
 #include "force/device_path.hpp"
 #include "mpi/gpu_exchange.hpp"
 
@@ -33,9 +34,8 @@ bool reaches(int device, std::vector<cudaUUID_t> const& others) {
     return true;
 }
 
-/// One host, each rank on a GPU of its own, whatever each of them calls it, and none that cannot reach another.
-bool apart_on_one_host(Communicator const& communicator) {
-    if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers) return false;
+/// Of every rank, whatever each of them calls it.
+std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     int device = 0;
     cudaDeviceProp gpu{};
     check(cudaGetDevice(&device), "say which it is");
@@ -43,10 +43,16 @@ bool apart_on_one_host(Communicator const& communicator) {
     std::vector<cudaUUID_t> all(static_cast<std::size_t>(communicator.size()));
     communicator.all_gather(std::as_bytes(std::span(&gpu.uuid, 1)), std::as_writable_bytes(std::span(all)),
                             std::vector<std::int64_t>(all.size(), sizeof(cudaUUID_t)));
-    for (std::size_t i = 0; i < all.size(); ++i)
-        for (std::size_t j = 0; j < i; ++j)
-            if (equal(all[i], all[j])) return false;
-    return reaches(device, all);
+    return all;
+}
+
+/// One host, each rank on a GPU of its own, and none that cannot reach another.
+bool apart_on_one_host(Communicator const& communicator) {
+    if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers) return false;
+    if (most_ranks_of_a_gpu(communicator) > 1) return false;
+    int device = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    return reaches(device, gpus_of_ranks(communicator));
 }
 
 constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB; the widest segments of all ranks' units take three quarters of it
@@ -100,6 +106,14 @@ bool gpus_may_write_to_each_other(Communicator const& communicator) {
     return communicator.size() > 1 &&
            gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE")) != GpuExchange::host &&
            agreed(communicator, apart_on_one_host(communicator));
+}
+
+int most_ranks_of_a_gpu(Communicator const& communicator) {
+    std::vector<cudaUUID_t> const all = gpus_of_ranks(communicator);
+    std::ptrdiff_t most = 0;
+    for (cudaUUID_t const& gpu : all)
+        most = std::max(most, std::count_if(all.begin(), all.end(), [&](cudaUUID_t const& other) { return equal(gpu, other); }));
+    return static_cast<int>(most);
 }
 
 bool gpus_are_alike(Communicator const& communicator) {

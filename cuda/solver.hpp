@@ -18,6 +18,8 @@ std::string device_name();
 /// From here on this thread uses the host's GPU number (rank on the host) modulo (GPUs). Empty, or why that GPU cannot be used (no
 /// kernels for it in this build, CUDA's own words). Precondition: there is a GPU.
 std::string choose_device(Communicator const&);
+/// Most ranks that use one GPU together. Precondition: every rank has chosen one. Collective.
+int most_ranks_of_a_gpu(Communicator const&);
 
 /// A part of the pairwise tree's levels on the GPU chosen last (a dca::LevelPartMaker), which must be current in every thread that uses it.
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&);

@@ -50,7 +50,7 @@ struct DeviceParticles {
         std::int64_t const at = 4 * static_cast<std::int64_t>(b.place);
         float away = 0;
         for (int c = 0; c < 3; ++c) {
-            double const y = coordinate(k, x, c);
+            double const y = x[c] - origin[c] - box[c] * bead[k].cell[c];
             if (!(std::fabs(y) < far_away)) *trouble = first + k;
             if (double_position) {
                 double_position[at + c] = y;
@@ -65,12 +65,6 @@ struct DeviceParticles {
             away += moved * moved;
         }
         if (far && !(away < farthest_squared)) *far = 1;
-    }
-    /// Of bead k's particle, where the bead is at x.
-    CATENA_HD double coordinate(std::int64_t k, Vec3 const& x, int c) const { return x[c] - origin[c] - box[c] * bead[k].cell[c]; }
-    /// As coordinates of others' beads come rounded. What rounding took away no force needs.
-    CATENA_HD void put_rounded(std::int64_t k, float const* y) const {
-        for (int c = 0; c < 3; ++c) position[4 * static_cast<std::int64_t>(bead[k].place) + c] = y[c];
     }
     /// kJ/mol/nm
     CATENA_HD Vec3 force_on(std::int64_t k) const {
@@ -91,8 +85,6 @@ struct DeviceParticles {
 
 /// Where beads go that other ranks have as ghosts, and how far they may be from where they stood. All addresses are the GPU's.
 struct ShownBeads {
-    DeviceParticles particles;                              // whose beads they are, where `rounded` is there
-    float* rounded = nullptr;                               // of each place what single precision has of its particle's coordinates
     std::int32_t const *first = nullptr, *place = nullptr;  // bead k goes to places place[first[k]] to place[first[k + 1] - 1]
     double* shown = nullptr;                                // x, y, z of each place
     double const* listed = nullptr;                         // x, y, z of each bead when this was made; absent: it may go anywhere
@@ -104,7 +96,6 @@ struct ShownBeads {
     /// The same for beads that follow others.
     ShownBeads from(std::int64_t bead_index) const {
         ShownBeads rest = *this;
-        rest.particles.bead += rounded ? bead_index : 0;
         rest.first += bead_index;
         if (listed) rest.listed += 3 * bead_index;
         rest.first_bead += bead_index;
@@ -112,11 +103,7 @@ struct ShownBeads {
     }
     CATENA_HD void show(std::int64_t k, Vec3 const& x) const {
         for (std::int32_t i = first[k]; i < first[k + 1]; ++i)
-            for (int c = 0; c < 3; ++c) {
-                std::int64_t const at = 3 * static_cast<std::int64_t>(place[i]) + c;
-                shown[at] = x[c];
-                if (rounded) rounded[at] = static_cast<float>(particles.coordinate(k, x, c));
-            }
+            for (int c = 0; c < 3; ++c) shown[3 * static_cast<std::int64_t>(place[i]) + c] = x[c];
         double away = 0;
         for (int c = 0; c < 3; ++c) {
             double const d = listed ? x[c] - listed[3 * k + c] : 0.0;
@@ -131,57 +118,7 @@ struct ShownBeads {
 struct ArrivedBeads {
     DeviceParticles particles;  // whose beads are the ghosts
     double const* position = nullptr;
-    float const* rounded = nullptr;  // in the place of `position`: particles' coordinates
-    CATENA_HD void operator()(std::int64_t k) const {
-        if (rounded)
-            particles.put_rounded(k, rounded + 3 * k);
-        else
-            particles.put(k, {{position[3 * k], position[3 * k + 1], position[3 * k + 2]}});
-    }
-};
-
-/// Forces on beads of other ranks, of which this rank has found a part, on their way to those. All addresses are GPUs'.
-struct SentForces {
-    static constexpr int most_messages = 16;
-    DeviceParticles particles;  // whose beads they are
-    int messages = 0;
-    std::int64_t end[most_messages] = {};  // beads in each message and those before
-    std::int64_t* to[most_messages] = {};  // where bead 0 would be if the message had those before, too
-    bool all = true;                       // false: zeros stay away
-    std::int64_t count() const { return messages > 0 ? end[messages - 1] : 0; }
-    /// `box`: where its numbers go
-    void add(std::int64_t beads, std::int64_t* box) {
-        to[messages] = box - 3 * count();
-        end[messages] = count() + beads;
-        ++messages;
-    }
-    /// i: three times the bead, and the direction
-    CATENA_HD void operator()(std::int64_t i) const {
-        int message = 0;
-        while (i / 3 >= end[message]) ++message;
-        std::int64_t const force = particles.force[particles.bead[i / 3].place + i % 3 * particles.places];
-        if (all || force != 0) to[message][i] = force;
-    }
-};
-
-/// What others have found of the forces on own beads is added, in whole numbers: their order does not matter.
-struct ReturnedForces {
-    DeviceParticles particles;
-    std::int64_t const* arrived = nullptr;  // x, y, z of each bead, one message after the other
-    std::int64_t beads = 0;
-    int messages = 0;
-    /// i: as above
-    CATENA_HD void operator()(std::int64_t i) const {
-        std::int64_t& force = particles.force[particles.bead[i / 3].place + i % 3 * particles.places];
-        std::int64_t sum = force;
-        bool is_number = DeviceParticles::is_number(sum);
-        for (int m = 0; m < messages; ++m) {
-            std::int64_t const part = arrived[3 * m * beads + i];
-            is_number = is_number && DeviceParticles::is_number(part);
-            sum = static_cast<std::int64_t>(static_cast<std::uint64_t>(sum) + static_cast<std::uint64_t>(part));
-        }
-        force = is_number ? sum : INT64_MAX;  // two that are none may add up to one
-    }
+    CATENA_HD void operator()(std::int64_t k) const { particles.put(k, {{position[3 * k], position[3 * k + 1], position[3 * k + 2]}}); }
 };
 
 /// Beads of one group of chains, on a GPU.

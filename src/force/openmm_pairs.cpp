@@ -37,6 +37,12 @@ int groups_of(OpenMM::System const& system, int rank) {
     return groups;
 }
 
+/// Where forces on pairs are found in single precision, they and positions go so from GPU to GPU.
+bool is_in_single(OpenMmPlatform const& platform) {
+    auto const precision = platform.properties.find("Precision");
+    return precision != platform.properties.end() && precision->second != "double";
+}
+
 }  // namespace
 
 std::string why_not_by_pairs(OpenMM::System const& system) {
@@ -60,6 +66,7 @@ PairForces::PairForces(RankPlan const& plan)
     : communicator_(plan.communicator),
       box_(plan.box),
       audit_(plan.audit),
+      in_single_(is_in_single(plan.platform)),
       first_of_rank_(plan.beads.first_of_rank),
       groups_(groups_of(*plan.model.system, plan.communicator.rank())),
       context_(std::make_unique<ForceContext>(plan.model.system, plan.platform, plan.box)),
@@ -67,14 +74,46 @@ PairForces::PairForces(RankPlan const& plan)
     std::vector<int> const particle_of_bead = particles_of_beads(plan.model.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : plan.beads.beads_of(rank)) {
-            bool const own = rank == communicator_.rank();
-            (own ? particle_ : lists_.particle).push_back(particle_of_bead[static_cast<std::size_t>(bead)]);
-            if (own) number_.push_back(plan.beads.name(bead));
+            int const particle = particle_of_bead[static_cast<std::size_t>(bead)];
+            particle_of_all_.push_back(particle);
+            if (rank != communicator_.rank()) continue;
+            particle_.push_back(particle);
+            number_.push_back(plan.beads.name(bead));
         }
     for (int rank = 0; rank < communicator_.size(); ++rank)
         if (rank != communicator_.rank()) lists_.messages.push_back({rank, own(), beads_of(rank)});
-    for (std::int64_t k = 0; k < own(); ++k) lists_.sent.push_back(k);
     lists_.one_for_all = true;
+    std::vector<std::int64_t> as_they_are;
+    for (int rank = 0; rank < communicator_.size(); ++rank)
+        for (std::int64_t k = 0; k < beads_of(rank); ++k) as_they_are.push_back(k);
+    take_sequences(as_they_are);
+}
+
+void PairForces::send_in(std::span<std::int64_t const> sequence) {
+    std::vector<std::int64_t> of_ranks(particle_of_all_.size());
+    communicator_.all_gather(std::as_bytes(sequence), std::as_writable_bytes(std::span(of_ranks)), bytes_of_ranks(sizeof(std::int64_t)));
+    take_sequences(of_ranks);
+}
+
+void PairForces::take_sequences(std::span<std::int64_t const> of_ranks) {
+    lists_.particle.clear();
+    received_.clear();
+    for (int rank = 0; rank < communicator_.size(); ++rank) {
+        std::int64_t const first = first_of_rank_[static_cast<std::size_t>(rank)];
+        auto const sequence = of_ranks.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(beads_of(rank)));
+        if (rank == communicator_.rank()) lists_.sent.assign(sequence.begin(), sequence.end());
+        if (rank == communicator_.rank()) continue;
+        for (std::int64_t const k : sequence) {
+            received_.push_back(first + k);
+            lists_.particle.push_back(particle_of_all_[static_cast<std::size_t>(received_.back())]);
+        }
+    }
+}
+
+std::vector<std::int64_t> PairForces::bytes_of_ranks(std::size_t of_bead) const {
+    std::vector<std::int64_t> bytes;
+    for (int rank = 0; rank < communicator_.size(); ++rank) bytes.push_back(beads_of(rank) * static_cast<std::int64_t>(of_bead));
+    return bytes;
 }
 
 DevicePathPlan PairForces::plan(bool overlap) {
@@ -121,24 +160,23 @@ void PairForces::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     note(false);
 }
 
-/// Positions go to every rank, from GPU to GPU in single precision, and forces come back, of which zeros stay away then: so many at most.
+/// Positions go to every rank and forces come back, of which zeros stay away from GPU to GPU: so many bytes at most.
 void PairForces::note(bool direct) {
     traffic_.direct = direct;
     ++traffic_.updates;
     traffic_.messages += 2 * std::ssize(lists_.messages);
-    std::int64_t const of_position = direct ? 3 * sizeof(float) : sizeof(Vec3), of_force = sizeof(Vec3);
-    for (Message const& m : lists_.messages) traffic_.bytes += m.sent * of_position + m.received * of_force;
+    std::int64_t const of_bead = direct && in_single_ ? 3 * sizeof(float) : sizeof(Vec3);
+    for (Message const& m : lists_.messages) traffic_.bytes += (m.sent + m.received) * of_bead;
 }
 
 void PairForces::audit(std::span<Vec3 const> own_positions, std::span<Vec3 const> received) const {
-    std::vector<std::int64_t> bytes;
-    for (int rank = 0; rank < communicator_.size(); ++rank) bytes.push_back(beads_of(rank) * static_cast<std::int64_t>(sizeof(Vec3)));
-    std::vector<Vec3> all(static_cast<std::size_t>(first_of_rank_.back()));
-    communicator_.all_gather(std::as_bytes(own_positions), std::as_writable_bytes(std::span(all)), bytes);
-    auto const begin = all.begin() + first_of_rank_[static_cast<std::size_t>(communicator_.rank())];
-    all.erase(begin, begin + own());
-    bool const equal = std::equal(all.begin(), all.end(), received.begin(), received.end(),
-                                  [](Vec3 const& a, Vec3 const& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; });
+    std::vector<Vec3> all(particle_of_all_.size());
+    communicator_.all_gather(std::as_bytes(own_positions), std::as_writable_bytes(std::span(all)), bytes_of_ranks(sizeof(Vec3)));
+    bool const equal =
+        std::equal(received_.begin(), received_.end(), received.begin(), received.end(), [&](std::int64_t bead, Vec3 const& there) {
+            Vec3 const& here = all[static_cast<std::size_t>(bead)];
+            return here[0] == there[0] && here[1] == there[1] && here[2] == there[2];
+        });
     if (communicator_.sum(equal ? 0 : 1) > 0) throw SharedError("a rank computes with beads of others that are not where they are");
 }
 
@@ -166,7 +204,10 @@ std::vector<Vec3> PairForces::forces_again() {
     }
     communicator_.exchange_all(out, in);
     for (std::vector<Vec3> const& part_of_rank : received)
-        for (std::size_t k = 0; k < forces.size(); ++k) forces[k] = forces[k] + part_of_rank[k];
+        for (std::size_t i = 0; i < forces.size(); ++i) {
+            Vec3& force = forces[static_cast<std::size_t>(lists_.sent[i])];
+            force = force + part_of_rank[i];
+        }
     return forces;
 }
 

@@ -47,6 +47,7 @@ class PairForces final : public RankForces, public Halo {
     bool is_audited() const override { return audit_; }
     void audit(std::span<Vec3 const> own, std::span<Vec3 const> received) const override;
     std::optional<int> groups_of_share() const override { return groups_; }
+    void send_in(std::span<std::int64_t const> sequence) override;
     bool some_are_far() const override { return some_are_far_; }
 
     /// For those who stand for the GPU.
@@ -57,18 +58,23 @@ class PairForces final : public RankForces, public Halo {
     std::int64_t beads_of(int rank) const {
         return first_of_rank_[static_cast<std::size_t>(rank) + 1] - first_of_rank_[static_cast<std::size_t>(rank)];
     }
+    /// In which each rank sends its beads.
+    void take_sequences(std::span<std::int64_t const> of_ranks);
+    std::vector<std::int64_t> bytes_of_ranks(std::size_t of_bead) const;
     void note(bool direct);
 
     Communicator const& communicator_;
     std::optional<Vec3> box_;
-    bool audit_;
+    bool audit_, in_single_;
     std::vector<std::int64_t> first_of_rank_;
-    std::vector<std::int64_t> number_;  // of own beads in the scene, for messages
-    std::vector<int> particle_;         // of own beads
+    std::vector<std::int64_t> number_;    // of own beads in the scene, for messages
+    std::vector<int> particle_;           // of own beads
+    std::vector<int> particle_of_all_;    // of every rank's, one rank after the other
+    std::vector<std::int64_t> received_;  // which of all comes with each position received
     int groups_;
     std::unique_ptr<ForceContext> context_;
     WholeEnergies energies_;
-    Lists lists_;  // every other rank's beads as they follow each other there
+    Lists lists_;  // every other rank's beads as they are sent there
     bool renew_ = true, some_are_far_ = false;
     GhostTraffic traffic_;
 };

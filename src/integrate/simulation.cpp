@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "cuda/solver.hpp"
 #include "error.hpp"
 #include "integrate/force_summary.hpp"
 #include "integrate/pace.hpp"
@@ -52,6 +53,7 @@ class Run {
             throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
                              "leave it out, or take rk4, dormand-prince or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
+        warn_of_shared_gpus();
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
 
@@ -103,6 +105,13 @@ class Run {
     }
 
   private:
+    void warn_of_shared_gpus() {
+        if (!uses_gpu(system_.backend()) || communicator_.size() == 1) return;
+        int const ranks = cuda::most_ranks_of_a_gpu(communicator_);
+        if (ranks > 1)
+            notes_.push_back("warning: " + std::to_string(ranks) +
+                             " ranks share a GPU, where each waits for the others: start one rank a GPU");
+    }
     double time(std::int64_t n) const { return static_cast<double>(n) * scene_.dynamics.step; }
 
     StepTimeline* new_timeline(std::int64_t n, bool wanted) {

@@ -57,40 +57,6 @@ TEST(DeviceBeads, PositionsGoToTheirPlacesAndCells) {
     EXPECT_EQ(a.trouble, -1);
 }
 
-TEST(DeviceBeads, PartsOfForcesGoAndComeBack) {
-    Arrays a;
-    for (std::size_t i = 0; i < a.force.size(); ++i) a.force[i] = static_cast<std::int64_t>(10 * i);
-    std::vector<std::int64_t> out(6);
-    SentForces sent{a.single().from(1)};
-    std::vector<std::int64_t> other(3);
-    sent.add(1, other.data());
-    sent.add(1, out.data() + 3);
-    for (std::int64_t i = 0; i < 6; ++i) sent(i);
-    EXPECT_EQ(other, (std::vector<std::int64_t>{0, 40, 80}));          // of place 0
-    EXPECT_EQ(out, (std::vector<std::int64_t>{0, 0, 0, 10, 50, 90}));  // of place 1
-    a.force[0] = a.force[1] = 0;
-    out = {1, 2, 3, 4, 5, 6};
-    SentForces without_zeros{a.single().from(1)};
-    without_zeros.add(2, out.data());
-    without_zeros.all = false;
-    for (std::int64_t i = 0; i < 6; ++i) without_zeros(i);
-    EXPECT_EQ(out, (std::vector<std::int64_t>{1, 40, 80, 4, 50, 90}));  // nothing acts along x
-    a.force[1] = 10;
-    std::vector<std::int64_t> const arrived{1, 2, 3, 4, 5, 6, 100, 200, 300, 400, 500, 600};  // of beads at places 2 and 0
-    ReturnedForces const returned{a.single(), arrived.data(), 2, 2};
-    for (std::int64_t i = 0; i < 6; ++i) returned(i);
-    std::int64_t const none = INT64_MIN;  // what OpenMM makes of NaN
-    std::vector<std::int64_t> const parts{none, 0, 0, 0, 0, 0, none, 0, 0, 0, 0, 0};
-    std::vector<std::int64_t> const before = a.force;
-    ReturnedForces const without_sense{a.single(), parts.data(), 2, 2};
-    for (std::int64_t i = 0; i < 6; ++i) without_sense(i);
-    EXPECT_EQ(a.trouble, -1);
-    a.single().force_on(0);
-    EXPECT_EQ(a.trouble, 0);
-    a.force = before;
-    EXPECT_EQ(a.force, (std::vector<std::int64_t>{404, 10, 20 + 101, 30, 40 + 505, 50, 60 + 202, 70, 80 + 606, 90, 100 + 303, 110}));
-}
-
 TEST(DeviceBeads, HowFarParticlesAreFromWhereTheirListWasMade) {
     for (bool const twice : {false, true}) {
         Arrays a;

@@ -40,6 +40,10 @@ class PlainMemory {
         halo_.audit(x, in);
         return own_ == 0 ? std::vector<Vec3>() : forces_at(x, in);
     }
+    void send_in(std::vector<std::int64_t> const& sequence, std::vector<Vec3> const& x) {
+        halo_.send_in(sequence);
+        take_lists(x);
+    }
     int contexts() const { return contexts_; }  // or exchanges of their particles
 
   private:
@@ -305,6 +309,12 @@ TEST(Pairs, EveryBeadIsOnEachRank) {
             for (int step = 0; step <= 12; ++step) {
                 std::vector<Vec3> const x = moved(beads, step);
                 if (step == 7) forces.renew_ghosts();
+                if (step == 5) {
+                    std::vector<std::int64_t> backwards;
+                    for (std::int64_t k = end - begin; k-- > 0;) backwards.push_back(k);
+                    memory.send_in(backwards, {x.begin() + begin, x.begin() + end});
+                    EXPECT_EQ(forces.lists().sent, backwards);
+                }
                 auto const found = memory.evaluate({x.begin() + begin, x.begin() + end});
                 auto const expected = catena::testing::evaluate(*oracle, beads, communicator.rank(), x);
                 double const tolerance = same * communicator.max(largest(expected));

@@ -245,7 +245,7 @@ TEST_P(PairsOnGpus, AfterManySteps) {
     }
 }
 
-/// An order lasts 400 lists of pairs, or 4,000 evaluations.
+/// An order lasts 400 lists of pairs, or 8,000 evaluations.
 TEST_P(PairsOnGpus, AfterAnotherOrder) {
     if (scene_beads(scene_with("double", true)) < 2100) return;  // OpenMM has no list of their pairs
     Found const device = found(scene_with("double", true, "pairs"), 1700);

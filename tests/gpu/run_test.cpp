@@ -1,4 +1,5 @@
 // Whole runs on the GPU, on one rank and on several that share it, end in the bits of the host's.
+#include "cuda/solver.hpp"
 #include "error.hpp"
 #include "tests/integrate/whole_run.hpp"
 #include "tests/support/gpu.hpp"
@@ -61,6 +62,19 @@ RunScene refined(RunScene scene) {
     scene.text += "solver: {refine: 2}\n";
     return scene;
 }
+class SharedGpu : public GpuRun {};
+TEST_P(SharedGpu, IsWarnedOf) {
+    Communicator const& world = catena::testing::world();
+    auto const summary = run(world, "shared", 2, "", Backend::cuda);
+    int const ranks = cuda::most_ranks_of_a_gpu(world);
+    EXPECT_GE(ranks, 1);
+    EXPECT_LE(ranks, world.size());
+    if (world.rank() != 0) return;
+    std::string const notes = summary.value("notes", nlohmann::json::array()).dump();
+    EXPECT_EQ(notes.find("warning: " + std::to_string(ranks) + " ranks share a GPU") != std::string::npos, ranks > 1) << notes;
+}
+INSTANTIATE_TEST_SUITE_P(OneScene, SharedGpu, ::testing::Values(run_scenes[0]), name_of_scene);
+
 INSTANTIATE_TEST_SUITE_P(Refined, GpuRun,
                          ::testing::Values(refined(joint_chains("rk4_revolute_held", "revolute", held, "rk4")),
                                            refined(joint_chains("verlet_spherical_held", "spherical", held, "velocity-verlet")),
