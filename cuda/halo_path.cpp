@@ -152,9 +152,23 @@ class HaloPath final : public GpuPath {
 
     void choose_pairs() {
         bool const anew = pairs_->choose(*openmm_, of_this_order_ == 0);
+        if (halo_.is_audited()) audit_list(anew);
         if (!pairs_->has_list()) return;
         of_an_order_ = evaluations_of_a_listed_order;
         note_list(anew);
+    }
+
+    /// On the host, in double precision: the GPU compares what OpenMM's arrays have of these positions, maybe in single.
+    void audit_list(bool anew) {
+        std::vector<Vec3> x = positions();
+        bool holds = true;
+        for (std::size_t i = 0; !anew && i < x.size(); ++i) {
+            double const rounding = 0x1p-22 * (norm(x[i] - particles_.origin) + norm(particles_.box));
+            holds = holds && norm(x[i] - listed_at_[i]) <= openmm_->list_lasts() + rounding;
+        }
+        if (halo_.communicator().sum(holds ? 0 : 1) > 0)
+            throw SharedError("a list of pairs was kept though a bead is farther from where it was made than it lasts");
+        if (anew) listed_at_ = std::move(x);
     }
 
     /// The same on every rank, to the bit: ranks that share out pairs must find them in one order.
@@ -272,6 +286,7 @@ class HaloPath final : public GpuPath {
     Room<Buffer<double>> shown_from_, show_, arrived_;
     Room<Buffer<DeviceBead>> ghost_;
     Room<PinnedBuffer<Vec3>> out_, in_;
+    std::vector<Vec3> listed_at_;  // own beads, where it is audited
 };
 
 }  // namespace

@@ -255,12 +255,12 @@ TEST_P(PairsOnGpus, AfterAnotherOrder) {
 
 TEST_P(PairsOnGpus, ListsAreMadeAnewWhenAsked) { expect_lists_made_anew("pairs"); }
 
-TEST_P(PairsOnGpus, WithoutOverlap) {
+TEST_P(PairsOnGpus, WithoutOverlapAndAudited) {
     Scene apart = scene_with("double", true, "pairs");
     apart.forces.openmm->overlap = false;
     apart.forces.openmm->audit = true;
-    Found const without = found(apart, 20);
-    expect_close(without, found(scene_with("double", false), 20, &without), tolerance("double"));
+    Found const without = found(apart, 200);
+    expect_close(without, found(scene_with("double", false), 200, &without), tolerance("double"));
 }
 
 TEST_P(PairsOnGpus, ABeadAtNoFinitePlaceEndsTheRunOnEveryRank) { expect_the_end_on_every_rank("pairs"); }
