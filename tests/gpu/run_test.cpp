@@ -62,6 +62,26 @@ RunScene refined(RunScene scene) {
     scene.text += "solver: {refine: 2}\n";
     return scene;
 }
+/// From one rank on the host to all, and from all to one.
+class GpuRestart : public GpuRun {};
+TEST_P(GpuRestart, OnOtherRanksEndsInTheSameBits) {
+    Communicator const& world = catena::testing::world();
+    run(world, "half", 20, "", Backend::cuda);
+    if (world.rank() == 0) {
+        auto const one = serial_communicator();
+        run(*one, "host", 40, "", Backend::segments, true);
+        run(*one, "half-of-host", 20, "", Backend::segments, true);
+        run(*one, "half-then-one", 40, "half/checkpoint.h5", Backend::cuda);
+        EXPECT_EQ(arrays("half-then-one"), arrays("host"));
+    }
+    world.barrier();
+    run(world, "host-then-all", 40, "half-of-host/checkpoint.h5", Backend::cuda);
+    if (world.rank() != 0) return;
+    EXPECT_EQ(arrays("host-then-all"), arrays("host"));
+}
+INSTANTIATE_TEST_SUITE_P(SomeScenes, GpuRestart, ::testing::Values(run_scenes[0], run_scenes[1], run_scenes[3], run_scenes[4]),
+                         name_of_scene);
+
 class SharedGpu : public GpuRun {};
 TEST_P(SharedGpu, IsWarnedOf) {
     Communicator const& world = catena::testing::world();

@@ -1,6 +1,7 @@
-// The same run on all ranks together and on rank 0 alone ends in the same bits, and can be restarted on either.
+// The same run on all ranks together and on rank 0 alone ends in the same bits, and can be restarted on either, by another backend too.
 #include <cmath>
 
+#include "dca/executor.hpp"
 #include "tests/integrate/whole_run.hpp"
 
 namespace catena::test {
@@ -16,13 +17,14 @@ TEST_P(Trajectory, IsTheSameOnOneRankAndOnAll) {
         auto const one = serial_communicator();
         run(*one, "one", 40);
         run(*one, "half-then-one", 40, "half/checkpoint.h5");
+        run(*one, "half-of-one", 20, "", Backend::segments);
         auto const expected = arrays("one");
         ASSERT_FALSE(expected.empty());
         EXPECT_EQ(arrays("all"), expected);
         EXPECT_EQ(arrays("half-then-one"), expected);
     }
     world.barrier();
-    run(world, "one-then-all", 40, "half/checkpoint.h5");
+    run(world, "one-then-all", 40, "half-of-one/checkpoint.h5", openmp_is_built() ? Backend::openmp : Backend::automatic);
     run(world, "half", 40, "half/checkpoint.h5");  // goes on in its own folder
     if (world.rank() != 0) return;
     for (char const* const name : {"one-then-all", "half"}) EXPECT_EQ(arrays(name), arrays("one")) << name;
