@@ -96,7 +96,8 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_flag("--measure", words.measure, "also measure an evaluation, beside what was predicted");
     command->add_flag("--calibrate", words.calibrate,
                       "measure every kind of chain on this machine, for all later predictions (a scene may be left out)");
-    command->add_option("--ranks", words.ranks, "predict the messages of a step and their time on up to so many ranks")->type_name("P");
+    command->add_option("--ranks", words.ranks, "predict the time of a step, computing and messages, on up to so many ranks")
+        ->type_name("P");
     command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
     command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
         ->type_name("FILE");

@@ -6,6 +6,7 @@
 #include "command/describe.hpp"
 #include "command/left_out.hpp"
 #include "command/plan_messages.hpp"
+#include "command/plan_steps.hpp"
 #include "command/predictions.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/constrained_integrator.hpp"
@@ -87,7 +88,7 @@ struct StepPlan {
 };
 StepPlan step_of(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
-    bool const tips = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+    bool const tips = has_jointed_tips(scene);
     int const corrections = tips ? JointDynamics::usual_corrections + 1 : 0;
     std::string const chosen = fmt::format("s is the fewest at the start that close the joints to {:g}, later one more where they do not",
                                            ConstrainedIntegrator::early * d.constraint_tolerance);
@@ -212,7 +213,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
         text.entry("", "on path host the matrix sweep runs while it computes: matrices do not wait for forces");
     }
     add_dynamics(text, json, scene);
-    add_messages(text, json, system, request);
+    add_messages(text, json, system, request, predictions);
     add_output(text, json, scene);
     text.heading("left out");
     json["left_out"] = Json::array();
@@ -252,8 +253,10 @@ Outcome plan_scene(Scene const& given, Communicator const& communicator, PlanReq
     Axes const axes = axes_for(given);
     Predictions predictions;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) {
-        plan::with_planner(communicator, scene.solver.threads, largest_sample, no_gpu,
-                           [&](plan::Planner& planner) { predictions = predict(planner, scene, axes, communicator.size()); });
+        plan::with_planner(communicator, scene.solver.threads, largest_sample, no_gpu, [&](plan::Planner& planner) {
+            predictions = predict(planner, scene, axes, communicator.size());
+            if (request.ranks > 0 && scene.dynamics.given) predict_steps(predictions, planner, scene, axes, request.ranks);
+        });
         share(communicator, predictions.choice);
         return predictions.choice;
     };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <concepts>
 
+#include "command/plan_steps.hpp"
 #include "error.hpp"
 #include "integrate/step_messages.hpp"
 #include "io/output_file.hpp"
@@ -13,8 +14,6 @@
 namespace catena::command {
 namespace {
 
-/// Of a drift at 10 fs (README); the run chooses its own.
-constexpr int usual_drift_sweeps = 4;
 constexpr int measurements = 21;
 
 Json json_of(Traffic const& t) {
@@ -72,9 +71,8 @@ class Groups {
         bool const pairwise = system_.scene().solver.pairwise();
         return messages([&](ChainGroup const& group) { return cut_on(group, pairwise, way); });
     }
-    int usual_sweeps() const {
-        return uses_joint_coordinates(system_.scene().dynamics.integrator) ? JointDynamics::usual_corrections : usual_drift_sweeps;
-    }
+    /// With the usual sweeps.
+    Traffic traffic(GatherWay const& way) const { return messages(way).with(usual_sweeps(system_.scene().dynamics)); }
 
   private:
     ChainSystem const& system_;
@@ -114,48 +112,25 @@ void add_measured(Text& text, Json& json, ChainSystem const& system, Groups cons
     json["network"] = {{"measured", nullptr}};
     if (ranks == 1 || !network.near || (hosts > 1 && !network.far)) return;
     GatherWay const& way = communicator.gather_way();
-    Traffic const t = groups.messages(way).with(groups.usual_sweeps());
+    Traffic const t = groups.traffic(way);
     double const measured = time_messages(communicator, t, measurements), predicted = seconds_of(t, network, way, hosts);
-    text.entry("measured", fmt::format("{} on these {} ranks, predicted {}", duration_text(measured), ranks, duration_text(predicted)));
+    text.entry("measured", fmt::format("messages of a step {} on these {} ranks, predicted {}", duration_text(measured), ranks,
+                                       duration_text(predicted)));
     json["network"]["measured"] = {{"ranks", ranks}, {"hosts", hosts}, {"seconds", measured}, {"predicted", predicted}};
 }
 
-void add_prediction(Text& text, Json& json, ChainSystem const& system, Groups const& groups, PlanRequest const& request) {
-    Network const network = read_network(request.network, request.ranks, request.hosts);
-    Table table({"ranks", "hosts", "stages", "gathers", "bytes", "exchanges", "bytes sent", "time a step"});
-    Json rows = Json::array();
-    for (std::int64_t ranks = std::min<std::int64_t>(2, request.ranks);; ranks = std::min(2 * ranks, request.ranks)) {
+std::vector<MessagesOnRanks> messages_on(Groups const& groups, Network const& network, PlanRequest const& request) {
+    std::vector<MessagesOnRanks> rows;
+    for (std::int64_t const ranks : numbers_of_ranks(request.ranks)) {
         std::int64_t const hosts = std::max<std::int64_t>(1, request.hosts * ranks / request.ranks);
         GatherWay const way = GatherWay::of({}, ranks, hosts);
-        Traffic const t = groups.messages(way).with(groups.usual_sweeps());
-        double const seconds = seconds_of(t, network, way, hosts);
-        table.add({std::to_string(ranks), std::to_string(hosts), std::to_string(way.stages), std::to_string(t.gathers),
-                   std::to_string(t.gathered_bytes), std::to_string(t.exchanges), std::to_string(t.sent_bytes), duration_text(seconds)});
-        Json row = {{"ranks", ranks}, {"hosts", hosts}, {"stages", way.stages}, {"seconds", seconds}};
-        row.update(json_of(t));
-        rows.push_back(row);
-        if (ranks == request.ranks) break;
+        Traffic const t = groups.traffic(way);
+        rows.push_back({ranks, hosts, way.stages, t, seconds_of(t, network, way, hosts)});
     }
-    add_measured(text, json, system, groups, network);
-    text.entry("predicted",
-               fmt::format("messages of a step and their time with {} sweeps, network of {}", groups.usual_sweeps(), request.network));
-    text.add(table);
-    json["network"].update({{"near", network.near ? json_of(*network.near) : Json(nullptr)},
-                            {"far", network.far ? json_of(*network.far) : Json(nullptr)},
-                            {"sweeps", groups.usual_sweeps()},
-                            {"predicted", rows}});
+    return rows;
 }
 
-}  // namespace
-
-void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest const& request) {
-    json["messages"] = nullptr;
-    if (!system.scene().dynamics.given) {
-        if (request.ranks > 0)
-            throw InputError("the scene has no dynamics section", system.scene().file, "add one: --ranks predicts its steps");
-        return;
-    }
-    Groups const groups(system);
+void add_counts(Text& text, Json& json, ChainSystem const& system, Groups const& groups) {
     GatherWay const& way = system.communicator().gather_way();
     Messages const here = groups.messages([&](ChainGroup const& group) { return cut_of(group, way); });
     text.heading("messages");
@@ -171,7 +146,26 @@ void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest
                                here.fixed.host_waits, here.fixed.leader_gathers, here.fixed.leader_bytes, here.each.host_waits,
                                here.each.leader_gathers, here.each.leader_bytes));
     json["messages"] = {{"fixed", json_of(here.fixed)}, {"each_sweep", json_of(here.each)}};
-    if (request.ranks > 0) add_prediction(text, json, system, groups, request);
+}
+
+}  // namespace
+
+void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest const& request, Predictions const& predictions) {
+    Scene const& scene = system.scene();
+    json["messages"] = nullptr;
+    if (!scene.dynamics.given) {
+        if (request.ranks > 0) throw InputError("the scene has no dynamics section", scene.file, "add one: --ranks predicts its steps");
+        return;
+    }
+    Groups const groups(system);
+    add_counts(text, json, system, groups);
+    if (request.ranks == 0) return;
+    Network const network = read_network(request.network, request.ranks, request.hosts);
+    add_measured(text, json, system, groups, network);
+    json["network"].update(
+        {{"near", network.near ? json_of(*network.near) : Json(nullptr)}, {"far", network.far ? json_of(*network.far) : Json(nullptr)}});
+    text.entry("network", request.network);
+    if (system.communicator().rank() == 0) add_steps(text, json, scene, messages_on(groups, network, request), predictions);
 }
 
 }  // namespace catena::command

@@ -42,6 +42,7 @@ Predictions predict(plan::Planner& planner, Scene const& scene, Axes axes, int r
     Predictions found;
     found.all = planner.predict(shares);
     found.no_gpu = planner.machine().no_gpu;
+    found.machine = planner.machine().identity;
     if (found.no_gpu.empty()) {
         found.levels = planner.plan_levels(shares);
         bool const given = scene.solver.backend == Backend::cuda_levels && !plan::leaves_open(scene);

@@ -3,7 +3,7 @@
 
 #include "command/outcome.hpp"
 #include "command/text.hpp"
-#include "plan/choice.hpp"
+#include "plan/step_work.hpp"
 
 namespace catena::command {
 
@@ -15,7 +15,10 @@ struct Predictions {
     std::vector<plan::Prediction> all;
     std::optional<plan::LevelPlan> levels;  // where there is a GPU
     std::string no_gpu;
-    double gpu_memory = 0;  // bytes that a rank's GPU would need
+    double gpu_memory = 0;                    // bytes that a rank's GPU would need
+    plan::StepWork work;                      // of a step, where steps are asked for
+    std::vector<plan::StepPrediction> steps;  // on one rank, two, four, ...
+    std::string machine;
 };
 /// What this rank's planner says of the scene, and what it chooses.
 Predictions predict(plan::Planner&, Scene const&, Axes, int ranks);

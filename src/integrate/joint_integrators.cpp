@@ -1,6 +1,12 @@
 #include "integrate/joint_integrators.hpp"
 
+#include <algorithm>
+
 namespace catena {
+
+bool has_jointed_tips(Scene const& scene) {
+    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
+}
 
 SweepsAStep sweeps_a_step(DynamicsSpec const& d, bool tips) {
     if (d.integrator == Integrator::rk4) return {4, 4};

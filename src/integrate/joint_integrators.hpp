@@ -39,6 +39,7 @@ class JointIntegrator {
 
 /// Whether its solutions are refined `solver.refine` times: those of the others are solved for more than once with one matrix.
 inline bool is_refined(Integrator i) { return i <= Integrator::velocity_verlet; }
+bool has_jointed_tips(Scene const&);
 /// `tips`: whether the scene has jointed ones. Of an adaptive step: of one inner step.
 SweepsAStep sweeps_a_step(DynamicsSpec const&, bool tips);
 /// The one that the scene's dynamics names.

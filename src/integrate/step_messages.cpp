@@ -45,10 +45,6 @@ class Sum {
     Traffic traffic_;
 };
 
-bool has_tips(Scene const& scene) {
-    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.tip == Tip::jointed; });
-}
-
 }  // namespace
 
 Cut cut_of(ChainGroup const& group, GatherWay const& way) {
@@ -58,7 +54,7 @@ Cut cut_of(ChainGroup const& group, GatherWay const& way) {
 
 StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
     : integrator_(scene.dynamics.integrator),
-      sweeps_(sweeps_a_step(scene.dynamics, has_tips(scene))),
+      sweeps_(sweeps_a_step(scene.dynamics, has_jointed_tips(scene))),
       directions_(group.directions),
       articulated_(group.handles == Handles::articulated),
       absolute_(group.beads || group.linked || group.axes == Axes::world),

@@ -36,22 +36,25 @@ std::size_t count(std::map<std::string, Curve<N>> const& curves) {
     return sum;
 }
 
+std::string name_of(Family const& family, Arrangement const& arrangement) { return family.name() + " | " + arrangement.name(); }
+
 }  // namespace
 
-PhaseCurve& Calibration::of(Family const& family, Arrangement const& arrangement) {
-    return phases_[family.name() + " | " + arrangement.name()];
-}
+PhaseCurve& Calibration::of(Family const& family, Arrangement const& arrangement) { return phases_[name_of(family, arrangement)]; }
+
+DriftCurve& Calibration::of_drifts(Family const& family, Arrangement const& arrangement) { return drifts_[name_of(family, arrangement)]; }
 
 LevelCurve& Calibration::of(Family const& family, Place place, int threads) {
     return levels_[family.name() + " | " + (place == Place::gpu ? "GPU" : "host, " + std::to_string(threads))];
 }
 
-std::size_t Calibration::points() const { return count(phases_) + count(levels_); }
+std::size_t Calibration::points() const { return count(phases_) + count(drifts_) + count(levels_); }
 
-json Calibration::json() const { return {{"phases", json_of(phases_)}, {"levels", json_of(levels_)}}; }
+json Calibration::json() const { return {{"phases", json_of(phases_)}, {"drifts", json_of(drifts_)}, {"levels", json_of(levels_)}}; }
 
 void Calibration::read(nlohmann::json const& from) {
     read_curves(from.at("phases"), phases_);
+    read_curves(from.at("drifts"), drifts_);
     read_curves(from.at("levels"), levels_);
 }
 

@@ -5,6 +5,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
+#include "plan/drift_costs.hpp"
 #include "plan/level_costs.hpp"
 
 namespace catena::plan {
@@ -15,6 +16,7 @@ enum class Place { host, gpu };
 class Calibration {
   public:
     PhaseCurve& of(Family const&, Arrangement const&);
+    DriftCurve& of_drifts(Family const&, Arrangement const&);
     LevelCurve& of(Family const&, Place, int threads);
     /// Points of all curves.
     std::size_t points() const;
@@ -25,6 +27,7 @@ class Calibration {
 
   private:
     std::map<std::string, PhaseCurve> phases_;
+    std::map<std::string, DriftCurve> drifts_;
     std::map<std::string, LevelCurve> levels_;
 };
 

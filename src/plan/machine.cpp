@@ -38,6 +38,14 @@ double gpu_memory_of(Family const& family, std::int64_t bodies) {
     return bytes * static_cast<double>(bodies) / static_cast<double>(counted);
 }
 
+template <class Use>
+auto with_sample(Family const& family, std::int64_t bodies, Arrangement const& arrangement, Use const& use) {
+    Scene const scene = arranged(sample(family, bodies), arrangement);
+    auto const alone = serial_communicator();
+    ChainSystem system(scene, family.axes, *alone);
+    return use(system);
+}
+
 }  // namespace
 
 Machine this_machine(Communicator const& communicator, int threads) {
@@ -54,10 +62,10 @@ Machine this_machine(Communicator const& communicator, int threads) {
                  "; catena " + CATENA_VERSION + ", " + compiler_name() + ", " + instruction_set() + ", simd " + name_of(best_simd_level()) +
                  ", " + build();
     m.measure = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
-        Scene const scene = arranged(sample(family, bodies), arrangement);
-        auto const alone = serial_communicator();
-        ChainSystem system(scene, family.axes, *alone);
-        return measure_phases(system);
+        return with_sample(family, bodies, arrangement, [](ChainSystem& system) { return measure_phases(system); });
+    };
+    m.measure_drifts = [](Family const& family, std::int64_t bodies, Arrangement const& arrangement) {
+        return with_sample(family, bodies, arrangement, [](ChainSystem& system) { return measure_drifts(system); });
     };
     m.measure_levels = [](Family const& family, std::int64_t bodies, Place place, int of_host) {
         auto const executor = openmp_is_built() ? openmp_executor(of_host) : serial_executor();

@@ -20,6 +20,8 @@ struct Machine {
     std::string identity;
 
     std::function<PhaseSeconds(Family const&, std::int64_t bodies, Arrangement const&)> measure;
+    /// Of a family in ground axes.
+    std::function<DriftSeconds(Family const&, std::int64_t bodies, Arrangement const&)> measure_drifts;
     std::function<LevelSeconds(Family const&, std::int64_t bodies, Place, int threads)> measure_levels;
     /// Bytes that a GPU must have for chains of a family; those that are free.
     std::function<double(Family const&, std::int64_t bodies)> gpu_memory;

@@ -36,6 +36,14 @@ PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& ar
     return curve;
 }
 
+DriftCurve const& Planner::drifts_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
+    DriftCurve& curve = calibration_.of_drifts(family, arrangement);
+    auto const [low, high] = of_evaluations.around(bodies, largest(family));
+    for (std::int64_t const n : {low, high})
+        if (!curve.has(n)) curve.add(n, machine_.measure_drifts(family, n, arrangement));
+    return curve;
+}
+
 LevelCurve const& Planner::levels_of(Family const& family, Place place, std::int64_t bodies) {
     LevelCurve& curve = calibration_.of(family, place, machine_.threads);
     for (std::int64_t const n : of_levels.up_to(bodies, largest_))
@@ -55,6 +63,15 @@ Prediction Planner::predict(std::vector<Share> const& shares, Arrangement const&
         found.unusable = error.what();  // no kernels for this GPU, no memory left on it
     }
     return found;
+}
+
+DriftSeconds Planner::predict_drifts(std::vector<Share> const& shares, Arrangement const& arrangement) {
+    DriftSeconds sum{};
+    for (Share const& share : shares) {
+        DriftSeconds const own = drifts_of(share.family, arrangement, share.bodies).at(share.bodies);
+        for (std::size_t c = 0; c < drift_costs; ++c) sum[c] += own[c];
+    }
+    return sum;
 }
 
 std::vector<Prediction> Planner::predict(std::vector<Share> const& shares) {
@@ -89,7 +106,10 @@ void Planner::measure_everything() {
     for (Family const& family : all_families()) {
         for (std::int64_t const n : of_evaluations.up_to(largest(family), largest(family)))
             for (auto const* list : {&machine_.alike, &machine_.others})
-                for (Arrangement const& arrangement : *list) phases_of(family, arrangement, n);
+                for (Arrangement const& arrangement : *list) {
+                    phases_of(family, arrangement, n);
+                    if (family.axes == Axes::world) drifts_of(family, arrangement, n);
+                }
         levels_of(family, Place::host, largest_);
         if (machine_.no_gpu.empty()) levels_of(family, Place::gpu, largest_);
     }

@@ -25,6 +25,8 @@ class Planner {
         : machine_(std::move(machine)), calibration_(std::move(known)), known_(calibration_.points()), largest_(largest) {}
 
     Prediction predict(std::vector<Share> const&, Arrangement const&);
+    /// Of the largest rank's chains in ground axes. Throws where the arrangement cannot be used.
+    DriftSeconds predict_drifts(std::vector<Share> const&, Arrangement const&);
     /// Of those that give the same bits, and of the others.
     std::vector<Prediction> predict(std::vector<Share> const&);
     /// Precondition: there is a GPU, or `gpu` is the host's part too (to see what the host would gain by itself: nothing).
@@ -41,6 +43,7 @@ class Planner {
 
   private:
     PhaseCurve const& phases_of(Family const&, Arrangement const&, std::int64_t bodies);
+    DriftCurve const& drifts_of(Family const&, Arrangement const&, std::int64_t bodies);
     LevelCurve const& levels_of(Family const&, Place, std::int64_t bodies);
     std::int64_t largest(Family const& family) const { return family.beads() ? 4 * largest_ : largest_; }
 

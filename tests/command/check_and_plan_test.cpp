@@ -89,6 +89,47 @@ TEST(Plan, AutoIsSaidOnceWithItsReason) {
     EXPECT_EQ(catena({"solve", input("arm.yaml"), "--backend", "segments", "--json", "-"}).json().at("backend_reason"), "asked for");
 }
 
+/// Between 1 us a message and 1 GB/s, whatever the machine.
+std::string told_network(TemporaryFolder const& folder) {
+    std::string const file = folder / "network.json", link = R"({"latency": 1e-6, "seconds_a_byte": 1e-9})";
+    std::ofstream(file) << R"({"network": {"near": )" << link << R"(, "far": )" << link << R"(, "gather_overhead": 1}})";
+    return file;
+}
+
+TEST(Plan, PredictsStepsOnMoreRanks) {
+    TemporaryFolder const folder;
+    Words const words{"plan",      input("freely-jointed-trimer.yaml"),
+                      "--set",     "chains[0].generator.freely_jointed.beads=2000",
+                      "--ranks",   "96",
+                      "--hosts",   "12",
+                      "--network", told_network(folder)};
+    Words with_json = words;
+    with_json.insert(with_json.end(), {"--json", "-"});
+    auto const network = catena(with_json).json().at("network");
+    auto const& rows = network.at("predicted");
+    std::vector<int> ranks;
+    for (auto const& row : rows) {
+        ranks.push_back(row.at("ranks"));
+        double const computing = row.at("computing_seconds"), messages = row.at("message_seconds"), step = row.at("step_seconds");
+        EXPECT_GT(computing, 0);
+        EXPECT_EQ(messages > 0, ranks.back() > 1);
+        EXPECT_DOUBLE_EQ(step, computing + messages);
+        EXPECT_DOUBLE_EQ(row.at("speed_up"), rows[0].at("step_seconds").get<double>() / step);
+        EXPECT_DOUBLE_EQ(row.at("efficiency"), row.at("speed_up").get<double>() / ranks.back());
+    }
+    EXPECT_EQ(ranks, (std::vector<int>{1, 2, 4, 8, 16, 32, 64, 96}));
+    EXPECT_EQ(rows[0].at("speed_up"), 1);
+    EXPECT_EQ(rows[0].at("bodies_a_rank"), 2000);
+    EXPECT_GE(rows[1].at("bodies_a_rank"), 1000);
+    EXPECT_EQ(rows[1].at("hosts"), 1);
+    EXPECT_EQ(rows.back().at("hosts"), 12);
+    Ended const e = catena(words);
+    expect_good(e);
+    for (std::string const part :
+         {"times one rank", "efficiency", "predicted messages of a step", "every rank is taken to be like this one"})
+        EXPECT_NE(e.out.find(part), std::string::npos) << part << "\n" << e.out;
+}
+
 /// Where home cannot be written, nothing is kept and nothing else is different.
 TEST(Plan, WorksWithoutAPlaceForItsCache) {
     Words words{program(), "plan", input("arm.yaml")};

@@ -5,8 +5,9 @@
 
 namespace catena::test {
 
-/// Evaluations: one core takes 1 us a body, t threads 20 us more than their share of it, the GPU 100 us and 10 ns a body. A level of m
-/// merges: the host 0.5 us each, the GPU 10 us and 1 ns each; transfers: 5 us and 1 ns an item.
+/// Evaluations (a drift takes 1.2 times as long, each of its sweeps 0.4, noise 0.1): one core takes 1 us a body, t threads 20 us more than
+/// their share of it, the GPU 100 us and 10 ns a body. A level of m merges: the host 0.5 us each, the GPU 10 us and 1 ns each; transfers: 5
+/// us and 1 ns an item.
 inline plan::Machine told_machine(bool gpu) {
     using plan::Arrangement;
     plan::Machine m;
@@ -20,6 +21,10 @@ inline plan::Machine told_machine(bool gpu) {
         auto const n = static_cast<double>(bodies);
         double const t = on.backend == Backend::cuda ? 1e-4 + 1e-8 * n : on.threads > 1 ? 2e-5 + 1e-6 * n / on.threads : 1e-6 * n;
         return plan::PhaseSeconds{0.2 * t, 0.5 * t, 0.3 * t, t, t};
+    };
+    m.measure_drifts = [measure = m.measure](plan::Family const& family, std::int64_t bodies, Arrangement const& on) {
+        double const t = measure(family, bodies, on)[plan::evaluation];
+        return plan::DriftSeconds{1.2 * t, 0.4 * t, 0.1 * t};
     };
     m.measure_levels = [](plan::Family const&, std::int64_t bodies, plan::Place place, int) {
         auto const n = static_cast<double>(bodies);
