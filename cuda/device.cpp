@@ -17,12 +17,6 @@ cudaDeviceProp properties() {
     return found;
 }
 
-int devices() {
-    int found = 0;
-    check(cudaGetDeviceCount(&found), "be counted");
-    return found;
-}
-
 std::string look_for_a_gpu() {
     int devices = 0;
     cudaError_t const status = cudaGetDeviceCount(&devices);
@@ -48,6 +42,12 @@ std::string version() {
 }
 
 std::string device_name() { return properties().name; }
+
+int devices() {
+    int found = 0;
+    check(cudaGetDeviceCount(&found), "be counted");
+    return found;
+}
 
 std::string choose_device(Communicator const& communicator) {
     cudaError_t status = cudaSetDevice(communicator.rank_on_host() % devices());

@@ -168,7 +168,7 @@ void GpuPath::note_list(bool anew) {
     bool const twice = particles_.double_position != nullptr;
     void const* const now = twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
     auto const numbers = static_cast<std::size_t>(4 * particles_.places);
-    double* const listed = listed_.of(numbers).data();  // of floats half
+    double* const listed = listed_.of(twice ? numbers : numbers / 2).data();
     check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)), cudaMemcpyDeviceToDevice, stream_),
           "take lists");
     auto const lasts = static_cast<float>(openmm_->list_lasts());
@@ -213,7 +213,6 @@ void GpuPath::finish(std::span<DeviceBeads* const> beads) {
 DevicePath::Clock GpuPath::clock() {
     events_->openmm_end.wait();
     events_->chains_end.wait();
-    auto const at = [&](Event const& event) { return begun_ + event.seconds_since(events_->begun); };
     return {{at(events_->openmm_begin), at(events_->openmm_end)}, {at(events_->chains_begin), at(events_->chains_end)}, exchange_};
 }
 

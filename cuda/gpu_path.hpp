@@ -89,6 +89,8 @@ class GpuPath : public DevicePath {
     /// OpenMM waits for own beads' positions; it has read those before: the streams waited for its forces.
     void put_own(std::span<DeviceBeads* const> beads);
     void compute(std::span<DeviceBeads* const> beads);
+    /// Of an evaluation that is timed.
+    double at(Event const& event) const { return begun_ + event.seconds_since(events_->begun); }
     /// Before compute(): whether OpenMM's list of pairs is made anew. Where it is, particles that move far from here are noted from now on.
     void note_list(bool anew);
     /// Of compute(), once OpenMM has been given its work: what its forces lack yet.

@@ -31,9 +31,9 @@ class HaloPath final : public GpuPath {
         start(beads, timed);
         own_are_put_ = of_this_order_ > 0;
         if (own_are_put_) put_own(beads);  // now: OpenMM is not to wait for what the streams are given next
-        from_array_to_array_ = are_arrays_shared();
-        if (from_array_to_array_)
-            send_places();
+        goes_directly_ = can_go_directly();
+        if (goes_directly_)
+            exchange_directly();
         else if (has_lists_)
             show(beads);
         if (!plan_.overlap) exchange_and_compute(beads);
@@ -44,6 +44,12 @@ class HaloPath final : public GpuPath {
         if (plan_.overlap) exchange_and_compute(beads);
     }
     void refuse_trouble() override { halo_.refuse_trouble(take_trouble()); }
+    /// Where kernels exchange positions, as long as these take, not the host's question meanwhile.
+    Clock clock() override {
+        Clock clock = GpuPath::clock();
+        if (goes_directly_) clock.exchange = {at(is_shown_), at(is_taken_)};
+        return clock;
+    }
 
   private:
     /// Where lists are made anew ghosts come from elsewhere.
@@ -53,17 +59,18 @@ class HaloPath final : public GpuPath {
     std::span<Vec3> out() const { return {(*out_).data(), lists().sent.size()}; }
     std::span<Vec3> in() const { return {(*in_).data(), lists().particle.size()}; }
 
-    /// Into a new order positions come as they are. After that OpenMM's forces do not see more of them than its arrays have.
-    bool are_arrays_shared() const { return pairs_ && inboxes_ && of_this_order_ > 0 && particles_.position && !halo_.is_audited(); }
+    /// From OpenMM's arrays into those of others, as particles stand there; with a new order the host must know where all beads are.
+    bool can_go_directly() const { return pairs_ && inboxes_ && of_this_order_ > 0 && particles_.position && !halo_.is_audited(); }
 
-    /// Own beads' particles to the arrays of all others, and theirs to here, while the host asks how far beads are.
-    void send_places() {
+    /// While the host asks how far beads are.
+    void exchange_directly() {
         is_shown_.record(stream_);
         inboxes_->turn();
         pairs_->send_positions(particles_.position, *inboxes_, stream_);
         is_sent_.record(stream_);
         pairs_->wait_for_positions(stream_);
         pairs_->take_positions(particles_.position, *inboxes_, stream_);
+        is_taken_.record(stream_);
     }
 
     /// What the streams do here comes after OpenMM's last forces, for which they waited, and so after the ghosts that these waited for:
@@ -101,13 +108,13 @@ class HaloPath final : public GpuPath {
             show(beads);
             is_shown_.wait();
             if (inboxes_) halo_.communicator().barrier();  // as are_used_up() is one: what all have shown has arrived
-            from_array_to_array_ = false;
+            goes_directly_ = false;
         }
         if (inboxes_)
             halo_.note_carried();
         else
             halo_.carry(out(), in());
-        if (!from_array_to_array_) place_all(beads);
+        if (!goes_directly_) place_all(beads);
         exchange_.end = seconds_now();
         if (pairs_) choose_pairs();
         compute(beads);
@@ -229,7 +236,7 @@ class HaloPath final : public GpuPath {
         ShownTable const table = shown_table(lists().sent, x.size());
         upload(first_.of(table.first.size()), table.first.data(), table.first.size());
         upload(place_of_shown_.of(table.place.size()), table.place.data(), table.place.size());
-        upload(shown_from_.of(3 * x.size()), x.front().data, 3 * x.size());
+        if (lists().farthest) upload(shown_from_.of(3 * x.size()), x.front().data, 3 * x.size());
         check(cudaStreamSynchronize(stream_), "take lists");
         shown_.first = (*first_).data();
         shown_.place = (*place_of_shown_).data();
@@ -262,6 +269,7 @@ class HaloPath final : public GpuPath {
         ArrivedBeads arrived{particles_, (*arrived_).data() + 3 * first};
         arrived.particles.bead = (*ghost_).data() + first;
         arrived.particles.trouble = &flags_->data()->of_ghosts;  // their ranks tell
+        arrived.particles.far = nullptr;                         // and know how far they are
         return arrived;
     }
 
@@ -277,11 +285,11 @@ class HaloPath final : public GpuPath {
     }
 
     Halo& halo_;
-    bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false, from_array_to_array_ = false;
+    bool has_way_ = false, has_lists_ = false, own_are_put_ = false, ghosts_are_placed_ = false, goes_directly_ = false;
     std::unique_ptr<PeerInboxes> inboxes_;  // null: positions pass through the host
     std::unique_ptr<PairShare> pairs_;      // null: OpenMM computes all that acts on own beads
     ShownBeads shown_;
-    Event is_shown_{Event::For::clock}, is_sent_{Event::For::order};
+    Event is_shown_{Event::For::clock}, is_sent_{Event::For::order}, is_taken_{Event::For::clock};
     Room<Buffer<std::int32_t>> first_, place_of_shown_;
     Room<Buffer<double>> shown_from_, show_, arrived_;
     Room<Buffer<DeviceBead>> ghost_;

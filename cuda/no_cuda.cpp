@@ -13,6 +13,7 @@ std::string const& why_not() {
 }
 std::string version() { return "none"; }
 std::string device_name() { throw ComputationError(why_not()); }
+int devices() { throw ComputationError(why_not()); }
 
 std::string choose_device(Communicator const&) { return why_not(); }
 int most_ranks_of_a_gpu(Communicator const&) { throw ComputationError(why_not()); }

@@ -5,6 +5,9 @@
 #include "force/pair_cuts.hpp"
 
 namespace catena::cuda {
+
+static_assert(most_peers - 1 <= most_messages);
+
 namespace {
 
 /// After how many evaluations cuts follow what the ranks' lists hold, beside those at which particles come into a new order.
@@ -64,6 +67,7 @@ void PairShare::place(std::span<std::int32_t const> own, std::span<std::int32_t 
     };
     upload(place_of_own_, own);
     upload(place_of_others_, others);
+    check(cudaStreamSynchronize(nullptr), "take OpenMM's order");
 }
 
 void PairShare::send_positions(float const* position, PeerInboxes const& inboxes, cudaStream_t stream) const {

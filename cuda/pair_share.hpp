@@ -13,7 +13,7 @@
 
 namespace catena::cuda {
 
-/// Each of so many beads in turn.
+/// Each for so many beads.
 void send(std::int64_t count, SentPositions const&, cudaStream_t);
 void take(std::int64_t count, ArrivedPositions const&, cudaStream_t);
 template <class Number>

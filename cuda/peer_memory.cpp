@@ -46,13 +46,20 @@ std::vector<cudaUUID_t> gpus_of_ranks(Communicator const& communicator) {
     return all;
 }
 
+int most_alike(std::vector<cudaUUID_t> const& all) {
+    std::ptrdiff_t most = 0;
+    for (cudaUUID_t const& gpu : all)
+        most = std::max(most, std::count_if(all.begin(), all.end(), [&](cudaUUID_t const& other) { return equal(gpu, other); }));
+    return static_cast<int>(most);
+}
+
 /// One host, each rank on a GPU of its own, and none that cannot reach another.
 bool apart_on_one_host(Communicator const& communicator) {
     if (communicator.ranks_on_host() != communicator.size() || communicator.size() > most_peers) return false;
-    if (most_ranks_of_a_gpu(communicator) > 1) return false;
+    std::vector<cudaUUID_t> const all = gpus_of_ranks(communicator);
     int device = 0;
     check(cudaGetDevice(&device), "say which it is");
-    return reaches(device, gpus_of_ranks(communicator));
+    return most_alike(all) == 1 && reaches(device, all);
 }
 
 constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB; the widest segments of all ranks' units take three quarters of it
@@ -108,13 +115,7 @@ bool gpus_may_write_to_each_other(Communicator const& communicator) {
            agreed(communicator, apart_on_one_host(communicator));
 }
 
-int most_ranks_of_a_gpu(Communicator const& communicator) {
-    std::vector<cudaUUID_t> const all = gpus_of_ranks(communicator);
-    std::ptrdiff_t most = 0;
-    for (cudaUUID_t const& gpu : all)
-        most = std::max(most, std::count_if(all.begin(), all.end(), [&](cudaUUID_t const& other) { return equal(gpu, other); }));
-    return static_cast<int>(most);
-}
+int most_ranks_of_a_gpu(Communicator const& communicator) { return most_alike(gpus_of_ranks(communicator)); }
 
 bool gpus_are_alike(Communicator const& communicator) {
     int device = 0;

@@ -15,6 +15,9 @@ std::string version();
 /// "NVIDIA H200". Precondition: there is a GPU.
 std::string device_name();
 
+/// How many GPUs this process sees. Precondition: there is one.
+int devices();
+
 /// From here on this thread uses the host's GPU number (rank on the host) modulo (GPUs). Empty, or why that GPU cannot be used (no
 /// kernels for it in this build, CUDA's own words). Precondition: there is a GPU.
 std::string choose_device(Communicator const&);

@@ -336,7 +336,7 @@ class Picture:
 
     def draw_head(self, figure, title, caption):
         from matplotlib.patches import Patch
-        figure.text(0.3 / WIDTH, 1 - 0.45 / self.height, title, fontsize=17, fontweight="bold", color=INK)
+        figure.text(0.3 / WIDTH, 1 - 0.45 / self.height, title, fontsize=min(17, 17 * 85 / max(len(title), 1)), fontweight="bold", color=INK)
         figure.text(0.3 / WIDTH, 1 - 0.75 / self.height, caption, fontsize=11, color=SOFT)
         handles = [Patch(facecolor=self.colours[name], label=entry) for name, entry in zip(self.names, self.entries)]
         figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(0.26 / WIDTH, 1 - 0.9 / self.height), ncols=self.columns, fontsize=9.5,

@@ -61,7 +61,8 @@ class Halo {
     /// Where every rank has every bead: bits for the groups of forces that this one computes, those between pairs in its share of these
     /// alone. What ranks find adds up to the forces. Absent: a rank computes whatever acts on its own beads.
     virtual std::optional<int> groups_of_share() const { return std::nullopt; }
-    /// There: from now on positions of own beads are sent in this sequence, and so received elsewhere. Collective.
+    /// Where every rank has every bead: from now on positions of own beads are sent in this sequence, and so received elsewhere.
+    /// Collective.
     virtual void send_in(std::span<std::int64_t const> /*sequence*/) {}
     /// Whether are_used_up() was told last that beads of some rank are far, or found lists used up: lists of pairs are to be made anew.
     virtual bool some_are_far() const { return false; }

@@ -160,7 +160,8 @@ void PairForces::carry(std::span<Vec3 const> sent, std::span<Vec3> received) {
     note(false);
 }
 
-/// Positions go to every rank and forces come back, of which zeros stay away from GPU to GPU: so many bytes at most.
+/// Positions go to every rank and forces come back: so many bytes, zeros that stay away among them, but the eight more a coordinate of
+/// positions that go in double precision to GPUs that compute in single (audited, or into a new order).
 void PairForces::note(bool direct) {
     traffic_.direct = direct;
     ++traffic_.updates;

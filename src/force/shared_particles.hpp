@@ -1,6 +1,6 @@
 // Particles of OpenMM's that several GPUs have, each at the same place of its arrays: positions on their way from the GPU whose bead one is
-// to the others, and forces on their way back. A number is taken by a thread: i is three times the bead in its message, and the direction.
-// All addresses are GPUs'.
+// to the others, and forces on their way back. A thread takes one number: i = 3 bead + direction, where beads are counted as they are sent
+// or received, one message after the other. All addresses are GPUs'.
 #pragma once
 
 #include <cmath>
@@ -64,7 +64,7 @@ struct SentForces {
     int messages = 0;
     std::int64_t end[most_messages] = {};  // beads in each message and those before
     Number* to[most_messages] = {};        // where bead 0 would be if the message had those before, too
-    bool all = true;                       // false: zeros stay away
+    bool all = true;                       // false: zeros stay away, where ReturnedForces left some
     std::int64_t count() const { return messages > 0 ? end[messages - 1] : 0; }
     /// `box`: where its numbers go
     void add(std::int64_t beads, Number* box) {
@@ -80,7 +80,8 @@ struct SentForces {
     }
 };
 
-/// What others have found of the forces on own beads is added, in whole numbers: their order does not matter. Leaves zeros.
+/// What others have found of the forces on own beads is added, in whole numbers: their order does not matter. Leaves zeros where numbers
+/// were, for those that are not sent next time.
 template <class Number>
 struct ReturnedForces {
     ForcesOnBeads forces;

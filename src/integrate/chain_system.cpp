@@ -142,7 +142,8 @@ std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) c
 void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     double const start = seconds_now();
     auto const note = [&](char const* name, char const* lane, double begin, double end) {
-        if (timeline) timeline->phases.push_back({name, lane, begin - start, end - start});
+        // Of several groups of chains the last may be done before the first.
+        if (timeline) timeline->phases.push_back({name, lane, begin - start, std::max(begin, end) - start});
     };
     if (openmm_) begin_openmm(timeline != nullptr);
     double const begun = seconds_now();

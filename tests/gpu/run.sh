@@ -10,7 +10,7 @@ nvidia-smi -L
 mkdir -p "$build"
 cmake -S "$root" -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCATENA_WITH_CUDA=ON >"$build.configure.log" 2>&1 || { cat "$build.configure.log"; exit 1; }
 targets=(gpu gpu_quick dca command_program catena-cli)
-for optional in "gpu_exchange exchanges between GPUs (the build has no MPI)" "gpu_run whole runs (the build has no HDF5)" "gpu_openmm OpenMM on the GPU (the build has no headers of its CUDA platform: OPENMM_DIR)" "gpu_openmm_ranks OpenMM on GPUs of several ranks (the build has no MPI, or no headers of OpenMM's CUDA platform: OPENMM_DIR)"; do
+for optional in "gpu_exchange exchanges between GPUs (the build has no MPI)" "gpu_run whole runs (the build has no HDF5)" "gpu_openmm OpenMM on the GPU (the build has no headers of its CUDA platform: OPENMM_DIR)" "gpu_openmm_direct OpenMM on GPUs that write to each other (as gpu_openmm_ranks)" "gpu_openmm_ranks OpenMM on GPUs of several ranks (the build has no MPI, or no headers of OpenMM's CUDA platform: OPENMM_DIR)"; do
     read -r target what <<<"$optional"
     if cmake --build "$build" --target help | grep -q "^$target:"; then
         targets+=("$target")

@@ -86,9 +86,7 @@ class SharedGpu : public GpuRun {};
 TEST_P(SharedGpu, IsWarnedOf) {
     Communicator const& world = catena::testing::world();
     auto const summary = run(world, "shared", 2, "", Backend::cuda);
-    int const ranks = cuda::most_ranks_of_a_gpu(world);
-    EXPECT_GE(ranks, 1);
-    EXPECT_LE(ranks, world.size());
+    int const ranks = (world.size() + cuda::devices() - 1) / cuda::devices();  // of one host, to whose GPUs they go in turn
     if (world.rank() != 0) return;
     std::string const notes = summary.value("notes", nlohmann::json::array()).dump();
     EXPECT_EQ(notes.find("warning: " + std::to_string(ranks) + " ranks share a GPU") != std::string::npos, ranks > 1) << notes;
