@@ -110,7 +110,7 @@ std::vector<double*> mapped(Communicator const& communicator) {
 }  // namespace
 
 bool gpus_may_write_to_each_other(Communicator const& communicator) {
-    return communicator.size() > 1 &&
+    return communicator.size() > 1 && communicator.may_be_passed_by() &&
            gpu_exchange_choice(variable_of_first_rank(communicator, "CATENA_GPU_EXCHANGE")) != GpuExchange::host &&
            agreed(communicator, apart_on_one_host(communicator));
 }

@@ -59,6 +59,8 @@ class Communicator {
     virtual void tally(Traffic const&) const {}
     /// How all_gather goes; it changes no byte of what comes out.
     virtual GatherWay const& gather_way() const;
+    /// Whether ranks' messages may also go from GPU to GPU, past this one.
+    virtual bool may_be_passed_by() const { return true; }
     /// Ends every rank at once: for an error that other ranks cannot know of.
     [[noreturn]] virtual void abort(int status) const = 0;
 };

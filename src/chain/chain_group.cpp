@@ -304,7 +304,7 @@ bool is_hinged(ChainSpec const& spec) {
 }
 
 ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes axes, Handles handles, bool pairwise,
-                      Communicator const& communicator, bool implicit) {
+                      Communicator const& communicator, GroupOptions const& options) {
     ChainGroup group;
     ChainSpec const& any = scene.chains[chains.front()];
     group.beads = any.is_beads();
@@ -329,6 +329,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.directions = directions_of(group);
     group.planar = group.directions == 2;
     group.partition = dca::Partition(lengths, pairwise, communicator.size(), tips);
+    if (!options.shares.empty()) dca::cut_by_shares(group.partition, communicator.size(), options.shares);
     group.pieces = dca::pieces_of(group.partition, communicator.rank());
     group.schedule = dca::make_schedule(group.partition, communicator.rank());
     group.size = group.schedule.bodies;
@@ -339,7 +340,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     allocate(group);
     fill(group, scene);
     if (!group.beads) fill_carried(group, scene);
-    fill_restricted(group, scene, implicit);
+    fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());
     find_rings(group, communicator.rank());
     if (group.has_screws) exchange_from_outboard(communicator, group, group.screw.view());
@@ -370,20 +371,21 @@ LocalTip local_tip(ChainGroup const& group, ChainSpec const& spec, std::int64_t 
 }
 
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes axes, Handles handles, bool pairwise,
-                                                     Communicator const& communicator, bool implicit) {
+                                                     Communicator const& communicator, GroupOptions const& options) {
     std::map<int, std::vector<int>> chains;
     for (std::size_t i = 0; i < scene.chains.size(); ++i)
-        chains[group_of(scene.chains[i], axes, handles, implicit)].push_back(static_cast<int>(i));
+        chains[group_of(scene.chains[i], axes, handles, options.implicit)].push_back(static_cast<int>(i));
     // Where ranks get ghosts from each other, the fewer the better; bits do not depend on the order.
     bool const together = scene.forces.openmm && communicator.size() > 1;
     std::vector<std::unique_ptr<ChainGroup>> groups;
     for (auto& [kind, members] : chains) {
         ChainSpec const& any = scene.chains[members.front()];
-        if (together && (any.is_beads() || any.is_linked())) members = compact_order(placed_chains(scene, members), communicator.size());
+        if (together && (any.is_beads() || any.is_linked()))
+            members = compact_order(placed_chains(scene, members), communicator.size(), options.shares);
         bool const of_resisting =
-            implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
-        groups.push_back(std::make_unique<ChainGroup>(
-            make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise, communicator, of_resisting)));
+            options.implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
+        groups.push_back(std::make_unique<ChainGroup>(make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise,
+                                                                 communicator, {of_resisting, options.shares})));
     }
     return groups;
 }

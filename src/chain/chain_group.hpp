@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chain/group_view.hpp"
+#include "dca/shares.hpp"
 #include "dca/tree.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
@@ -196,10 +197,15 @@ std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGr
     return all;
 }
 
+struct GroupOptions {
+    /// Joints with springs or dampers carry all six directions, along the free ones what these do to the matrices; their chains have full
+    /// handles.
+    bool implicit = false;
+    dca::Shares shares;  // of the bodies of every group, rank by rank
+};
 /// Groups the scene's chains by the smallest handle kind that holds them (full handles: by what they consist of). `pairwise` chooses
-/// the chapter's tree. `implicit`: joints with springs or dampers carry all six directions, along the free ones what these do to the
-/// matrices; their chains have full handles.
+/// the chapter's tree.
 std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const&, Axes, Handles, bool pairwise, Communicator const&,
-                                                     bool implicit = false);
+                                                     GroupOptions const& = {});
 
 }  // namespace catena

@@ -24,10 +24,13 @@ int longest_side(std::span<PlacedChain const> chains) {
     return static_cast<int>(std::max_element(side.data, side.data + 3) - side.data);
 }
 
-/// Cuts where a Partition does: a chain goes to the rank within whose equal share of all bodies its middle lies.
+/// Cuts where dca::cut_by_shares() does: a chain goes to the rank within whose share of all bodies its middle lies.
 class Halving {
   public:
-    Halving(std::span<PlacedChain> chains, int ranks) : ranks_(ranks), all_(bodies_of(chains)) { order(chains, 0, ranks, 0); }
+    Halving(std::span<PlacedChain> chains, int ranks, dca::Shares const& shares)
+        : begins_(dca::begins_of_shares(shares, ranks)), all_(bodies_of(chains)) {
+        order(chains, 0, ranks, 0);
+    }
 
   private:
     /// `chains` are those of ranks [first, last), after those of others with `before` bodies.
@@ -39,19 +42,20 @@ class Halving {
                          [axis](PlacedChain const& a, PlacedChain const& b) { return a.middle[axis] < b.middle[axis]; });
         std::size_t cut = 0;
         std::int64_t begin = before;
-        while (cut < chains.size() && (2 * begin + chains[cut].bodies) * ranks_ < 2 * all_ * middle) begin += chains[cut++].bodies;
+        std::int64_t const part = begins_[static_cast<std::size_t>(middle)], parts = begins_.back();
+        while (cut < chains.size() && (2 * begin + chains[cut].bodies) * parts < 2 * all_ * part) begin += chains[cut++].bodies;
         order(chains.first(cut), first, middle, before);
         order(chains.subspan(cut), middle, last, begin);
     }
 
-    int ranks_;
+    std::vector<std::int64_t> begins_;
     std::int64_t all_;
 };
 
 }  // namespace
 
-std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks) {
-    Halving(chains, ranks);
+std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks, dca::Shares const& shares) {
+    Halving(chains, ranks, shares);
     std::vector<int> in_order;
     for (PlacedChain const& chain : chains) in_order.push_back(chain.chain);
     return in_order;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dca/linear.hpp"
+#include "dca/shares.hpp"
 #include "scene/scene.hpp"
 
 namespace catena {
@@ -17,8 +18,8 @@ struct PlacedChain {
 };
 
 /// The chains rank by rank: space is cut across its longest side into two parts with the bodies of half the ranks each, and so on; a
-/// rank's own chains ascend.
-std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks);
+/// rank's own chains ascend. `shares`: as dca::cut_by_shares() has them.
+std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks, dca::Shares const& shares = {});
 
 /// Where the chains of a scene stand at its start; for those of points in W.
 std::vector<PlacedChain> placed_chains(Scene const&, std::vector<int> const& chains);

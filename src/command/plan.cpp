@@ -186,6 +186,7 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
             {"backend", name_of(system.backend())},
             {"backend_reason", reason},
             {"ranks", communicator.size()},
+            {"balance", scene.solver.balance},
             {"gathers", {{"stages", way.stages}, {"hosts", way.hosts}}},
             {"threads", system.executor().threads()},
             {"handles", name_of(scene.solver.handles)},
@@ -200,6 +201,10 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
                    json["gpu_levels"].get<std::string>() + " of the lowest (up,down); the others on the host's threads");
     text.entry("ranks", std::to_string(communicator.size()));
     if (communicator.size() > 1) text.entry("gathers", way.text());
+    if (scene.solver.balance)
+        text.entry("balance", communicator.size() == 1
+                                  ? "nothing to do on one rank"
+                                  : "`run` measures the ranks and cuts the chains by their speeds; below they are equal");
     text.entry("threads a rank", std::to_string(system.executor().threads()));
     for (std::size_t i = 0; i < reports.size(); ++i) add_group(text, json["groups"], *system.groups()[i], reports[i]);
     add_memory(text, json, scene, predictions, communicator.size());

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <utility>
 
@@ -38,6 +39,16 @@ std::string ghosts_text(nlohmann::json const& ghosts) {
                        mean(ghosts.at("messages_a_step")), mean(ghosts.at("bytes_a_step")));
 }
 
+/// The bodies of each rank, of many ranks the fewest and the most.
+std::string shares_text(nlohmann::json const& parallel) {
+    auto const bodies = parallel.at("bodies_of_rank").get<std::vector<std::int64_t>>();
+    auto const [least, most] = std::minmax_element(bodies.begin(), bodies.end());
+    std::string const numbers =
+        bodies.size() <= 8 ? fmt::format("{}", fmt::join(bodies, ", ")) : fmt::format("{} to {} on {} ranks", *least, *most, bodies.size());
+    return numbers + " bodies, by " +
+           (parallel.at("shares_from") == "checkpoint" ? "the checkpoint's shares" : "the ranks' speeds, as measured at the start");
+}
+
 std::string text_of(Scene const& scene, nlohmann::json const& s, std::string const& reason) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
@@ -58,6 +69,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
                                      counted(parallel.at("ranks").get<std::int64_t>(), "rank", "ranks"),
                                      counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
     text.entry("", reason);
+    if (auto const shares = parallel.find("shares"); shares != parallel.end()) text.entry("shares", shares_text(parallel));
     if (parallel.at("ranks").get<std::int64_t>() > 1) text.entry("frames written", parallel.at("frames_written").get<std::string>());
     if (auto const forces = s.find("forces"); forces != s.end()) {
         text.entry("OpenMM",

@@ -2,14 +2,9 @@
 
 #include <algorithm>
 
+#include "dca/shares.hpp"
+
 namespace catena::dca {
-
-namespace {
-
-/// A chain is too short to be shared where so many make a rank's share: then ranks need not speak to solve it.
-std::int64_t constexpr chains_of_share = 16;
-
-}  // namespace
 
 ChainTree::ChainTree(std::int64_t bodies_in, std::int64_t run_length_in)
     : bodies(bodies_in), run_length(run_length_in), runs((bodies_in + run_length_in - 1) / run_length_in) {
@@ -32,22 +27,7 @@ Partition::Partition(std::vector<std::int64_t> const& lengths, bool pairwise, in
         trees.emplace_back(n, run_length_for(pairwise));
         first_of_chain.push_back(first_of_chain.back() + n);
     }
-    first_of_rank.assign(static_cast<std::size_t>(ranks) + 1, bodies());
-    // What goes to one rank, a unit or a short chain, goes to the one within whose equal share its middle lies.
-    int next_rank = 0;
-    auto const give = [&](std::int64_t begin, std::int64_t end) {
-        int const rank = static_cast<int>((begin + end) * ranks / (2 * bodies()));
-        while (next_rank <= rank) first_of_rank[next_rank++] = begin;
-    };
-    for (int chain = 0; chain < chains(); ++chain) {
-        std::int64_t const first = first_of_chain[chain];
-        if (trees[chain].bodies * ranks * chains_of_share <= bodies()) {
-            give(first, first_of_chain[chain + 1]);
-            continue;
-        }
-        for (std::int64_t unit = 0; unit < trees[chain].units; ++unit)
-            give(first + trees[chain].first_body_of_unit(unit), first + trees[chain].first_body_of_unit(unit + 1));
-    }
+    cut_by_shares(*this, ranks, {});
 }
 
 int Partition::owner(std::int64_t body) const {

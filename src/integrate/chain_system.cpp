@@ -77,7 +77,7 @@ SimdLevel choose_simd_level(Scene const& scene, Communicator const& communicator
     return static_cast<SimdLevel>(weakest);
 }
 
-ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator, double implicit_step)
+ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& communicator, double implicit_step, dca::Shares const& shares)
     : scene_(scene),
       communicator_(communicator),
       axes_(axes),
@@ -87,7 +87,7 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
     SimdLevel const simd = choose_simd_level(scene, communicator);
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
-    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, implicit_step > 0);
+    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, {implicit_step > 0, shares});
     if (scene.solver.handles == Handles::articulated)
         for (auto const& group : groups_) refuse_articulated(*group, implicit_step > 0);
     if (uses_gpu(backend_)) require_gpu_memory();

@@ -28,8 +28,8 @@ class ChainSystem {
     /// Bead chains are always in absolute coordinates; body chains by `axes`: joint or world, as
     /// uses_joint_coordinates() has it for integrators. Collective.
     /// `implicit_step`: of an implicit integrator, in whose matrices stand what springs and dampers do within a step; 0: those of
-    /// forward dynamics.
-    ChainSystem(Scene const&, Axes axes, Communicator const&, double implicit_step = 0);
+    /// forward dynamics. `shares`: of the bodies, rank by rank; they change no number.
+    ChainSystem(Scene const&, Axes axes, Communicator const&, double implicit_step = 0, dca::Shares const& shares = {});
     ~ChainSystem();
     /// Where OpenMM computes on the chains' GPU, the system lives in OpenMM's context there, which construction makes that of the thread.
     /// To be called before a system is used again after another was made or used.

@@ -6,6 +6,7 @@
 #include <future>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <utility>
 
 #include "cuda/solver.hpp"
 #include "error.hpp"
@@ -46,8 +47,11 @@ class Run {
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene_.dynamics.steps)),
           sites_(root_ ? Sites(scene_) : Sites()),
-          system_(scene_, uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world, communicator,
-                  is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0) {
+          axes_(uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world),
+          implicit_step_(is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0),
+          from_(options_.restart.empty() ? std::nullopt : std::optional(read_start())),
+          shares_(shares()),
+          system_(scene_, axes_, communicator, implicit_step_, shares_) {
         Integrator const integrator = scene_.dynamics.integrator;
         if (scene_.solver.refine > 0 && !is_refined(integrator))
             throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
@@ -257,19 +261,21 @@ class Run {
         if (system_.openmm()) c.notes[note_of_platform] = platform();
         c.arrays["largest_constraint_error"] = {worst_error_};
         c.arrays[array_of_watch] = watch_.state();
+        if (!shares_.empty()) c.arrays[array_of_shares] = {shares_.begin(), shares_.end()};
         stepper_->save(c);
         ChainSystem::OwnState own = system_.own_state();
         stepper_->save(own);
         folder_->write_checkpoint(c, system_, own);
     }
 
-    static constexpr char const *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch";
+    static constexpr char const *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
     }
 
-    std::int64_t restore() {
+    /// The checkpoint to go on from, on every rank but for its notes. Collective.
+    Checkpoint read_start() const {
         Checkpoint c;
         on_first_rank(communicator_, [&] {
             c = read_checkpoint(options_.restart);
@@ -280,12 +286,26 @@ class Run {
                 throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " +
                                      std::to_string(dca::tree_table_version),
                                  options_.restart, "go on with the version that made it");
-            auto const made_on = c.notes.find(note_of_platform);
-            if (system_.openmm() && made_on != c.notes.end() && made_on->second != platform())
-                notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second + ", this run goes on on " + platform() +
-                                 ", whose forces round otherwise (forces.openmm.platform chooses)");
         });
         share(communicator_, c);
+        return c;
+    }
+
+    /// Those of the checkpoint, where as many ranks made it: a restart is to be the undisturbed run, with OpenMM too. Collective.
+    dca::Shares shares() {
+        if (!scene_.solver.balance || communicator_.size() == 1) return {};
+        std::vector<double> const stored = from_ ? from_->arrays[array_of_shares] : std::vector<double>();
+        shares_are_stored_ = std::ssize(stored) == communicator_.size();
+        if (shares_are_stored_) return {stored.begin(), stored.end()};
+        return agree_on_shares(communicator_, options_.own_costs(scene_, axes_, communicator_, implicit_step_));
+    }
+
+    std::int64_t restore() {
+        Checkpoint const c = *std::exchange(from_, std::nullopt);
+        auto const made_on = c.notes.find(note_of_platform);
+        if (system_.openmm() && made_on != c.notes.end() && made_on->second != platform())
+            notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second + ", this run goes on on " + platform() +
+                             ", whose forces round otherwise (forces.openmm.platform chooses)");
         system_.set_state(c.arrays);
         stepper_->restore(c);
         if (auto const found = c.arrays.find("largest_constraint_error"); found != c.arrays.end()) worst_error_ = found->second.at(0);
@@ -328,6 +348,7 @@ class Run {
                          {"frames_beside_steps", frames_beside_},
                          {"checkpoints_written", "by the root"},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
+        if (!shares_.empty()) s["parallel"].update(json_of_shares());
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);
         if (counted_steps_ > 0)
             s["parallel"]["messages_a_step"] = {{"counted", as_json(counted_, counted_steps_)},
@@ -362,12 +383,30 @@ class Run {
         return s;
     }
 
+    json json_of_shares() const {
+        double sum = 0;
+        for (std::int64_t const share : shares_) sum += static_cast<double>(share);
+        json shares = json::array(), bodies = json::array();
+        for (std::size_t r = 0; r < shares_.size(); ++r) {
+            std::int64_t own = 0;
+            for (auto const& group : system_.groups()) own += group->first_of_rank()[r + 1] - group->first_of_rank()[r];
+            shares.push_back(static_cast<double>(shares_[r]) / sum);
+            bodies.push_back(own);
+        }
+        return {{"shares", shares}, {"shares_from", shares_are_stored_ ? "checkpoint" : "measurement"}, {"bodies_of_rank", bodies}};
+    }
+
     Scene const& scene_;
     Communicator const& communicator_;
     RunOptions options_;
     bool root_;
     std::int64_t last_;
     Sites sites_;
+    Axes axes_;
+    double implicit_step_;
+    std::optional<Checkpoint> from_;  // until it is restored
+    bool shares_are_stored_ = false;
+    dca::Shares shares_;  // empty: equal
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
     std::vector<StepMessages> messages_;  // one a group

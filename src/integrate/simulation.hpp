@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "integrate/balance.hpp"
 #include "integrate/stop_agreement.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
@@ -21,6 +22,7 @@ struct RunOptions {
     StopAgreement::Wish stop;             // the run ends after the step that is under way, with a checkpoint and what it has
     std::string command_line;             // for the summary
     std::int64_t bodies_beside = 100000;  // in the scene, from which on frames on one rank are written beside the steps that follow
+    MeasureOwnCosts own_costs = measure_own_costs;  // what solver.balance goes by
 };
 
 /// Runs the scene and writes its folder: trajectory.h5md, topology.pdb, observables.csv, checkpoint.h5, summary.json, timeline.json,

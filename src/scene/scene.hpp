@@ -220,6 +220,7 @@ struct SolverSpec {
     std::string gpu_levels = "auto";  // as GpuLevels: auto, all, "K", "UP,DOWN"
     int refine = 0;                   // steps of refinement of every solution in joint coordinates
     std::optional<SimdLevel> simd;    // none: the best that all ranks can run
+    bool balance = false;             // ranks' shares of the bodies by their speeds, which a run measures
 
     /// `auto`, where no planner has chosen: all.
     GpuLevels levels_on_gpu() const;

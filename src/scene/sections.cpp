@@ -177,7 +177,7 @@ ForceSpec read_forces(Node const& node, Node const* dynamics, bool si, std::stri
 }
 
 SolverSpec read_solver(Node const& node) {
-    Fields const fields(node, {"backend", "handles", "threads", "gpu_levels", "simd", "refine"}, {"precision", "balance"});
+    Fields const fields(node, {"backend", "handles", "threads", "gpu_levels", "simd", "refine", "balance"}, {"precision"});
     SolverSpec solver;
     take(fields, "backend", solver.backend, [](Node const& n) {
         return choice<Backend>(n, {{"auto", Backend::automatic},
@@ -196,6 +196,7 @@ SolverSpec read_solver(Node const& node) {
         return choice<std::optional<SimdLevel>>(
             n, {{"auto", std::nullopt}, {"off", SimdLevel::off}, {"avx2", SimdLevel::avx2}, {"avx512", SimdLevel::avx512}});
     });
+    take(fields, "balance", solver.balance, truth);
     take(fields, "gpu_levels", solver.gpu_levels, [](Node const& n) {
         if (!is_level_count(text(n))) fail(n, describe(n) + " is no number of levels", "give `auto`, `all`, a number, or two as `UP,DOWN`");
         return n.text;

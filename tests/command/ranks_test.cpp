@@ -52,6 +52,27 @@ TEST(Ranks, AFailureThatEveryRankMeetsIsOneLineAndStatusOne) {
     EXPECT_EQ(count(e.err, "catena: "), 1U) << e.err;
 }
 
+TEST(Ranks, TheRunSaysTheSharesOfItsRanks) {
+    TemporaryFolder const folder;
+    Words const balanced{"run", input("spherical-chain.yaml"), "--set", "solver.balance=true", "--output", folder / "run"};
+    auto const with = [&](Words words, Words const& more) {
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    };
+    Ended const first = catena_on(2, with(balanced, {"--steps", "5"}));
+    EXPECT_EQ(first.status, 0) << first.err;
+    EXPECT_NE(first.out.find("bodies, by the ranks' speeds, as measured at the start"), std::string::npos) << first.out;
+    auto const parallel = nlohmann::json::parse(std::ifstream(folder / "run/summary.json")).at("parallel");
+    ASSERT_EQ(parallel.at("shares").size(), 2U);
+    EXPECT_NEAR(parallel.at("shares")[0].get<double>() + parallel.at("shares")[1].get<double>(), 1, 1e-12);
+    Ended const second = catena_on(2, with(balanced, {"--steps", "10", "--restart", folder / "run/checkpoint.h5"}));
+    EXPECT_EQ(second.status, 0) << second.err;
+    EXPECT_NE(second.out.find("bodies, by the checkpoint's shares"), std::string::npos) << second.out;
+    EXPECT_NE(
+        catena_on(2, {"plan", input("spherical-chain.yaml"), "--set", "solver.balance=true"}).out.find("cuts the chains by their speeds"),
+        std::string::npos);
+}
+
 TEST(Ranks, TheRunSaysWhatGhostsCost) {
     if (openmm_version() == "none") GTEST_SKIP() << "NOT RUN: built without OpenMM";
     TemporaryFolder const folder;

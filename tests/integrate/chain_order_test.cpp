@@ -37,6 +37,19 @@ TEST(CompactOrder, OnOneRankIsTheScenes) {
     EXPECT_TRUE(std::is_sorted(order.begin(), order.end()));
 }
 
+TEST(CompactOrder, FollowsTheRanksShares) {
+    std::vector<PlacedChain> const chains = scattered(300, {{10, 10, 10}});
+    EXPECT_EQ(compact_order(chains, 6, dca::Shares(6, 1000)), compact_order(chains, 6));
+    std::vector<int> const order = compact_order(chains, 2, {3000, 1000});
+    std::int64_t all = 0, first = 0;
+    for (PlacedChain const& chain : chains) all += chain.bodies;
+    std::size_t cut = 0;  // an ascending row a rank
+    while (order[cut] < order[cut + 1]) first += chains[static_cast<std::size_t>(order[cut++])].bodies;
+    first += chains[static_cast<std::size_t>(order[cut])].bodies;
+    EXPECT_NEAR(static_cast<double>(first), 0.75 * static_cast<double>(all), 11);
+    EXPECT_TRUE(std::is_sorted(order.begin() + static_cast<std::ptrdiff_t>(cut) + 1, order.end()));
+}
+
 /// Eight ranks get an eighth of a cube each, six parts of two shapes: sides follow, to a few chains' distance.
 TEST(CompactOrder, RanksGetBlocksOfSpace) {
     double constexpr edge = 10, a_few_chains = 0.15 * edge;

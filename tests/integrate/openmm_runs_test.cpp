@@ -32,9 +32,11 @@ class OpenMmRuns : public WholeRun {
         options.steps = steps;
         options.restart = restart.empty() ? "" : folder_ + "/" + restart;
         options.quiet = true;
+        options.own_costs = costs_;
         return run_simulation(parse_scene(scene_with(GetParam().text, openmm), "scene.yaml", overrides), communicator, options);
     }
     Communicator const& world_ = catena::testing::world();
+    MeasureOwnCosts costs_ = measure_own_costs;
 };
 
 TEST_P(OpenMmRuns, ReplicatedTheyAreTheRunOnOneRank) {
@@ -62,6 +64,32 @@ TEST_P(OpenMmRuns, WithGhostsARestartIsTheUndisturbedRun) {
     std::int64_t own = 0;
     for (auto const& beads : ghosts.at("own_beads")) own += beads.get<std::int64_t>();
     EXPECT_EQ(own, 9 * 12 + 51);
+}
+
+/// Where forces round by who owns what, a restart needs the very shares.
+TEST_P(OpenMmRuns, WithUnequalSharesARestartIsTheUndisturbedRun) {
+    costs_ = [](Scene const&, Axes, Communicator const& ranks, double) {
+        return std::vector<OwnCost>{{100, ranks.rank() == 0 ? 3.0 : 1.0}};
+    };
+    auto const whole = run_with(world_, "whole", "audit: true", 40, "", {"solver.balance=true"});
+    run_with(world_, "parts", "audit: true", 20, "", {"solver.balance=true"});
+    costs_ = measure_own_costs;  // not asked for
+    auto const rest = run_with(world_, "parts", "audit: true", 40, "parts/checkpoint.h5", {"solver.balance=true"});
+    if (world_.rank() != 0) return;
+    EXPECT_EQ(arrays("whole"), arrays("parts"));
+    if (world_.size() == 1) return;
+    EXPECT_EQ(rest.at("parallel").at("shares"), whole.at("parallel").at("shares"));
+    auto const bodies = whole.at("parallel").at("bodies_of_rank").get<std::vector<std::int64_t>>();
+    if (world_.size() == 2) {
+        EXPECT_NEAR(static_cast<double>(bodies[0]), (9 * 12 + 51) / 4.0, 12);
+    }
+}
+
+TEST_P(OpenMmRuns, SharesAreMeasuredByTheChainsAlone) {
+    auto const summary = run_with(world_, "measured", "audit: true", 3, "", {"solver.balance=true"});
+    if (world_.rank() == 0 && world_.size() > 1) {
+        EXPECT_EQ(summary.at("parallel").at("shares_from"), "measurement");
+    }
 }
 
 TEST_P(OpenMmRuns, ARestartOnAnotherPlatformSaysSo) {

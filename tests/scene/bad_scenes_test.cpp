@@ -147,6 +147,9 @@ solver: {handles: 6x6})y",
     {"threads", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {threads: -1})y",
      "threads -1 is below 0 (s.yaml: solver.threads, line 2): give 0 or more"},
+    {"balance", R"y(chains: [{sequence: GGG, model: calvados2}]
+solver: {balance: 2})y",
+     "`2` is not true or false (s.yaml: solver.balance, line 2): give true or false"},
     {"refine", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {refine: -1})y",
      "refine -1 is below 0 (s.yaml: solver.refine, line 2): give 0 or more"},
@@ -353,9 +356,6 @@ forces: {torques: []})y",
     {"precision", R"y(chains: [{sequence: GGG, model: calvados2}]
 solver: {precision: mixed})y",
      "not in this version: key `precision` (s.yaml: solver.precision, line 2)"},
-    {"balance", R"y(chains: [{sequence: GGG, model: calvados2}]
-solver: {balance: true})y",
-     "not in this version: key `balance` (s.yaml: solver.balance, line 2)"},
     {"implicit_midpoint", R"y(chains: [{sequence: GGG, model: calvados2}]
 dynamics: {integrator: implicit-midpoint, step: 1})y",
      "not in this version: `integrator: implicit-midpoint` (s.yaml: dynamics.integrator, line 2)"},

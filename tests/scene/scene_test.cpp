@@ -21,7 +21,7 @@ forces:
   openmm: {builder: calvados2, temperature: 310, ionic_strength: 0.1, ph: 7.4, switch_width: 0.2, platform: CPU, precision: mixed, threads: 2, device: 1, path: inline,
            overlap: false, layers: none, split: pairs, replicate: true, audit: true}
 dynamics: {integrator: g-baoab, step: 0.01, steps: 1e4, temperature: 300, friction: 0.5, seed: 12345678901234567890, constraint_tolerance: 1e-9}
-solver: {backend: segments, handles: full, threads: 3, refine: 2, gpu_levels: "4,2"}
+solver: {backend: segments, handles: full, threads: 3, refine: 2, gpu_levels: "4,2", balance: true}
 output: {every: 10, checkpoint_every: 1000, observables: [energy, radius_of_gyration], joint_forces: true, velocities: true}
 )";
 
@@ -63,6 +63,7 @@ TEST(Scenes, every_section) {
     EXPECT_EQ(s.solver.threads, 3);
     EXPECT_EQ(s.solver.refine, 2);
     EXPECT_EQ(s.solver.gpu_levels, "4,2");
+    EXPECT_TRUE(s.solver.balance);
     EXPECT_EQ(s.output.every, 10);
     EXPECT_EQ(s.output.checkpoint_every, 1000);
     EXPECT_EQ(s.output.observables, (std::vector<std::string>{"energy", "radius_of_gyration"}));
@@ -81,6 +82,7 @@ TEST(Scenes, defaults) {
     EXPECT_FALSE(s.dynamics.given);
     EXPECT_EQ(s.solver.backend, Backend::automatic);
     EXPECT_EQ(s.solver.handles, Handles::projected);
+    EXPECT_FALSE(s.solver.balance);
     EXPECT_EQ(s.output.every, 100);
 }
 
