@@ -20,8 +20,9 @@ struct OwnCost {
 std::vector<OwnCost> measure_own_costs(Scene const&, Axes, Communicator const&, double implicit_step);
 using MeasureOwnCosts = std::function<std::vector<OwnCost>(Scene const&, Axes, Communicator const&, double implicit_step)>;
 
-/// In proportion to speeds, a rank's own being what its bodies would take at the ranks' mean costs over what they take. The same on every
-/// rank. Precondition: as many groups on every rank. Collective.
+/// In proportion to speeds, a rank's own being what its bodies would take at the ranks' mean costs over what they take, as if costs were
+/// proportional to bodies: what every rank does alike, the top of a long chain's tree, makes shares more equal. The same on every rank.
+/// Precondition: as many groups on every rank. Collective.
 dca::Shares agree_on_shares(Communicator const&, std::vector<OwnCost> const& of_groups);
 
 }  // namespace catena

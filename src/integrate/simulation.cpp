@@ -296,6 +296,8 @@ class Run {
         if (!scene_.solver.balance || communicator_.size() == 1) return {};
         std::vector<double> const stored = from_ ? from_->arrays[array_of_shares] : std::vector<double>();
         shares_are_stored_ = std::ssize(stored) == communicator_.size();
+        auto const is_share = [](double share) { return share >= 1 && share <= 1e6; };
+        shares_are_stored_ = shares_are_stored_ && std::all_of(stored.begin(), stored.end(), is_share);
         if (shares_are_stored_) return {stored.begin(), stored.end()};
         return agree_on_shares(communicator_, options_.own_costs(scene_, axes_, communicator_, implicit_step_));
     }

@@ -82,6 +82,23 @@ TEST_P(GpuRestart, OnOtherRanksEndsInTheSameBits) {
 INSTANTIATE_TEST_SUITE_P(SomeScenes, GpuRestart, ::testing::Values(run_scenes[0], run_scenes[1], run_scenes[3], run_scenes[4]),
                          name_of_scene);
 
+/// By the ranks' speeds as they are measured, which change no bit.
+class GpuBalance : public GpuRun {};
+TEST_P(GpuBalance, EndsInTheBitsOfTheHost) {
+    Communicator const& world = catena::testing::world();
+    run(world, "all", 40, "", Backend::cuda);
+    if (world.rank() != 0) return;
+    run(*serial_communicator(), "host", 40, "", Backend::segments, true);
+    auto balanced = arrays("all");
+    EXPECT_EQ(balanced.erase("rank_shares"), world.size() > 1 ? 1 : 0);
+    EXPECT_EQ(balanced, arrays("host"));
+}
+RunScene balanced(RunScene scene) {
+    scene.text += "solver: {balance: true}\n";
+    return scene;
+}
+INSTANTIATE_TEST_SUITE_P(SomeScenes, GpuBalance, ::testing::Values(balanced(run_scenes[0]), balanced(run_scenes[3])), name_of_scene);
+
 class SharedGpu : public GpuRun {};
 TEST_P(SharedGpu, IsWarnedOf) {
     Communicator const& world = catena::testing::world();

@@ -203,7 +203,8 @@ TEST_P(BalancedRuns, AreTheRunOnOneRankAndKeepTheirShares) {
 std::vector<RunScene> some_scenes() {
     std::vector<RunScene> some;
     for (RunScene const& scene : run_scenes)
-        for (char const* const name : {"rattle_beads", "rattle_rings", "langevin_linked", "rk4_every_joint", "rk4_thermal", "staggered"})
+        for (char const* const name :
+             {"rattle_beads", "rattle_rings", "langevin_linked", "rk4_every_joint", "rk4_thermal", "staggered", "implicit_langevin_rods"})
             if (std::strcmp(scene.name, name) == 0) some.push_back(scene);
     return some;
 }
@@ -226,7 +227,8 @@ TEST_P(BalancedLongRun, ASlowRankHasFewerBodies) {
 }
 
 /// Whatever a clock says.
-TEST_P(BalancedLongRun, MeasuredItIsTheRunOnOneRank) {
+using MeasuredRuns = BalancedRuns;
+TEST_P(MeasuredRuns, AreTheRunOnOneRank) {
     run_with(world(), "measured", 5, measure_own_costs);
     if (world().rank() != 0) return;
     run_with(*serial_communicator(), "one", 5, measure_own_costs);
@@ -236,6 +238,8 @@ TEST_P(BalancedLongRun, MeasuredItIsTheRunOnOneRank) {
 auto const name_of_scene = [](auto const& scene) { return scene.param.name; };
 INSTANTIATE_TEST_SUITE_P(Integrators, BalancedRuns, ::testing::ValuesIn(some_scenes()), name_of_scene);
 INSTANTIATE_TEST_SUITE_P(Long, BalancedLongRun, ::testing::Values(long_chain), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Long, MeasuredRuns, ::testing::Values(long_chain), name_of_scene);
+INSTANTIATE_TEST_SUITE_P(Integrators, MeasuredRuns, ::testing::ValuesIn(some_scenes()), name_of_scene);
 
 }  // namespace
 }  // namespace catena::test
