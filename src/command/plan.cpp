@@ -169,6 +169,9 @@ double implicit_step_of(Scene const& scene) {
 
 /// Of the chains themselves: OpenMM is left out.
 plan::PhaseSeconds measure(Scene scene, Axes axes, Communicator const& communicator) {
+    if (scene.dynamics.given && scene.dynamics.integrator == Integrator::implicit_g_baoab)
+        throw InputError("implicit-g-baoab has no evaluation outside a step that could be measured", "--measure",
+                         "leave it out, and see what a run's steps take");
     scene.forces.openmm.reset();
     ChainSystem system(scene, axes, communicator, implicit_step_of(scene));
     return plan::measure_phases(system, {5, 200, 0.5});

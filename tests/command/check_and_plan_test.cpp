@@ -66,6 +66,10 @@ TEST(Plan, JsonNamesTreeAndSweeps) {
     EXPECT_EQ(langevin.at("dynamics").at("matrix_sweeps_a_step"), 2);
 }
 
+TEST(Plan, ImplicitJointsInAbsoluteCoordinatesAreNotMeasured) {
+    expect_refused(catena({"plan", input("dna-rod.yaml"), "--measure"}), 2, "no evaluation outside a step");
+}
+
 TEST(Plan, ExplainsWhatIsSavedAndMeasuresWhatWasPredicted) {
     auto const json = catena({"plan", input("random-revolute.yaml"), "--backend", "segments", "--set",
                               "chains[0].generator.random.bodies=200", "--explain", "--measure", "--json", "-"})
