@@ -127,7 +127,7 @@ TEST(TimedMessages, WaitingForOthersIsNoWork) {
     TimedCommunicator const timed(world());
     timed.barrier();
     double const before = timed.seconds();
-    if (timed.rank() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    if (timed.rank() == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1000));
     timed.barrier();
     if (timed.rank() != 0) {
         EXPECT_GT(timed.seconds() - before, 0.1);
