@@ -55,7 +55,7 @@ class Halving {
 }  // namespace
 
 std::vector<int> compact_order(std::vector<PlacedChain> chains, int ranks, dca::Shares const& shares) {
-    Halving(chains, ranks, shares);
+    Halving const halving(chains, ranks, shares);  // orders them
     std::vector<int> in_order;
     for (PlacedChain const& chain : chains) in_order.push_back(chain.chain);
     return in_order;
