@@ -13,6 +13,10 @@ namespace {
 /// After how many evaluations cuts follow what the ranks' lists hold, beside those at which particles come into a new order.
 bool is_early(std::int64_t evaluations) { return evaluations <= 8 && (evaluations & (evaluations - 1)) == 0; }
 
+ForcesOnBeads forces_on(Room<Buffer<std::int32_t>> const& place, DeviceParticles const& particles) {
+    return {particles.force, particles.places, (*place).data()};
+}
+
 }  // namespace
 
 bool PairShare::fit(bool direct) {
@@ -95,23 +99,25 @@ void PairShare::complete(DeviceParticles const& particles, cudaStream_t stream) 
 
 template <class Number>
 void PairShare::exchange(DeviceParticles const& particles, cudaStream_t stream) const {
-    SentForces<Number> forces{{particles.force, particles.places, (*place_of_others_).data()}};
+    SentForces<Number> forces{forces_on(place_of_others_, particles)};
     forces.all = false;
     for (Halo::Message const& m : messages_) forces.add(m.sent, inboxes_->box_of<Number>(m.rank));
     send(forces, stream);
     meet(boxes_, stream);
-    Number* const arrived = inboxes_->box_of<Number>(halo_.communicator().rank());
-    int const messages = static_cast<int>(messages_.size());
-    add<Number>(own(), {{particles.force, particles.places, (*place_of_own_).data()}, arrived, own(), messages}, stream);
+    add_arrived(inboxes_->box_of<Number>(halo_.communicator().rank()), particles, stream);
 }
 
 void PairShare::exchange_by_host(DeviceParticles const& particles, cudaStream_t stream) {
-    SentForces<std::int64_t> forces{{particles.force, particles.places, (*place_of_others_).data()}};
+    SentForces<std::int64_t> forces{forces_on(place_of_others_, particles)};
     forces.add(sent(), sent_.data());
     send(forces, stream);
     carry_by_host(stream);
-    int const messages = static_cast<int>(messages_.size());
-    add<std::int64_t>(own(), {{particles.force, particles.places, (*place_of_own_).data()}, arrived_.data(), own(), messages}, stream);
+    add_arrived(arrived_.data(), particles, stream);
+}
+
+template <class Number>
+void PairShare::add_arrived(Number* arrived, DeviceParticles const& particles, cudaStream_t stream) const {
+    add<Number>(own(), {forces_on(place_of_own_, particles), arrived, own(), static_cast<int>(messages_.size())}, stream);
 }
 
 void PairShare::carry_by_host(cudaStream_t stream) {

@@ -56,6 +56,8 @@ class PairShare {
     template <class Number>
     void exchange(DeviceParticles const&, cudaStream_t) const;
     void exchange_by_host(DeviceParticles const&, cudaStream_t);
+    template <class Number>
+    void add_arrived(Number* arrived, DeviceParticles const&, cudaStream_t) const;
     void carry_by_host(cudaStream_t);
 
     Halo& halo_;

@@ -118,16 +118,17 @@ void add_steps(Text& text, Json& json, Scene const& scene, std::vector<MessagesO
     for (std::size_t i = 0; i < messages.size(); ++i) {
         MessagesOnRanks const& m = messages[i];
         plan::StepPrediction const& computing = predictions.steps[i];
-        double const step = computing.seconds + m.seconds, speed_up = one_rank / step;
+        Json const row = row_of(m, computing, one_rank);
+        double const speed_up = row.at("speed_up").get<double>();
         bool const known = std::isfinite(speed_up);
         std::string const ranks = std::to_string(m.ranks), hosts = std::to_string(m.hosts);
         times.add({ranks, hosts, std::to_string(computing.bodies), computing.arrangement.name(), cell(computing.seconds), cell(m.seconds),
-                   cell(step), known ? fmt::format("{:.4g}", speed_up) : "-",
-                   known ? fmt::format("{:.3g} %", 100 * speed_up / static_cast<double>(m.ranks)) : "-"});
+                   cell(row.at("step_seconds").get<double>()), known ? fmt::format("{:.4g}", speed_up) : "-",
+                   known ? fmt::format("{:.3g} %", 100 * row.at("efficiency").get<double>()) : "-"});
         Traffic const& t = m.traffic;
         counts.add({ranks, hosts, std::to_string(m.stages), std::to_string(t.gathers), std::to_string(t.gathered_bytes),
                     std::to_string(t.exchanges), std::to_string(t.sent_bytes), cell(m.seconds)});
-        rows.push_back(row_of(m, computing, one_rank));
+        rows.push_back(row);
     }
     std::vector<std::string> const notes = notes_on(scene, predictions.steps);
     text.heading("predicted time of a step");

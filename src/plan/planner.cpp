@@ -1,6 +1,7 @@
 #include "plan/planner.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace catena::plan {
@@ -10,7 +11,7 @@ namespace {
 struct Sizes {
     std::int64_t first, step;
     /// The two that are nearest to `bodies` from below and above, or the two largest.
-    std::pair<std::int64_t, std::int64_t> around(std::int64_t bodies, std::int64_t largest) const {
+    std::array<std::int64_t, 2> around(std::int64_t bodies, std::int64_t largest) const {
         std::int64_t low = first;
         while (low * step < bodies && low * step * step <= largest) low *= step;
         return {low, std::min(low * step, std::max(low, largest))};
@@ -26,29 +27,29 @@ struct Sizes {
 };
 constexpr Sizes of_evaluations{16, 4}, of_levels{2, 8};
 
+/// The curve, with points at these numbers of bodies.
+template <class Points, class Numbers, class Measure>
+Points const& measured_at(Points& curve, Numbers const& numbers, Measure const& measure) {
+    for (std::int64_t const n : numbers)
+        if (!curve.has(n)) curve.add(n, measure(n));
+    return curve;
+}
+
 }  // namespace
 
 PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
-    PhaseCurve& curve = calibration_.of(family, arrangement);
-    auto const [low, high] = of_evaluations.around(bodies, largest(family));
-    for (std::int64_t const n : {low, high})
-        if (!curve.has(n)) curve.add(n, machine_.measure(family, n, arrangement));
-    return curve;
+    return measured_at(calibration_.of(family, arrangement), of_evaluations.around(bodies, largest(family)),
+                       [&](std::int64_t n) { return machine_.measure(family, n, arrangement); });
 }
 
 DriftCurve const& Planner::drifts_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
-    DriftCurve& curve = calibration_.of_drifts(family, arrangement);
-    auto const [low, high] = of_evaluations.around(bodies, largest(family));
-    for (std::int64_t const n : {low, high})
-        if (!curve.has(n)) curve.add(n, machine_.measure_drifts(family, n, arrangement));
-    return curve;
+    return measured_at(calibration_.of_drifts(family, arrangement), of_evaluations.around(bodies, largest(family)),
+                       [&](std::int64_t n) { return machine_.measure_drifts(family, n, arrangement); });
 }
 
 LevelCurve const& Planner::levels_of(Family const& family, Place place, std::int64_t bodies) {
-    LevelCurve& curve = calibration_.of(family, place, machine_.threads);
-    for (std::int64_t const n : of_levels.up_to(bodies, largest_))
-        if (!curve.has(n)) curve.add(n, machine_.measure_levels(family, n, place, machine_.threads));
-    return curve;
+    return measured_at(calibration_.of(family, place, machine_.threads), of_levels.up_to(bodies, largest_),
+                       [&](std::int64_t n) { return machine_.measure_levels(family, n, place, machine_.threads); });
 }
 
 Prediction Planner::predict(std::vector<Share> const& shares, Arrangement const& arrangement) {

@@ -50,7 +50,7 @@ StepWork work_of_step(Scene const& scene, int sweeps) {
         ConstrainedStep step;
         step.langevin = is_langevin(d.integrator);
         step.sweeps = sweeps;
-        return {0, 0, 0, 0, step.drifts(), step.drifts() * sweeps, step.langevin ? 1 : 0};
+        return {.drifts = step.drifts(), .closings = step.drifts() * sweeps, .noises = step.langevin ? 1 : 0};
     }
     bool const tips = has_jointed_tips(scene);
     auto const [matrices, biases, closings] = sweeps_a_step(d, tips);

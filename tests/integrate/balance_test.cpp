@@ -139,11 +139,7 @@ class BalancedRuns : public WholeRun {
   protected:
     nlohmann::json run_with(Communicator const& communicator, std::string const& name, std::int64_t steps, MeasureOwnCosts const& costs,
                             std::string const& restart = "", bool balance = true) {
-        RunOptions options;
-        options.output = folder_ + "/" + name;
-        options.steps = steps;
-        options.restart = restart.empty() ? "" : folder_ + "/" + restart;
-        options.quiet = true;
+        RunOptions options = options_of(name, steps, restart);
         options.own_costs = costs;
         Scene scene = parse_scene(GetParam().text, "scene.yaml", {"solver.balance=" + std::string(balance ? "true" : "false")});
         scene.solver.backend = Backend::segments;

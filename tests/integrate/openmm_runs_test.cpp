@@ -27,11 +27,7 @@ class OpenMmRuns : public WholeRun {
   protected:
     nlohmann::json run_with(Communicator const& communicator, std::string const& name, std::string const& openmm, std::int64_t steps,
                             std::string const& restart = "", std::vector<std::string> const& overrides = {}) {
-        RunOptions options;
-        options.output = folder_ + "/" + name;
-        options.steps = steps;
-        options.restart = restart.empty() ? "" : folder_ + "/" + restart;
-        options.quiet = true;
+        RunOptions options = options_of(name, steps, restart);
         options.own_costs = costs_;
         return run_simulation(parse_scene(scene_with(GetParam().text, openmm), "scene.yaml", overrides), communicator, options);
     }

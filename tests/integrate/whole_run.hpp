@@ -30,14 +30,18 @@ class WholeRun : public ::testing::TestWithParam<RunScene> {
         if (catena::testing::world().rank() == 0) std::filesystem::remove_all(folder_, ignored);
         catena::testing::world().barrier();
     }
-    /// `one_by_one`: not in vectors.
-    nlohmann::json run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
-                       Backend backend = Backend::automatic, bool one_by_one = false) {
+    RunOptions options_of(std::string const& name, std::int64_t steps, std::string const& restart) const {
         RunOptions options;
         options.output = folder_ + "/" + name;
         options.steps = steps;
         options.restart = restart.empty() ? "" : folder_ + "/" + restart;
         options.quiet = true;
+        return options;
+    }
+    /// `one_by_one`: not in vectors.
+    nlohmann::json run(Communicator const& communicator, std::string const& name, std::int64_t steps, std::string const& restart = "",
+                       Backend backend = Backend::automatic, bool one_by_one = false) {
+        RunOptions const options = options_of(name, steps, restart);
         Scene scene = parse_scene(GetParam().text, "scene.yaml");
         scene.solver.backend = backend;
         if (one_by_one) scene.solver.simd = SimdLevel::off;
