@@ -1,4 +1,4 @@
-// What threads of a warp and blocks of a cluster (compute capability 9.0) give each other.
+// What threads of a warp, blocks of a cluster (compute capability 9.0) and blocks of a launch give each other.
 #pragma once
 
 #include <cstdint>
@@ -60,6 +60,23 @@ class Inbox {
     std::uint32_t arrived_;
 };
 
+/// A place in memory for a letter (below): both halves are there or not, each by itself.
+struct alignas(16) LetterBox {
+    struct Halves {
+        unsigned long long lower = 0, upper = 0;
+    };
+    unsigned long long memory[2];
+
+    __device__ void put(Halves const& halves) {
+        asm volatile("st.relaxed.gpu.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
+    }
+    __device__ Halves get() const {
+        Halves halves;
+        asm volatile("ld.relaxed.gpu.global.v2.b64 {%0, %1}, [%2];" : "=l"(halves.lower), "=l"(halves.upper) : "l"(this) : "memory");
+        return halves;
+    }
+};
+
 /// In two halves, so that there is work between them.
 __device__ inline void arrive_at_cluster() {
 #if __CUDA_ARCH__ >= 900
@@ -84,6 +101,64 @@ __device__ inline void wait_for_launch() {
 }
 
 #endif
+
+/// A number on its way between blocks of a launch, which all run at once: each half stands beside the launch's number, so that who reads it
+/// knows whether it has come, and nobody waits at a barrier.
+struct Letter : LetterBox::Halves {
+    __device__ static Letter of(double value, unsigned launch) {
+        auto const bits = static_cast<unsigned long long>(__double_as_longlong(value)), beside = static_cast<unsigned long long>(launch) << 32;
+        return {{(bits & lower_half) | beside, bits >> 32 | beside}};
+    }
+    __device__ bool is_of(unsigned launch) const { return lower >> 32 == launch && upper >> 32 == launch; }
+    __device__ double value() const { return __longlong_as_double(static_cast<long long>((lower & lower_half) | upper << 32)); }
+
+  private:
+    static constexpr unsigned long long lower_half = 0xffffffff;
+};
+/// What blocks of a launch give each other: number n of record i.
+struct Letters {
+    LetterBox* boxes = nullptr;
+    int records = 0;
+    unsigned launch = 0;  // not 0, which letters are of that nobody has written
+
+    __device__ void put(int i, int n, double value) const { boxes[n * records + i].put(Letter::of(value, launch)); }
+    __device__ double wait_for(int i, int n) const {
+        Letter letter;
+        while (!letter.is_of(launch)) letter = {boxes[n * records + i].get()};
+        return letter.value();
+    }
+    /// put(n, its number n) for n from `begin` in steps to `end`, so many of them asked for at once.
+    template <int at_once, class Put>
+    __device__ void take_some(int i, int begin, int end, int step, Put const& put) const {
+        for (int first = begin; first < end; first += at_once * step) {
+            Letter letter[at_once];
+            bool are_here = false;
+            while (!are_here) {
+                CATENA_UNROLL
+                for (int j = 0; j < at_once; ++j)
+                    if (int const n = first + j * step; n < end && !letter[j].is_of(launch)) letter[j] = {boxes[n * records + i].get()};
+                are_here = true;
+                CATENA_UNROLL
+                for (int j = 0; j < at_once; ++j) are_here = are_here && (first + j * step >= end || letter[j].is_of(launch));
+            }
+            CATENA_UNROLL
+            for (int j = 0; j < at_once; ++j)
+                if (int const n = first + j * step; n < end) put(n, letter[j].value());
+        }
+    }
+};
+/// Of a launch that turns: to the block above and from there.
+struct TurnLetters {
+    Letters up, down;
+    unsigned* launches = nullptr;  // so far, of every block
+
+    __device__ void open() {
+        unsigned const last = launches[blockIdx.x], most = 0xffffffff;
+        up.launch = down.launch = last < most ? last + 1 : 1;
+    }
+    /// By one thread, when its block asks no more.
+    __device__ void close() const { launches[blockIdx.x] = up.launch; }
+};
 
 /// All blocks of a cluster have come here, and see what the others wrote before.
 __device__ inline void meet_cluster() {

@@ -1,4 +1,4 @@
-// Clusters of blocks (compute capability 9.0), and what became of them.
+// Which blocks the present GPU runs at once: clusters (compute capability 9.0) and whole launches, and what became of them.
 #pragma once
 
 #include <atomic>
@@ -9,8 +9,14 @@ namespace catena::cuda {
 /// Whether the present GPU and the kernels that it runs know them: these may be of a build for older GPUs. Precondition: there is a GPU,
 /// and they run.
 bool knows_clusters();
+/// Multiprocessors, and blocks that one launch surely has at once where they find room on one each; 0: a launch cannot ask for
+/// that, or other programs have blocks there at the same time (MPS).
+int multiprocessors();
+int blocks_at_once();
 
 /// Launches so far that took a short chain up and down its tree (cuda/short_launch.cuh).
 inline std::atomic<std::int64_t> short_launches = 0;
+/// And those whose blocks waited for the block above them (cuda/turn_launch.cuh).
+inline std::atomic<std::int64_t> turns_together = 0;
 
 }  // namespace catena::cuda

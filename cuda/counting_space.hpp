@@ -4,7 +4,7 @@
 #include "cuda/memory.hpp"
 #include "dca/host_space.hpp"
 #include "dca/parts.hpp"
-#include "dca/stages.hpp"
+#include "dca/stage_words.hpp"
 
 namespace catena::cuda {
 
@@ -146,19 +146,21 @@ class CountingSpace : public HostAccess {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
              std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records) {
-            constexpr std::int64_t shared_bytes = 227 << 10, together = 8;  // of an H100; others' plans take about as much
-            dca::StagePlan const plan =
-                dca::plan_stages(runs, levels, roots, slots, restricted, dca::stage_sizes(records, shared_bytes, together));
+            constexpr std::int64_t shared_bytes = 227 << 10, at_once = 132;  // of an H100; others' plans take about as much
+            dca::StageSizes const sizes = dca::stage_sizes(records, shared_bytes, at_once);
+            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             count(runs);
+            dca::StagesTogether const together(plan, sizes);
             for (dca::Stage const& stage : plan.stages) {
-                count(stage.items);
-                count(stage.merges);
+                Count::add(static_cast<std::int64_t>(sizeof(dca::StageWord)) * stage.blocks() * dca::layout_of(stage).words());
                 count(stage.roots);
-                for (auto const* handed : {&stage.segments_up, &stage.forces_down}) count(*handed);
-                count(dca::blocks_of(stage));
-                count(dca::level_ends_of(stage));
                 Count::add(static_cast<std::int64_t>(sizeof(double)) * dca::kept_numbers(stage, records));
             }
+            if (!together) return;
+            constexpr std::int64_t of_letter = 16, of_launches = 4;
+            Count::add(of_letter * together.upper->width * records.segment);
+            Count::add(of_letter * together.upper->forces * records.state);
+            Count::add(of_launches * (together.lower->blocks() + 1));
         }
     };
     class ScanTree {

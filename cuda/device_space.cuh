@@ -17,6 +17,7 @@
 #include "cuda/peer_exchange.cuh"
 #include "cuda/short_launch.cuh"
 #include "cuda/stage_walk.cuh"
+#include "cuda/turn_launch.cuh"
 #include "dca/host_space.hpp"
 #include "dca/stages.hpp"
 
@@ -57,46 +58,32 @@ class DeviceSpace {
             dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
-            for (dca::Stage const& stage : plan.stages) stages_.emplace_back(stage, stage.of_runs ? runs_.data() : nullptr, sizes, records);
-            together_ = stages_.size() > 1 && stages_[stages_.size() - 2].blocks <= sizes.together && stages_.back().blocks == 1;
-            if (sizes.together > 0) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
+            dca::StagesTogether const together(plan, sizes);
+            for (dca::Stage const& stage : plan.stages)
+                stages_.emplace_back(stage, together, stage.of_runs ? runs_.data() : nullptr, sizes, records);
+            if (together) turn_ = TurnLaunch(*together.lower, *together.upper, records, most_shared_bytes_);
+            if (knows_clusters()) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
         }
 
       private:
         friend class DeviceSpace;
         struct StageHere {
-            StageHere(dca::Stage const& stage, dca::Run const* runs, dca::StageSizes const& sizes, dca::StageRecords const& records)
-                : items(stage.items),
-                  merges(stage.merges),
+            StageHere(dca::Stage const& stage, dca::StagesTogether const& together, dca::Run const* runs, dca::StageSizes const& sizes,
+                      dca::StageRecords const& records)
+                : words(dca::words_of(stage, together)),
                   roots(stage.roots),
-                  segments_up(stage.segments_up),
-                  forces_down(stage.forces_down),
-                  block(dca::blocks_of(stage)),
-                  level_end(dca::level_ends_of(stage)),
                   kept(static_cast<std::size_t>(dca::kept_numbers(stage, records))),
-                  blocks(static_cast<unsigned>(stage.blocks())),
                   threads(dca::threads_for(stage, sizes)),
                   view{static_cast<unsigned>(stage.blocks()),
-                       stage.levels,
-                       static_cast<int>(stage.width),
                        static_cast<int>(stage.forces),
+                       dca::layout_of(stage),
                        runs,
-                       items.data(),
-                       merges.data(),
+                       words.data(),
                        roots.data(),
-                       segments_up.data(),
-                       forces_down.data(),
-                       block.data(),
-                       level_end.data(),
                        kept.data()} {}
-            Buffer<dca::StageItem> items;
-            Buffer<dca::StageMerge> merges;
+            Buffer<dca::StageWord> words;
             Buffer<dca::StageRoot> roots;
-            Buffer<dca::Handed> segments_up, forces_down;
-            Buffer<dca::StageBlock> block;
-            Buffer<std::int32_t> level_end;
             Buffer<double> kept;
-            unsigned blocks;
             int threads;
             kernels::DeviceStage view;
         };
@@ -104,12 +91,13 @@ class DeviceSpace {
             int device = 0;
             check(cudaGetDevice(&device), "say which it is");
             check(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "say how large it is");
-            return dca::stage_sizes(records, shared_bytes, knows_clusters() ? kernels::most_in_cluster : 0);
+            return dca::stage_sizes(records, shared_bytes, blocks_at_once());
         }
         int most_shared_bytes_ = 0;  // of a block
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;
-        bool runs_apart_ = false, together_ = false;
+        bool runs_apart_ = false;
+        TurnLaunch turn_;
         ShortLaunch short_;
     };
 
@@ -305,29 +293,32 @@ class DeviceSpace {
 
         std::size_t stages() const { return tree.stages_.size(); }
         bool runs_apart() const { return tree.runs_apart_; }
-        bool together() const { return tree.together_; }
         bool takes_runs(std::size_t i) const { return tree.stages_[i].view.runs != nullptr; }
         template <class Sweep>
+        bool together(Sweep const& sweep) const {
+            return tree.turn_ && tree.turn_.fits(kernels::turn_together<Sweep>, grid_of_turn_together(sweep));
+        }
+        template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::climb<Sweep>, tree.stages_[i], sweep);
+            launch(kernels::climb<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
+                   tree.stages_[i].view, sweep);
         }
         template <class Sweep>
         void descend(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::descend<Sweep>, tree.stages_[i], sweep);
+            launch(kernels::descend<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
+                   tree.stages_[i].view, sweep);
         }
-        /// Where two stages are not together blocks know nothing of each other.
         template <class Sweep>
         void turn(std::size_t i, Sweep const& sweep) const {
-            Tree::StageHere const &lower = tree.stages_[i], *const upper = together() ? &tree.stages_[i + 1] : nullptr;
-            int const of_block =
-                kernels::threads_for<Sweep>(std::max(lower.threads, upper ? upper->threads : 0), kernels::threads_of_turn<Sweep>);
-            auto const numbers = [&](Tree::StageHere const& stage) {
-                return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
-            };
-            std::size_t const bytes = sizeof(double) * (numbers(lower) + (upper ? numbers(*upper) : 0));
-            allow_shared(kernels::turn<Sweep>, bytes);
-            cuda::launch({lower.blocks, static_cast<unsigned>(of_block), bytes, upper ? lower.blocks : 0}, space.stream(),
-                         kernels::turn<Sweep>, lower.view, upper ? upper->view : kernels::DeviceStage{}, sweep);
+            launch(kernels::turn<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of_turn<Sweep>, sweep),
+                   tree.stages_[i].view, sweep);
+        }
+        /// Precondition: together(). The last two stages.
+        template <class Sweep>
+        void turn_together(Sweep const& sweep) const {
+            launch(kernels::turn_together<Sweep>, grid_of_turn_together(sweep), tree.stages_[stages() - 2].view, tree.stages_.back().view,
+                   tree.turn_.letters(), sweep);
+            ++turns_together;
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
@@ -349,16 +340,30 @@ class DeviceSpace {
 
       private:
         template <class Sweep>
-        void launch(void (*kernel)(kernels::DeviceStage, Sweep), Tree::StageHere const& stage, Sweep const& sweep) const {
-            int const of_block = kernels::threads_for<Sweep>(stage.threads, kernels::threads_of<Sweep>);
-            std::size_t const bytes = sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block));
-            allow_shared(kernel, bytes);
-            cuda::launch({stage.blocks, static_cast<unsigned>(of_block), bytes}, space.stream(), kernel, stage.view, sweep);
+        static Grid grid_of(Tree::StageHere const& stage, int planned_threads, int most_threads, Sweep const&) {
+            int const of_block = kernels::threads_for<Sweep>(planned_threads, most_threads);
+            return {stage.view.blocks, static_cast<unsigned>(of_block),
+                    sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
+        }
+        template <class Sweep>
+        Grid grid_of_turn_together(Sweep const& sweep) const {
+            Tree::StageHere const &lower = tree.stages_[stages() - 2], &upper = tree.stages_.back();
+            int const planned = std::max(lower.threads, upper.threads);
+            Grid grid = grid_of(lower, planned, kernels::threads_of_turn<Sweep>, sweep);
+            Grid const above = grid_of(upper, planned, kernels::threads_of_turn<Sweep>, sweep);
+            grid.blocks += above.blocks;
+            grid.shared_bytes = std::max(grid.shared_bytes, above.shared_bytes);
+            grid.all_at_once = true;
+            return grid;
+        }
+        template <class... Parameters>
+        void launch(void (*kernel)(Parameters...), Grid const& grid, std::type_identity_t<Parameters> const&... arguments) const {
+            allow_shared(kernel, grid.shared_bytes);
+            cuda::launch(grid, space.stream(), kernel, arguments...);
         }
         template <class Sweep>
         void launch(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
-            allow_shared(kernel, grid.shared_bytes);
-            cuda::launch({grid.blocks, grid.threads, grid.shared_bytes}, space.stream(), kernel, tree.runs_.data(), grid.runs, sweep);
+            launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_.data(), grid.runs, sweep);
         }
     };
     StageWalk<Launches> walk(Tree const& tree) const { return StageWalk<Launches>({*this, tree}); }

@@ -23,4 +23,22 @@ bool knows_clusters() {
     return clusters != 0 && cudaFuncGetAttributes(&attributes, nothing) == cudaSuccess && attributes.ptxVersion >= 90;
 }
 
+int multiprocessors() {
+    int device = 0, count = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaDeviceGetAttribute(&count, cudaDevAttrMultiProcessorCount, device), "say how large it is");
+    return count;
+}
+
+int blocks_at_once() {
+    int device = 0, can = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaDeviceGetAttribute(&can, cudaDevAttrCooperativeLaunch, device), "say whether its blocks run at once");
+    int shared = 0;
+#if CUDART_VERSION >= 12050
+    check(cudaDeviceGetAttribute(&shared, cudaDevAttrMpsEnabled, device), "say whether programs share it");
+#endif
+    return can != 0 && shared == 0 ? multiprocessors() : 0;
+}
+
 }  // namespace catena::cuda

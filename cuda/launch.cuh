@@ -14,7 +14,8 @@ namespace catena::cuda {
 struct Grid {
     unsigned blocks = 0, threads = 0;
     std::size_t shared_bytes = 0;
-    unsigned of_cluster = 0;  // blocks; 0: there are no clusters
+    unsigned of_cluster = 0;   // blocks; 0: there are no clusters
+    bool all_at_once = false;  // blocks wait for each other
 };
 
 /// Whether the GPU, its driver and the kernels that it runs know early launches (compute capability 9.0), and CUDA's graphs keep them.
@@ -37,6 +38,11 @@ class EarlyLaunch {
             cudaLaunchAttribute& cluster = add();
             cluster.id = cudaLaunchAttributeClusterDimension;
             cluster.val.clusterDim = {grid.of_cluster, 1, 1};
+        }
+        if (grid.all_at_once) {
+            cudaLaunchAttribute& at_once = add();
+            at_once.id = cudaLaunchAttributeCooperative;
+            at_once.val.cooperative = 1;
         }
         if (early_launches_are_known()) {
             cudaLaunchAttribute& early = add();
@@ -61,7 +67,7 @@ class EarlyLaunch {
     }
 
   private:
-    cudaLaunchAttribute attributes_[2]{};
+    cudaLaunchAttribute attributes_[3]{};
     cudaLaunchConfig_t config_{};
 };
 

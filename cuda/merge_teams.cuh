@@ -8,6 +8,7 @@
 #include "cuda/cluster.cuh"
 #include "cuda/quick.cuh"
 #include "cuda/run_parts.cuh"
+#include "dca/stage_words.hpp"
 
 namespace catena::cuda::kernels {
 
@@ -45,7 +46,7 @@ class MergeTeam {
     }
 
     /// All lanes of a warp come to these.
-    __device__ void join(Sweep const& sweep, dca::StageMerge const& m, bool works, Segments const& segments, Nodes const& nodes) const {
+    __device__ void join(Sweep const& sweep, dca::BlockMerge const& m, bool works, Segments const& segments, Nodes const& nodes) const {
         Triangle factor;
         Directions inboard, outboard, first, last;  // of the joint and of what is joined: the lane's columns, or its biases
         if (works) {
@@ -71,7 +72,7 @@ class MergeTeam {
         }
     }
     /// The force at the joint, to its place.
-    __device__ void go_down(dca::StageMerge const& m, bool works, Nodes const& nodes, Forces const& forces) const {
+    __device__ void go_down(dca::BlockMerge const& m, bool works, Nodes const& nodes, Forces const& forces) const {
         double of_row = 0;
         if (works) {
             Directions const first = forces.load(m.inboard), next = forces.load(m.next);
@@ -115,7 +116,7 @@ class MergeTeam {
         }
     }
     /// As the sweep's own watch(), a pivot each.
-    __device__ void watch(Sweep const& sweep, dca::StageMerge const& m, Nodes const& nodes) const {
+    __device__ void watch(Sweep const& sweep, dca::BlockMerge const& m, Nodes const& nodes) const {
         if (own_ >= K || own_ >= m.restricted || dca::is_good(nodes.number(m.outboard, Triangle::at(own_, own_)))) return;
         dca::Lost lost;
         lost.add(m.joint);
@@ -128,7 +129,7 @@ class MergeTeam {
         return c;
     }
     /// As append(), a column of the matrices or the biases. Columns of the joint's are read when they are wanted: registers are few.
-    __device__ void put_joined(Nodes const& nodes, dca::StageMerge const& m, Directions const& of_inboard, Directions const& of_outboard,
+    __device__ void put_joined(Nodes const& nodes, dca::BlockMerge const& m, Directions const& of_inboard, Directions const& of_outboard,
                                Segments const& segments, Directions first, Directions last) const {
         Directions through;
         CATENA_UNROLL

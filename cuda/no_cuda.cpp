@@ -19,6 +19,8 @@ std::string choose_device(Communicator const&) { return why_not(); }
 int most_ranks_of_a_gpu(Communicator const&) { throw ComputationError(why_not()); }
 std::int64_t free_memory(Communicator const&) { throw ComputationError(why_not()); }
 bool knows_clusters() { throw ComputationError(why_not()); }
+int multiprocessors() { throw ComputationError(why_not()); }
+int blocks_at_once() { throw ComputationError(why_not()); }
 std::int64_t stacks(std::int64_t) { throw ComputationError(why_not()); }
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }
 

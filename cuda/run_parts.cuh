@@ -2,13 +2,14 @@
 // takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
+#include "cuda/quick.cuh"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::cuda::kernels {
 
 __device__ inline std::int64_t thread() { return static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x; }
 
-extern __shared__ double shared_numbers[];
+alignas(16) extern __shared__ double shared_numbers[];
 
 /// Records in a block's shared memory, number after number: neither neighbouring threads nor those a power of two apart meet in a bank.
 template <class T>
@@ -18,6 +19,7 @@ struct SharedRecords {
     static constexpr __host__ __device__ std::size_t size(int count) { return static_cast<std::size_t>(numbers) * pitch_for(count); }
     double* origin;
     int pitch;
+    __device__ double& number(int i, int n) const { return origin[i + i / 16 + n * pitch]; }
     __device__ void store(int i, T const& record) const {
         auto const values = __builtin_bit_cast(Numbers, record);
         double* const first = origin + i + i / 16;
@@ -62,16 +64,38 @@ struct PackedRecords {
 
 /// put(i, get(i)) for i from `begin` in steps to the end, so many of them read before any is put: memory may be far.
 template <int at_once, class Get, class Put>
-__device__ void move_numbers(int begin, int end, int step, Get const& get, Put const& put) {
+__device__ void move_some(int begin, int end, int step, Get const& get, Put const& put) {
     for (int first = begin; first < end; first += at_once * step) {
-        double number[at_once] = {};
+        decltype(get(first)) value[at_once] = {};
         CATENA_UNROLL
         for (int i = 0; i < at_once; ++i)
-            if (first + i * step < end) number[i] = get(first + i * step);
+            if (first + i * step < end) value[i] = get(first + i * step);
         CATENA_UNROLL
         for (int i = 0; i < at_once; ++i)
-            if (first + i * step < end) put(first + i * step, number[i]);
+            if (first + i * step < end) put(first + i * step, value[i]);
     }
+}
+
+/// A sweep that takes factors of ours (Evaluation). As joined() and part() of any, in fewer instructions where it does.
+template <class Sweep>
+concept takes_factors = requires(Sweep const& sweep, typename Sweep::Segment const& segment, typename Sweep::Node& node) {
+    sweep.joined(segment, segment, dca::JointAt{}, node, QuickFactors<Sweep::K == 1>{});
+};
+template <class Sweep>
+__device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename Sweep::Segment const& inboard,
+                                                  typename Sweep::Segment const& outboard, dca::JointAt const& at,
+                                                  typename Sweep::Node& node) {
+    if constexpr (takes_factors<Sweep>)
+        return sweep.joined(inboard, outboard, at, node, QuickFactors<Sweep::K == 1>{});
+    else
+        return sweep.joined(inboard, outboard, at, node);
+}
+template <class Sweep>
+__device__ typename Sweep::Segment part_quickly(Sweep const& sweep, dca::Run const& run, int p, typename Sweep::Part const& part) {
+    if constexpr (takes_factors<Sweep>)
+        return sweep.part(run, p, part, QuickFactors<Sweep::K == 1>{});
+    else
+        return sweep.part(run, p, part);
 }
 
 /// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
@@ -111,7 +135,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
     Segment segment;
     if (mine.part < count) {
         part = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
-        segment = sweep.part(run, mine.part, part);
+        segment = part_quickly(sweep, run, mine.part, part);
     }
     if (mine.part > 0 && mine.part < count) parts.store(static_cast<int>(threadIdx.x), segment);
     __syncthreads();
@@ -125,7 +149,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
             dca::JointAt const at{dca::begin_of(run, p), static_cast<int>(restricted >> (8 * p) & 255)};
             if constexpr (nodes_stay && Sweep::keeps_nodes) {
                 typename Sweep::Node node;
-                segment = sweep.joined(segment, parts.load(there), at, node);
+                segment = joined_quickly(sweep, segment, parts.load(there), at, node);
                 NodesOfParts<Sweep>{memory, parts.pitch}.store(there, node);
             } else {
                 segment = sweep.joined(segment, parts.load(there), at);

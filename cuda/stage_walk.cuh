@@ -7,8 +7,8 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages(), runs_apart() and together() of a tree (StagePlan, StageSizes), takes_runs(i), whether stage i does; climb(i,
-/// sweep), descend(i, sweep) and turn(i, sweep) of stage i, with the next one where together(); climb_runs(sweep) and descend_runs(sweep).
+/// `Launches`: stages() and runs_apart() of a tree (StagePlan), takes_runs(i), whether stage i does; climb(i, sweep), descend(i, sweep) and
+/// turn(i, sweep) of stage i, turn_together(sweep) of the last two where together(sweep); climb_runs(sweep) and descend_runs(sweep).
 template <class Launches>
 class StageWalk {
   public:
@@ -36,14 +36,18 @@ class StageWalk {
     // segments and biases at once.
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
-        std::size_t const apart = launches_.stages() - (launches_.together() ? 2 : 1);
+        bool const together = launches_.together(sweep);
+        std::size_t const apart = launches_.stages() - (together ? 2 : 1);
         if constexpr (kernels::merges_by_teams<Sweep>)
             if (launches_.takes_runs(apart)) {
                 climb_stages(launches_.stages(), sweep.matrices());
                 return turn_stages(sweep.biases());
             }
         climb_stages(apart, sweep);
-        launches_.turn(apart, sweep);
+        if (together)
+            launches_.turn_together(sweep);
+        else
+            launches_.turn(apart, sweep);
         descend_stages(apart, sweep);
     }
     /// Of the first `stages` stages.

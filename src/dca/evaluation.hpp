@@ -226,9 +226,10 @@ struct Evaluation {
     CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
         return bodies.part(begin, end, inverse_length);
     }
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part) const {
+    template <class Factors = dca::Factors>
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part, Factors const& factors = {}) const {
         std::int64_t const begin = begin_of(run, p);
-        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, Factors{});
+        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, factors);
     }
     /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
     /// `factors`: as factorize(), if not always.

@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <bit>
+#include <unordered_map>
 
 namespace catena::dca {
 namespace {
 
 /// So many runs keep a GPU busy with one thread each and no help from others.
 constexpr std::int64_t many_runs = 16384;
-/// Runs that are worth a block of their own.
-constexpr std::int64_t fewest_of_block = 8;
+/// Runs that are worth a block of their own, where blocks have that many threads.
+constexpr std::int64_t fewest_of_block = 32;
 
 std::int64_t bit_ceil(std::int64_t n) {
     return static_cast<std::int64_t>(std::bit_ceil(static_cast<std::uint64_t>(std::max<std::int64_t>(n, 1))));
@@ -53,11 +54,14 @@ class Planner {
         return slots;
     }
 
-    /// All levels from `level` on, up to `most` items to a block.
-    void add_upper(int level, std::int64_t most, std::vector<Stage>& stages) {
+    /// All levels from `level` on, up to `most` items to a block. More than that are halved, level by level, where `together` blocks do.
+    void add_upper(int level, std::int64_t most, std::int64_t together, std::vector<Stage>& stages) {
         for (std::vector<std::int64_t> left = needed(level, end()); !left.empty(); left = needed(level, end())) {
-            int const end_level = std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(most));
-            stages.push_back(stage(needed(level, end_level), most, level, end_level));
+            std::int64_t width = most;
+            for (std::int64_t half = most / 2; half * half >= std::ssize(left) && half * together >= std::ssize(left); half /= 2)
+                width = half;
+            int const end_level = std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(width));
+            stages.push_back(stage(needed(level, end_level), end_level == end() ? most : width, level, end_level));
             level = end_level;
         }
     }
@@ -199,17 +203,26 @@ class Planner {
     std::vector<std::int64_t> root_of_;  // by slot
 };
 
-/// Of the first stage's blocks.
-std::int64_t width_of_runs(std::int64_t runs, bool apart, StageSizes const& sizes) {
+/// Of a block with a thread for every part.
+std::int64_t runs_at_once(StageSizes const& sizes) { return std::max<std::int64_t>(1, sizes.threads / parts_of_run); }
+/// Whether trees of so many levels find place in it.
+bool are_low(int levels, StageSizes const& sizes) { return levels <= levels_above(std::min(sizes.most, runs_at_once(sizes))); }
+/// More than so many go before all stages.
+std::int64_t most_in_stage(int levels, StageSizes const& sizes) {
+    return sizes.together == 0 || are_low(levels, sizes) ? many_runs : std::min(many_runs, sizes.together * runs_at_once(sizes));
+}
+/// Of the first stage's blocks, under so many levels.
+std::int64_t width_of_runs(std::int64_t runs, bool apart, int levels, StageSizes const& sizes) {
     if (apart) {
         if (sizes.at_once > 0 && runs <= sizes.most) return std::max<std::int64_t>(2, bit_ceil(runs));
         std::int64_t width = std::min(sizes.most, 2 * (sizes.at_once > 0 ? sizes.at_once : sizes.threads));
         while (width < sizes.most && runs / width > sizes.most * sizes.together) width *= 2;
         return width;
     }
-    std::int64_t const at_once = std::max<std::int64_t>(1, sizes.threads / parts_of_run);
-    bool const small = runs <= sizes.together * at_once;
-    return std::min(sizes.most, small ? std::max(fewest_of_block, bit_ceil((runs - 1) / sizes.together + 1)) : at_once);
+    std::int64_t const at_once = runs_at_once(sizes);
+    bool const few = runs <= sizes.together * at_once && !are_low(levels, sizes);
+    std::int64_t const of_block = few ? std::max(fewest_of_block, bit_ceil((runs - 1) / sizes.together + 1)) : at_once;
+    return std::min({sizes.most, at_once, of_block});
 }
 
 ScanStage scan_stage_of(Stage const& stage) {
@@ -234,22 +247,52 @@ ScanStage scan_stage_of(Stage const& stage) {
     return s;
 }
 
+PlacesAbove places_above(Stage const& lower, Stage const& upper) {
+    std::unordered_map<std::int64_t, std::int32_t> item_of, place_of;
+    for (std::size_t i = 0; i < upper.items.size(); ++i) {
+        item_of[upper.items[i].slot] = static_cast<std::int32_t>(i);
+        place_of[upper.items[i].joint] = static_cast<std::int32_t>(i);
+    }
+    for (Handed const& down : upper.forces_down) place_of[down.at] = down.place;
+    auto const place = [](auto const& places, std::int64_t at) {
+        auto const found = places.find(at);
+        return found == places.end() ? -1 : found->second;
+    };
+    PlacesAbove above;
+    for (Handed const& up : lower.segments_up) above.segment.push_back(place(item_of, up.at));
+    for (Handed const& down : lower.forces_down) above.force.push_back(place(place_of, down.at));
+    above.comes_from_below.resize(upper.items.size());
+    for (std::int32_t const item : above.segment)
+        if (item >= 0) above.comes_from_below[static_cast<std::size_t>(item)] = 1;
+    return above;
+}
+
 }  // namespace
 
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
                       std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes) {
     Planner planner(runs, levels, roots, slots, restricted);
     StagePlan plan;
-    plan.runs_apart = !runs.empty() && (sizes.runs_apart || std::ssize(runs) > many_runs);
+    plan.runs_apart = !runs.empty() && (sizes.runs_apart || std::ssize(runs) > most_in_stage(planner.end(), sizes));
     int level = 0;
     if (!runs.empty()) {
-        std::int64_t const width = width_of_runs(std::ssize(runs), plan.runs_apart, sizes);
+        std::int64_t const width = width_of_runs(std::ssize(runs), plan.runs_apart, planner.end(), sizes);
         level = std::ssize(runs) <= width ? planner.end() : std::min(planner.end(), levels_above(width));
         plan.stages.push_back(planner.stage(planner.runs(), width, 0, level));
         plan.stages.back().of_runs = !plan.runs_apart;
     }
-    planner.add_upper(level, sizes.most, plan.stages);
+    planner.add_upper(level, sizes.most, sizes.together, plan.stages);
     return plan;
+}
+
+StagesTogether::StagesTogether(StagePlan const& plan, StageSizes const& sizes) {
+    if (plan.stages.size() < 2 || plan.stages.back().blocks() != 1) return;
+    Stage const& below = plan.stages[plan.stages.size() - 2];
+    if (below.blocks() > sizes.together) return;
+    places = places_above(below, plan.stages.back());
+    // Units that other ranks want are complete already.
+    if (std::find(places.segment.begin(), places.segment.end(), -1) != places.segment.end()) return;
+    lower = &below, upper = &plan.stages.back();
 }
 
 std::vector<ScanStage> plan_scan(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels,
@@ -262,7 +305,7 @@ std::vector<ScanStage> plan_scan(std::vector<Run> const& runs, std::vector<std::
         stages.push_back(planner.stage(planner.runs(), most, 0, level));
         stages.back().of_runs = true;
     }
-    planner.add_upper(level, most, stages);
+    planner.add_upper(level, most, 0, stages);
     std::vector<ScanStage> plan;
     for (Stage const& stage : stages) plan.push_back(scan_stage_of(stage));
     return plan;
@@ -285,9 +328,9 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
     return ends;
 }
 
-StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t together) {
-    std::int64_t const numbers = records.segment + 2 * records.state + 4;  // and of a merge, of an item
-    StageSizes sizes{records.threads, 2, together, records.whole_runs, records.at_once};
+StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t at_once) {
+    std::int64_t const numbers = records.segment + 2 * records.state + 10;  // and of a merge, of an item, of what is handed over
+    StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs, records.at_once};
     auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.
@@ -295,7 +338,8 @@ StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, s
         constexpr std::int64_t ranges = 16;
         return bytes(threads / parts_of_run) + 8 * (records.segment * (threads + threads / 16 + 1) + ranges);
     };
-    while (sizes.threads > fewest_of_block * parts_of_run && of_runs(sizes.threads) > shared_bytes) sizes.threads /= 2;
+    constexpr std::int64_t fewest_threads = 32;
+    while (sizes.threads > fewest_threads && of_runs(sizes.threads) > shared_bytes) sizes.threads /= 2;
     return sizes;
 }
 

@@ -62,6 +62,13 @@ std::vector<StageBlock> blocks_of(Stage const&);
 /// Of every block and level: where its merges end among the block's.
 std::vector<std::int32_t> level_ends_of(Stage const&);
 
+/// Where a stage has what the one below gives away and is given.
+struct PlacesAbove {
+    std::vector<std::int32_t> segment;           // of all segments_up: the item
+    std::vector<std::int32_t> force;             // of all forces_down: the force's place; -1: it comes from elsewhere
+    std::vector<std::uint8_t> comes_from_below;  // of all items above: whether the stage below gives it, and not one before
+};
+
 struct StagePlan {
     std::vector<Stage> stages;  // from the leaves up
     bool runs_apart = false;    // runs come before all stages, which find them in their slots
@@ -70,7 +77,7 @@ struct StagePlan {
 struct StageSizes {
     std::int64_t threads = 0;   // of a block
     std::int64_t most = 0;      // items of a block, 2 or more
-    std::int64_t together = 0;  // blocks that one launch takes through two stages
+    std::int64_t together = 0;  // blocks that run at once beside one of the stage above: one launch takes all of them up and down
     bool runs_apart = false;    // also where they are few
     std::int64_t at_once = 0;   // merges that keep a block busy; 0: one for each of its threads
 };
@@ -97,8 +104,8 @@ constexpr StageRecords stage_records(int directions, bool evaluates, bool whole_
 CATENA_HD constexpr std::int64_t packed_numbers(int numbers, std::int64_t count) { return (numbers | 1) * count + count / 16 + 1; }
 /// That a stage keeps for its way down: none where its items are runs, which no threads share.
 std::int64_t kept_numbers(Stage const&, StageRecords const&);
-/// Of a GPU whose blocks may share so many bytes, in clusters of so many.
-StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t together);
+/// Of a GPU whose blocks may share so many bytes, and which runs so many blocks at once.
+StageSizes stage_sizes(StageRecords const&, std::int64_t shared_bytes, std::int64_t at_once);
 /// That a stage needs.
 int threads_for(Stage const&, StageSizes const&);
 
@@ -106,6 +113,14 @@ int threads_for(Stage const&, StageSizes const&);
 /// joint.
 StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merge>> const& levels, std::vector<Root> const& roots,
                       std::int64_t slots, std::span<std::uint8_t const> restricted, StageSizes const& sizes);
+
+/// The last two stages of a plan, where one launch takes both up and down again; else nothing.
+struct StagesTogether {
+    StagesTogether(StagePlan const&, StageSizes const&);
+    explicit operator bool() const { return lower != nullptr; }
+    Stage const *lower = nullptr, *upper = nullptr;  // of the plan
+    PlacesAbove places;
+};
 
 /// A scan's launches, as a sweep's stages: values of segments join on the way up, what lies before them is handed out on the way down.
 /// The joined value takes the inboard one's place, and that the outboard one's, which needs it on the way down.

@@ -1,4 +1,4 @@
-#include "dca/stages.hpp"
+#include "dca/stage_words.hpp"
 
 #include <gtest/gtest.h>
 
@@ -60,7 +60,10 @@ class Walk {
         EXPECT_EQ(made, static_cast<std::int64_t>(merges));
         for (SharedUnit const& unit : s.shared)
             EXPECT_TRUE(runs.empty() || unit.source < 0 || segment_[index(unit.source)].first >= 0) << "not there for other ranks";
+        StagesTogether const together(plan_, sizes_);
+        for (std::int32_t const item : together.places.segment) EXPECT_TRUE(!together || item >= 0);
         for (Stage const& stage : plan_.stages) {
+            EXPECT_EQ(std::ssize(words_of(stage, together)), stage.blocks() * layout_of(stage).words());
             EXPECT_LE(stage.width, sizes.most);
             EXPECT_LE(stage.forces, 2 * stage.width);
         }
@@ -210,8 +213,8 @@ std::vector<std::int64_t> with_short_ones(std::int64_t bodies, std::int64_t of_s
 INSTANTIATE_TEST_SUITE_P(Scenes, Stages,
                          ::testing::Values(std::vector<std::int64_t>{1}, std::vector<std::int64_t>{3}, std::vector<std::int64_t>{257},
                                            std::vector<std::int64_t>{4099}, std::vector<std::int64_t>{1000001},
-                                           std::vector<std::int64_t>{7, 300, 2, 1000}, std::vector<std::int64_t>(3000, 140),
-                                           with_short_ones(4128, 8), with_short_ones(300000, 16)));
+                                           std::vector<std::int64_t>{7, 300, 2, 1000}, std::vector<std::int64_t>{5000, 70, 4100},
+                                           std::vector<std::int64_t>(3000, 140), with_short_ones(4128, 8), with_short_ones(300000, 16)));
 
 /// With a segment a thread for the parts of runs.
 TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
@@ -219,7 +222,7 @@ TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
         for (StageRecords const& records :
              {stage_records(1, true), stage_records(2, true), stage_records(3, true), stage_records(4, true), stage_records(5, true),
               stage_records(6, false), ArticulatedSweeps<ArticulatedLeaf<false>>::in_stage}) {
-            StageSizes const sizes = stage_sizes(records, shared_bytes, 8);
+            StageSizes const sizes = stage_sizes(records, shared_bytes, 0);
             Schedule const s = make_schedule(Partition({100000}, false, 1), 0);
             Stage const stage = plan_stages(s.runs, s.levels, s.roots, s.slots, restricted(s), sizes).stages.front();
             ASSERT_TRUE(stage.of_runs);
@@ -230,20 +233,21 @@ TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
         }
 }
 
-TEST(Stages, OneLaunchForSmallChainsAndFiveForAny) {
-    /// Launches of a sweep up and down, on a GPU with clusters.
+TEST(Stages, OneLaunchUpToAHundredThousandBodiesAndFiveForAny) {
+    /// Launches of a sweep up and down, on a GPU of which so many blocks run at once.
     auto const launches = [](std::vector<std::int64_t> const& lengths, int directions) {
-        StageSizes const sizes = stage_sizes(stage_records(directions, directions < 6), 232448, 8);
+        StageSizes const sizes = stage_sizes(stage_records(directions, directions < 6), 232448, 132);
         Schedule const s = make_schedule(Partition(lengths, false, 1), 0);
         StagePlan const plan = plan_stages(s.runs, s.levels, s.roots, s.slots, restricted(s), sizes);
-        bool const together = plan.stages.size() > 1 && plan.stages[plan.stages.size() - 2].blocks() <= sizes.together;
-        return 2 * (std::ssize(plan.stages) - (together ? 2 : 1) + (plan.runs_apart ? 1 : 0)) + 1;
+        return 2 * (std::ssize(plan.stages) - (StagesTogether(plan, sizes) ? 2 : 1) + (plan.runs_apart ? 1 : 0)) + 1;
     };
     for (int const directions : {1, 3}) {
         EXPECT_EQ(launches({1}, directions), 1);
         EXPECT_EQ(launches({8192}, directions), 1);
         EXPECT_EQ(launches(std::vector<std::int64_t>(100, 140), directions), 1);
-        EXPECT_LE(launches({1 << 20}, directions), 5);
+        EXPECT_EQ(launches({1 << 17}, directions), 1);
+        for (std::int64_t runs = 131 * 64 - 1; runs <= 132 * 64 + 1; ++runs) EXPECT_LE(launches({16 * runs}, directions), 3);
+        EXPECT_EQ(launches({1 << 20}, directions), 3);
         EXPECT_LE(launches({1 << 24}, directions), 5);
     }
     EXPECT_EQ(launches({4096}, 6), 1);

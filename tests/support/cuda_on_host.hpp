@@ -1,6 +1,7 @@
 // CUDA's words for a host compiler, so that kernels run where there is no GPU. A block is a thread of the host and its threads are fibers
 // of that: from barrier to barrier they go one after the other, each time in another order, and what passes between them without a barrier
-// comes too late for some. Blocks of a cluster go side by side. The thread sanitizer takes every fiber for a thread.
+// comes too late for some. Blocks of a cluster, or that wait for each other, go side by
+// side. The thread sanitizer takes every fiber for a thread.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -75,8 +76,8 @@ constexpr std::size_t numbers_to_see_overruns = 64;
 inline constinit thread_local catena::cuda_on_host::Index threadIdx{}, blockIdx{}, blockDim{}, gridDim{};
 
 namespace catena::cuda::kernels {
-inline constinit thread_local double
-    shared_numbers[cuda_on_host::most_shared_bytes / sizeof(double) + cuda_on_host::numbers_to_see_overruns]{};
+alignas(16) inline constinit thread_local double shared_numbers[cuda_on_host::most_shared_bytes / sizeof(double) +
+                                                                cuda_on_host::numbers_to_see_overruns]{};
 }  // namespace catena::cuda::kernels
 
 namespace catena::cuda_on_host {
@@ -232,8 +233,9 @@ inline constinit thread_local Letters* letters = nullptr;
 
 struct Launch {
     unsigned blocks = 0, threads = 0;
-    std::size_t numbers = 0;  // of shared memory
-    unsigned cluster = 1;
+    std::size_t numbers = 0;   // of shared memory
+    unsigned cluster = 1;      // blocks that meet
+    bool all_at_once = false;  // blocks wait for each other
 };
 
 /// Block `b`. Its shared memory is full of NaN at first.
@@ -255,7 +257,7 @@ void launch(Launch const& grid, void (*kernel)(Parameters...), std::type_identit
     ASSERT_LE(grid.numbers * sizeof(double), most_shared_bytes);
     ASSERT_TRUE(grid.cluster == 1 || grid.cluster == grid.blocks);
     std::function<void()> const of_thread = [&] { kernel(parameters...); };
-    unsigned const workers = grid.cluster > 1 ? grid.cluster : std::min(grid.blocks, 2U);
+    unsigned const workers = grid.all_at_once ? grid.blocks : grid.cluster > 1 ? grid.cluster : std::min(grid.blocks, 2U);
     std::barrier<> cluster(workers);
     Letters here(grid.blocks);
     std::vector<std::jthread> threads;
@@ -279,6 +281,8 @@ template <class T>
 T __shfl_sync(unsigned, T value, int lane, int line = __builtin_LINE()) {
     return static_cast<T>(catena::cuda_on_host::Block::of_lane(static_cast<double>(value), lane, line));
 }
+inline double __longlong_as_double(long long bits) { return std::bit_cast<double>(bits); }
+inline long long __double_as_longlong(double value) { return std::bit_cast<long long>(value); }
 namespace catena::cuda::kernels {
 
 class Inbox {
@@ -300,6 +304,21 @@ class Inbox {
 
   private:
     static inline thread_local int expected_ = 0;
+};
+struct LetterBox {
+    struct Halves {
+        unsigned long long lower = 0, upper = 0;
+    };
+    std::atomic<unsigned long long> memory[2];
+
+    void put(Halves const& halves) {
+        memory[0].store(halves.lower, std::memory_order_relaxed);
+        memory[1].store(halves.upper, std::memory_order_relaxed);
+    }
+    Halves get() const {
+        std::this_thread::yield();  // other blocks are on their way
+        return {memory[0].load(std::memory_order_relaxed), memory[1].load(std::memory_order_relaxed)};
+    }
 };
 inline void arrive_at_cluster() {}
 inline void wait_for_cluster(int line = __builtin_LINE()) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 #include <set>
 
 #include "dca/tree_solver.hpp"
@@ -14,6 +15,7 @@
 #include "cuda/stage_walk.cuh"
 
 namespace catena::test {
+namespace kernels = cuda::kernels;
 
 struct StagedGpu {
     dca::StageSizes sizes;
@@ -24,7 +26,7 @@ struct StagedGpu {
 };
 /// In launches so far.
 struct StagesSeen {
-    std::set<unsigned> blocks_of_clusters;
+    std::set<unsigned> blocks_that_turn;
     std::size_t most_stages = 0;
     std::set<unsigned> blocks_of_short_chains;
     int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0;
@@ -51,13 +53,19 @@ class StageSpace : public HostSpace {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
-            if (gpu.short_chains) short_ = cuda::kernels::short_chain_of(runs, levels, roots);
+            if (gpu.short_chains) short_ = kernels::short_chain_of(runs, levels, roots);
+            together_.emplace(plan_, sizes_);
             for (dca::Stage const& stage : plan_.stages) {
-                blocks_.push_back(dca::blocks_of(stage));
-                level_ends_.push_back(dca::level_ends_of(stage));
+                words_.push_back(dca::words_of(stage, *together_));
                 kept_.emplace_back(dca::kept_numbers(stage, records));
             }
+            if (!*together_) return;
+            up_ = std::vector<kernels::LetterBox>(static_cast<std::size_t>(together_->upper->width * records.segment));
+            down_ = std::vector<kernels::LetterBox>(static_cast<std::size_t>(together_->upper->forces * records.state));
+            launches_.resize(static_cast<std::size_t>(together_->lower->blocks() + 1));
         }
+        Tree(Tree&&) = default;  // what is of the plan stays where it is
+        Tree& operator=(Tree&&) = delete;
 
       private:
         friend class StageSpace;
@@ -66,10 +74,12 @@ class StageSpace : public HostSpace {
         int threads_;
         std::size_t shared_bytes_ = gpu.shared_bytes;
         dca::StagePlan plan_;
-        cuda::kernels::ShortChain short_;
-        std::vector<std::vector<dca::StageBlock>> blocks_;  // of every stage
-        std::vector<std::vector<std::int32_t>> level_ends_;
+        kernels::ShortChain short_;
+        std::optional<dca::StagesTogether> together_;
+        std::vector<std::vector<dca::StageWord>> words_;  // of every stage
         mutable std::vector<std::vector<double>> kept_;
+        mutable std::vector<kernels::LetterBox> up_, down_;
+        mutable std::vector<unsigned> launches_;
     };
 
     template <class Sweep>
@@ -90,28 +100,22 @@ class StageSpace : public HostSpace {
     }
 
   private:
-    static cuda::kernels::DeviceStage view(Tree const& tree, dca::Stage const& stage) {
+    static kernels::DeviceStage view(Tree const& tree, dca::Stage const& stage) {
         auto const which = static_cast<std::size_t>(&stage - tree.plan_.stages.data());
         return {static_cast<unsigned>(stage.blocks()),
-                stage.levels,
-                static_cast<int>(stage.width),
                 static_cast<int>(stage.forces),
+                dca::layout_of(stage),
                 stage.of_runs ? tree.runs_.data() : nullptr,
-                stage.items.data(),
-                stage.merges.data(),
+                tree.words_[which].data(),
                 stage.roots.data(),
-                stage.segments_up.data(),
-                stage.forces_down.data(),
-                tree.blocks_[which].data(),
-                tree.level_ends_[which].data(),
                 tree.kept_[which].data()};
     }
     template <class Sweep>
-    static bool turn_short(cuda::kernels::ShortChain const& chain, Sweep const& sweep) {
-        cuda::kernels::ShortGrid const grid = cuda::kernels::grid_of_short<Sweep>(chain);
+    static bool turn_short(kernels::ShortChain const& chain, Sweep const& sweep) {
+        kernels::ShortGrid const grid = kernels::grid_of_short<Sweep>(chain);
         if (grid.shared_bytes > cuda_on_host::most_shared_bytes) return false;
         seen.blocks_of_short_chains.insert(grid.blocks);
-        cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks}, cuda::kernels::turn_short<Sweep>,
+        cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks}, kernels::turn_short<Sweep>,
                              chain, sweep);
         return true;
     }
@@ -121,53 +125,61 @@ class StageSpace : public HostSpace {
 
         std::size_t stages() const { return tree.plan_.stages.size(); }
         bool runs_apart() const { return tree.plan_.runs_apart; }
-        bool together() const {
-            auto const& stages = tree.plan_.stages;
-            return stages.size() > 1 && stages[stages.size() - 2].blocks() <= tree.sizes_.together && stages.back().blocks() == 1;
-        }
         bool takes_runs(std::size_t i) const { return stage(i).of_runs; }
         template <class Sweep>
+        bool together(Sweep const&) const {
+            return static_cast<bool>(*tree.together_);
+        }
+        template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
-            launch(cuda::kernels::climb<Sweep>, stage(i), sweep);
+            launch(kernels::climb<Sweep>, stage(i), sweep);
         }
         template <class Sweep>
         void descend(std::size_t i, Sweep const& sweep) const {
-            launch(cuda::kernels::descend<Sweep>, stage(i), sweep);
+            launch(kernels::descend<Sweep>, stage(i), sweep);
         }
         template <class Sweep>
         void turn(std::size_t i, Sweep const& sweep) const {
             see_stages();
-            bool const two = together();
-            int const threads = cuda::kernels::threads_for<Sweep>(std::max(threads_for(stage(i)), two ? threads_for(stage(i + 1)) : 0),
-                                                                  cuda::kernels::threads_of_turn<Sweep>);
-            auto const here = view(tree, stage(i)), above = two ? view(tree, stage(i + 1)) : cuda::kernels::DeviceStage{};
-            if (two)
-                seen.blocks_of_clusters.insert(here.blocks);
-            else
-                ++seen.turns_alone;
-            cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads),
-                                  numbers<Sweep>(here, threads) + (two ? numbers<Sweep>(above, threads) : 0), two ? here.blocks : 1},
-                                 cuda::kernels::turn<Sweep>, here, above, sweep);
+            ++seen.turns_alone;
+            int const threads = kernels::threads_for<Sweep>(threads_for(stage(i)), kernels::threads_of_turn<Sweep>);
+            auto const here = view(tree, stage(i));
+            cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernels::turn<Sweep>, here,
+                                 sweep);
+        }
+        template <class Sweep>
+        void turn_together(Sweep const& sweep) const {
+            see_stages();
+            dca::Stage const &lower = *tree.together_->lower, &upper = *tree.together_->upper;
+            auto const of = [&](dca::Stage const& one) {
+                return kernels::threads_for<Sweep>(threads_for(one), kernels::threads_of_turn<Sweep>);
+            };
+            int const threads = std::max(of(lower), of(upper));
+            auto const here = view(tree, lower), above = view(tree, upper);
+            seen.blocks_that_turn.insert(here.blocks);
+            kernels::TurnLetters const letters{
+                {tree.up_.data(), above.layout.items}, {tree.down_.data(), above.forces}, tree.launches_.data()};
+            cuda_on_host::launch({here.blocks + 1, static_cast<unsigned>(threads),
+                                  std::max(numbers<Sweep>(here, threads), numbers<Sweep>(above, threads)), 1, true},
+                                 kernels::turn_together<Sweep>, here, above, letters, sweep);
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = std::ssize(tree.runs_);
             if constexpr (dca::takes_whole_runs<Sweep>)
-                if (cuda::kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
+                if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
                     ++seen.teams;
-                    return over_runs(cuda::kernels::climb_runs_by_teams<Sweep>,
-                                     cuda::kernels::grid_of_teams<cuda::kernels::BodyAhead>(runs), sweep);
+                    return over_runs(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
                 }
-            over_runs(cuda::kernels::climb_runs<Sweep>, cuda::kernels::grid_of_climb<Sweep>(runs), sweep);
+            over_runs(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs), sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = std::ssize(tree.runs_);
             if constexpr (dca::takes_whole_runs<Sweep>)
-                if (cuda::kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
-                    return over_runs(cuda::kernels::descend_runs_by_teams<Sweep>,
-                                     cuda::kernels::grid_of_teams<cuda::kernels::HingeBehind>(runs), sweep);
-            over_runs(cuda::kernels::descend_runs<Sweep>, cuda::kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_), sweep);
+                if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
+                    return over_runs(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
+            over_runs(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_), sweep);
         }
 
       private:
@@ -181,19 +193,18 @@ class StageSpace : public HostSpace {
             seen.most_stages = std::max(seen.most_stages, stages());
         }
         template <class Sweep>
-        static std::size_t numbers(cuda::kernels::DeviceStage const& stage, int of_threads) {
-            return static_cast<std::size_t>(cuda::kernels::BlockOfStage<Sweep>::size(stage, of_threads));
+        static std::size_t numbers(kernels::DeviceStage const& stage, int of_threads) {
+            return static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage, of_threads));
         }
         template <class Sweep>
-        void launch(void (*kernel)(cuda::kernels::DeviceStage, Sweep), dca::Stage const& stage, Sweep const& sweep) const {
+        void launch(void (*kernel)(kernels::DeviceStage, Sweep), dca::Stage const& stage, Sweep const& sweep) const {
             see_stages();
-            int const threads = cuda::kernels::threads_for<Sweep>(threads_for(stage), cuda::kernels::threads_of<Sweep>);
+            int const threads = kernels::threads_for<Sweep>(threads_for(stage), kernels::threads_of<Sweep>);
             auto const here = view(tree, stage);
             cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
         }
         template <class Sweep>
-        void over_runs(void (*kernel)(dca::Run const*, std::int64_t, Sweep), cuda::kernels::RunsGrid const& grid,
-                       Sweep const& sweep) const {
+        void over_runs(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
             cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_.data(), grid.runs,
                                  sweep);
         }
