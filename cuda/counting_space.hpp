@@ -158,9 +158,9 @@ class CountingSpace : public HostAccess {
             }
             if (!together) return;
             constexpr std::int64_t of_letter = 16, of_launches = 4;
-            Count::add(of_letter * together.upper->width * records.segment);
-            Count::add(of_letter * together.upper->forces * records.state);
-            Count::add(of_launches * (together.lower->blocks() + 1));
+            Count::add(of_letter * static_cast<std::int64_t>(together.numbers_up(records)));
+            Count::add(of_letter * static_cast<std::int64_t>(together.numbers_down(records)));
+            Count::add(of_launches * static_cast<std::int64_t>(together.blocks()));
         }
     };
     class ScanTree {

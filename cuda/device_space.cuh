@@ -61,7 +61,7 @@ class DeviceSpace {
             dca::StagesTogether const together(plan, sizes);
             for (dca::Stage const& stage : plan.stages)
                 stages_.emplace_back(stage, together, stage.of_runs ? runs_.data() : nullptr, sizes, records);
-            if (together) turn_ = TurnLaunch(*together.lower, *together.upper, records, most_shared_bytes_);
+            if (together) turn_ = TurnLaunch(together, records, most_shared_bytes_);
             if (knows_clusters()) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
         }
 

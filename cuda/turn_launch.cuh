@@ -14,12 +14,12 @@ class TurnLaunch {
   public:
     TurnLaunch() = default;
     /// `most_bytes`: of shared memory that the GPU gives a block.
-    TurnLaunch(dca::Stage const& lower, dca::Stage const& upper, dca::StageRecords const& records, int most_bytes)
-        : up_(static_cast<std::size_t>(upper.width * records.segment)),
-          down_(static_cast<std::size_t>(upper.forces * records.state)),
-          launches_(static_cast<std::size_t>(lower.blocks() + 1)),
-          items_(static_cast<int>(upper.width)),
-          forces_(static_cast<int>(upper.forces)),
+    TurnLaunch(dca::StagesTogether const& stages, dca::StageRecords const& records, int most_bytes)
+        : up_(stages.numbers_up(records)),
+          down_(stages.numbers_down(records)),
+          launches_(stages.blocks()),
+          items_(static_cast<int>(stages.upper->width)),
+          forces_(static_cast<int>(stages.upper->forces)),
           most_bytes_(most_bytes) {}
     explicit operator bool() const { return launches_.size() > 0; }
     kernels::TurnLetters letters() const { return {{up_.data(), items_}, {down_.data(), forces_}, launches_.data()}; }

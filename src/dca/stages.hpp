@@ -64,7 +64,7 @@ std::vector<std::int32_t> level_ends_of(Stage const&);
 
 /// Where a stage has what the one below gives away and is given.
 struct PlacesAbove {
-    std::vector<std::int32_t> segment;           // of all segments_up: the item
+    std::vector<std::int32_t> segment;           // of all segments_up: the item; -1: there is none
     std::vector<std::int32_t> force;             // of all forces_down: the force's place; -1: it comes from elsewhere
     std::vector<std::uint8_t> comes_from_below;  // of all items above: whether the stage below gives it, and not one before
 };
@@ -120,6 +120,11 @@ struct StagesTogether {
     explicit operator bool() const { return lower != nullptr; }
     Stage const *lower = nullptr, *upper = nullptr;  // of the plan
     PlacesAbove places;
+
+    // Precondition of these: there are such stages. Numbers that go up and down between blocks, and blocks.
+    std::size_t numbers_up(StageRecords const& records) const { return static_cast<std::size_t>(upper->width * records.segment); }
+    std::size_t numbers_down(StageRecords const& records) const { return static_cast<std::size_t>(upper->forces * records.state); }
+    std::size_t blocks() const { return static_cast<std::size_t>(lower->blocks() + 1); }
 };
 
 /// A scan's launches, as a sweep's stages: values of segments join on the way up, what lies before them is handed out on the way down.

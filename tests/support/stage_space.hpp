@@ -60,9 +60,9 @@ class StageSpace : public HostSpace {
                 kept_.emplace_back(dca::kept_numbers(stage, records));
             }
             if (!*together_) return;
-            up_ = std::vector<kernels::LetterBox>(static_cast<std::size_t>(together_->upper->width * records.segment));
-            down_ = std::vector<kernels::LetterBox>(static_cast<std::size_t>(together_->upper->forces * records.state));
-            launches_.resize(static_cast<std::size_t>(together_->lower->blocks() + 1));
+            up_ = std::vector<kernels::LetterBox>(together_->numbers_up(records));
+            down_ = std::vector<kernels::LetterBox>(together_->numbers_down(records));
+            launches_.resize(together_->blocks());
         }
         Tree(Tree&&) = default;  // what is of the plan stays where it is
         Tree& operator=(Tree&&) = delete;
