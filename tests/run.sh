@@ -11,8 +11,8 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests but for some that are slow under them (1, 2 ranks)
-  no-mpi      build without MPI, all tests
-  minimal     build without any optional package, all tests
+  no-mpi      build without MPI, the tests but those of the mathematics, which is the same there
+  minimal     build without any optional package, the same tests
   tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
 
   --quick  format and release alone
@@ -148,8 +148,11 @@ if build asan-ubsan; then
     if [ $long = yes ]; then slow='ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
-if build no-mpi; then ctests no-mpi-tests --preset no-mpi; fi
-if build minimal; then ctests minimal-tests --preset minimal; fi
+same_anywhere='^(dca|dca_levels|dca_stage_kernels|dca_articulated|dca_campaign|oracle|simd|kinematics|implicit|physics[a-z_]*)[./]|^physics'
+if [ $long = yes ]; then same_anywhere='^$'; fi
+for preset in no-mpi minimal; do
+    if build $preset; then ctests $preset-tests --preset $preset -E "$same_anywhere"; fi
+done
 
 say "tidy"
 if [ $tools = yes ]; then

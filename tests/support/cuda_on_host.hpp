@@ -5,9 +5,11 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <setjmp.h>
 #include <ucontext.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <barrier>
 #include <bit>
@@ -17,6 +19,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <random>
 #include <span>
@@ -67,6 +70,32 @@ inline void leave(void*) {}
 #endif
 }  // namespace watch
 
+/// Where a fiber, or what resumes it, has stopped. swapcontext() asks the system for the signals' mask at every switch, which takes longer
+/// than all that fibers do between two of them; sanitizers know no other way.
+class Stop {
+  public:
+    void begin_at(stack_t const& stack, void (*entry)()) {
+        getcontext(&context_);
+        context_.uc_stack = stack;
+        makecontext(&context_, entry, 0);
+    }
+#if defined(CATENA_FIBERS_ARE_WATCHED) || defined(__SANITIZE_ADDRESS__)
+    void switch_to(Stop& other) { swapcontext(&context_, &other.context_); }
+#else
+    void switch_to(Stop& other) {
+        if (_setjmp(jump_) != 0) return;
+        has_jump_ = true;
+        if (other.has_jump_) _longjmp(other.jump_, 1);
+        setcontext(&other.context_);
+    }
+#endif
+
+  private:
+    ucontext_t context_{};
+    jmp_buf jump_{};
+    bool has_jump_ = false;
+};
+
 /// An H100's or H200's, of a block.
 constexpr std::size_t most_shared_bytes = 232448;
 constexpr std::size_t numbers_to_see_overruns = 64;
@@ -82,15 +111,33 @@ alignas(16) inline constinit thread_local double shared_numbers[cuda_on_host::mo
 
 namespace catena::cuda_on_host {
 
-/// Of a block's fibers, one block after the other.
+/// Of a block's fibers, one block after the other. Launches leave theirs to later ones, which need no new pages then.
 class Stacks {
   public:
-    explicit Stacks(std::size_t count) : memory_(std::make_unique_for_overwrite<std::byte[]>(count * bytes)) {}
-    stack_t of(std::size_t fiber) const { return {memory_.get() + fiber * bytes, 0, bytes}; }
+    explicit Stacks(std::size_t count) {
+        {
+            std::scoped_lock const lock(mutex_);
+            if (!left_.empty()) {
+                own_ = std::move(left_.back());
+                left_.pop_back();
+            }
+        }
+        while (own_.size() < count) own_.push_back(std::make_unique_for_overwrite<Stack>());
+    }
+    ~Stacks() {
+        std::scoped_lock const lock(mutex_);
+        left_.push_back(std::move(own_));
+    }
+    Stacks(Stacks const&) = delete;
+    Stacks& operator=(Stacks const&) = delete;
+    stack_t of(std::size_t fiber) const { return {own_[fiber].get(), 0, sizeof(Stack)}; }
 
   private:
-    static constexpr std::size_t bytes = 256 << 10;
-    std::unique_ptr<std::byte[]> memory_;
+    using Stack = std::array<std::byte, 256 << 10>;
+    using Group = std::vector<std::unique_ptr<Stack>>;
+    static inline std::mutex mutex_;
+    static inline std::vector<Group> left_;
+    Group own_;
 };
 
 /// One that runs.
@@ -103,9 +150,7 @@ class Block {
         for (std::size_t t = 0; t < threads; ++t) {
             Fiber& fiber = fibers_[t];
             fiber.watched = watch::create();
-            getcontext(&fiber.context);
-            fiber.context.uc_stack = stacks.of(t);
-            makecontext(&fiber.context, &Block::enter, 0);
+            fiber.stop.begin_at(stacks.of(t), &Block::enter);
         }
     }
     ~Block() {
@@ -155,7 +200,7 @@ class Block {
 
   private:
     struct Fiber {
-        ucontext_t context{};
+        Stop stop;
         void* watched = nullptr;
         bool waited_for_launch = false;
         int line = 0;
@@ -198,7 +243,7 @@ class Block {
     void resume(unsigned t) {
         number_thread(t);
         watch::before_switch(fibers_[t].watched);
-        swapcontext(&outside_, &fibers_[t].context);
+        outside_.switch_to(fibers_[t].stop);
     }
     void leave_fiber(int line, Whole whole) {
         Fiber& fiber = fibers_[threadIdx.x];
@@ -207,7 +252,7 @@ class Block {
         void* const outside = watched_;  // read before the others may go on
         watch::arrive(&arrived_);
         watch::before_switch(outside);
-        swapcontext(&fiber.context, &outside_);
+        fiber.stop.switch_to(outside_);
         watch::leave(&left_);
     }
 
@@ -215,7 +260,7 @@ class Block {
     std::function<void()> const& kernel_;
     std::barrier<>* cluster_;
     std::vector<Fiber> fibers_;
-    ucontext_t outside_{};
+    Stop outside_;
     void* watched_ = watch::self();
     char arrived_ = 0, left_ = 0;  // what the sanitizer knows them by
 };
