@@ -326,7 +326,8 @@ class DeviceSpace {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
                     return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
-            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs), sweep);
+            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
+                   sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {

@@ -2,8 +2,8 @@
 // takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
+#include "cuda/bodies_ahead.cuh"
 #include "cuda/quick.cuh"
-#include "dca/tree_sweeps.hpp"
 
 namespace catena::cuda::kernels {
 
@@ -11,39 +11,15 @@ __device__ inline std::int64_t thread() { return static_cast<std::int64_t>(block
 
 alignas(16) extern __shared__ double shared_numbers[];
 
-/// Records in a block's shared memory, number after number: neither neighbouring threads nor those a power of two apart meet in a bank.
-template <class T>
-struct SharedRecords {
-    static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double));
-    static constexpr __host__ __device__ int pitch_for(int count) { return count + count / 16 + 1; }
-    static constexpr __host__ __device__ std::size_t size(int count) { return static_cast<std::size_t>(numbers) * pitch_for(count); }
-    double* origin;
-    int pitch;
-    __device__ double& number(int i, int n) const { return origin[i + i / 16 + n * pitch]; }
-    __device__ void store(int i, T const& record) const {
-        auto const values = __builtin_bit_cast(Numbers, record);
-        double* const first = origin + i + i / 16;
-        CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) first[n * pitch] = values[n];
-    }
-    __device__ T load(int i) const {
-        Numbers values;
-        double const* const first = origin + i + i / 16;
-        CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) values[n] = first[n * pitch];
-        return __builtin_bit_cast(T, values);
-    }
-
-  private:
-    using Numbers = Vector<double, numbers>;
-};
-/// The same record after record, `stride` numbers from one to the next, for lanes that read one together: how far a number is from the
-/// record's first one a compiler knows.
-template <class T, int stride_>
+/// Records in a block's shared memory, `stride` numbers from one to the next: neither neighbouring threads nor those a power of two apart
+/// meet in a bank, and how far a number is from its record's first one a compiler knows.
+template <class T, int stride_ = static_cast<int>(sizeof(T) / sizeof(double))>
 struct PackedRecords {
     static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double)), stride = stride_ | 1;
     static_assert(numbers <= stride);
-    static constexpr __host__ __device__ std::size_t size(int count) { return static_cast<std::size_t>(dca::packed_numbers(stride, count)); }
+    static constexpr __host__ __device__ std::size_t size(int count) {
+        return static_cast<std::size_t>(dca::packed_numbers(stride, count));
+    }
     double* origin;
     __device__ double& number(int i, int n) const { return origin[stride * i + i / 16 + n]; }
     __device__ void store(int i, T const& record) const {
@@ -90,12 +66,29 @@ __device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename S
     else
         return sweep.joined(inboard, outboard, at, node);
 }
-template <class Sweep>
-__device__ typename Sweep::Segment part_quickly(Sweep const& sweep, dca::Run const& run, int p, typename Sweep::Part const& part) {
+/// `quick`: where there are registers for it.
+template <bool quick, class Sweep>
+__device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t begin, std::int64_t end) {
+    if constexpr (quick && takes_factors<Sweep>)
+        return sweep.read(begin, end, QuickInverseLength{});
+    else
+        return sweep.read(begin, end);
+}
+template <class Sweep, class Part>
+__device__ typename Sweep::Segment part_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part) {
     if constexpr (takes_factors<Sweep>)
         return sweep.part(run, p, part, QuickFactors<Sweep::K == 1>{});
     else
         return sweep.part(run, p, part);
+}
+
+template <bool unroll, class Sweep, class Part, class State, class Passages>
+__device__ void down_quickly(Sweep const& sweep, dca::Run const& run, int p, Part const& part, State const& first, State const& next,
+                             Passages&& passages) {
+    if constexpr (Sweep::K > 1)
+        sweep.template down<unroll>(run, p, part, first, next, passages, QuickFactors<false>{});
+    else
+        sweep.template down<unroll>(run, p, part, first, next, passages);
 }
 
 /// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
@@ -113,15 +106,15 @@ __device__ inline int lanes_of_block() {
 
 /// Each in the place of the part's segment.
 template <class Sweep>
-using NodesOfParts = SharedRecords<typename Sweep::Sweeps::Node>;
+using NodesOfParts = PackedRecords<typename Sweep::Sweeps::Node, PackedRecords<typename Sweep::Segment>::stride>;
 /// The segments of runs `first` + RunPart(...).run, as many as the block's threads do at once: take(run, segment) by one thread each. All
 /// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its
 /// bodies. `nodes_stay`: a sweep that keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
-template <bool nodes_stay, class Sweep, class Take>
+template <bool nodes_stay, bool quick, class Sweep, class Take>
 __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
                                 typename Sweep::Part& part, Take const& take) {
     using Segment = typename Sweep::Segment;
-    SharedRecords<Segment> const parts{memory, SharedRecords<Segment>::pitch_for(static_cast<int>(blockDim.x))};
+    PackedRecords<Segment> const parts{memory};
     int const lanes = lanes_of_block();
     RunPart const mine(threadIdx.x, lanes);
     std::int64_t const i = first + mine.run;
@@ -134,7 +127,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
         if (p < count) restricted_of[p] = sweep.s.restricted[dca::begin_of(run, p)];
     Segment segment;
     if (mine.part < count) {
-        part = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
+        part = read_quickly<quick>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
         segment = part_quickly(sweep, run, mine.part, part);
     }
     if (mine.part > 0 && mine.part < count) parts.store(static_cast<int>(threadIdx.x), segment);
@@ -150,7 +143,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
             if constexpr (nodes_stay && Sweep::keeps_nodes) {
                 typename Sweep::Node node;
                 segment = joined_quickly(sweep, segment, parts.load(there), at, node);
-                NodesOfParts<Sweep>{memory, parts.pitch}.store(there, node);
+                NodesOfParts<Sweep>{memory}.store(there, node);
             } else {
                 segment = sweep.joined(segment, parts.load(there), at);
             }
@@ -168,20 +161,28 @@ template <class Sweep>
 struct PassagesInMemory {
     using Passage = typename Sweep::Passage;
     double* memory;
-    static __host__ __device__ constexpr std::size_t size(int threads) { return Sweep::most_passages * SharedRecords<Passage>::size(threads); }
+    static __host__ __device__ constexpr std::size_t size(int threads) { return Sweep::most_passages * PackedRecords<Passage>::size(threads); }
     __device__ void put(int i, Passage const& passage) const { records(i).store(static_cast<int>(threadIdx.x), passage); }
     __device__ Passage get(int i) const { return records(i).load(static_cast<int>(threadIdx.x)); }
 
   private:
-    __device__ SharedRecords<Passage> records(int i) const {
-        int const threads = static_cast<int>(blockDim.x);
-        return {memory + i * SharedRecords<Passage>::size(threads), SharedRecords<Passage>::pitch_for(threads)};
+    __device__ PackedRecords<Passage> records(int i) const {
+        return {memory + i * PackedRecords<Passage>::size(static_cast<int>(blockDim.x))};
     }
 };
+template <class Sweep>
+using BodiesOf = decltype(Sweep::bodies);
+/// Whether bodies of runs come ahead of the thread that waits for them: it gains where handles are spherical, others lose a little.
+template <class Sweep>
+constexpr bool comes_ahead = false;
+template <class Sweep>
+    requires Sweep::one_by_one
+constexpr bool comes_ahead<Sweep> = Sweep::K == 3;
+
 /// Numbers of a block that descend_some_runs() takes in memory.
 template <class Sweep>
 constexpr std::size_t numbers_of_descent(int threads) {
-    std::size_t const states = SharedRecords<typename Sweep::Sweeps::State>::size(threads);
+    std::size_t const states = PackedRecords<typename Sweep::Sweeps::State>::size(threads);
     if constexpr (keeps_passages<Sweep>)
         return states + PassagesInMemory<Sweep>::size(threads);
     else
@@ -195,7 +196,7 @@ template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, 
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
     using State = typename Sweep::Sweeps::State;
-    SharedRecords<State> const at_part{memory, SharedRecords<State>::pitch_for(static_cast<int>(blockDim.x))};
+    PackedRecords<State> const at_part{memory};
     int const lanes = lanes_of_block(), here = static_cast<int>(threadIdx.x);
     RunPart const mine(threadIdx.x, lanes);
     std::int64_t const i = first_run + mine.run;
@@ -206,10 +207,9 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     typename Sweep::Sweeps::Node node;
     State own, next;
     if (mine.part < count) {  // all that is read before any of it is needed
-        if (!part) read = sweep.read(dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
+        if (!part) read = read_quickly<!roomy>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
         if constexpr (nodes_stay && Sweep::keeps_nodes) {
-            constexpr auto pitch = SharedRecords<typename Sweep::Segment>::pitch_for;
-            if (mine.part > 0) node = NodesOfParts<Sweep>{memory, pitch(static_cast<int>(blockDim.x))}.load(here);
+            if (mine.part > 0) node = NodesOfParts<Sweep>{memory}.load(here);
         } else {
             if (mine.part > 0) node = sweep.node(dca::begin_of(run, mine.part));
         }
@@ -229,8 +229,11 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     if (mine.part >= count) return;
     if (mine.part == 0 && count > 1) next = at_part.load(here + lanes);
     if constexpr (roomy && keeps_passages<Sweep>)
-        sweep.template down<false>(run, mine.part, part ? *part : read, own, next,
-                                   PassagesInMemory<Sweep>{memory + SharedRecords<State>::size(static_cast<int>(blockDim.x))});
+        down_quickly<false>(sweep, run, mine.part, part ? *part : read, own, next,
+                            PassagesInMemory<Sweep>{memory + PackedRecords<State>::size(static_cast<int>(blockDim.x))});
+    else if constexpr (takes_factors<Sweep>)
+        down_quickly<unroll && !keeps_passages<Sweep>>(sweep, run, mine.part, part ? *part : read, own, next,
+                                                       typename Sweep::PassagesHere{});
     else
         sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next);
 }

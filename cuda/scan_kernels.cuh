@@ -29,7 +29,7 @@ struct DeviceScanStage {
 template <class Scan>
 class BlockOfScan {
     using Value = typename Scan::Value;
-    using Values = SharedRecords<Value>;
+    using Values = PackedRecords<Value>;
 
   public:
     /// Numbers that it needs.
@@ -40,7 +40,7 @@ class BlockOfScan {
     __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory, bool known)
         : stage_(stage),
           scan_(scan),
-          values_{memory, Values::pitch_for(stage.width)},
+          values_{memory},
           merges_(reinterpret_cast<dca::ScanMerge*>(memory + Values::size(stage.width))),
           level_end_(reinterpret_cast<std::int32_t*>(merges_ + stage.width)) {
         dca::ScanBlock const here = stage.block[blockIdx.x];

@@ -2,6 +2,8 @@
 // before it.
 #pragma once
 
+#include <algorithm>
+
 #include "cuda/merge_teams.cuh"
 #include "dca/stage_words.hpp"
 
@@ -46,14 +48,10 @@ __device__ void each_of(int count, Action const& action) {
 /// How segments, nodes and forces lie in a stage's shared memory: a node in the place of a segment.
 template <class Sweep>
 struct RecordsOfStage {
-    using Segments = SharedRecords<typename Sweep::Segment>;
-    using Nodes = SharedRecords<typename Sweep::Sweeps::Node>;
-    using Forces = SharedRecords<typename Sweep::Sweeps::State>;
-    static_assert(!Sweep::keeps_nodes || Nodes::numbers <= Segments::numbers);
-    template <class Records>
-    static __device__ Records at(double* memory, int count) {
-        return {memory, Records::pitch_for(count)};
-    }
+    using Segments = PackedRecords<typename Sweep::Segment>;
+    using Nodes = PackedRecords<typename Sweep::Sweeps::Node, std::max(Segments::stride, numbers_of<typename Sweep::Sweeps::Node>)>;
+    using Forces = PackedRecords<typename Sweep::Sweeps::State>;
+    static_assert(!Sweep::keeps_nodes || Nodes::stride == Segments::stride);
 };
 template <class Sweep>
     requires merges_by_teams<Sweep>
@@ -62,10 +60,6 @@ struct RecordsOfStage<Sweep> {
     using Segments = typename MergeTeam<Sweep>::Segments;
     using Nodes = typename MergeTeam<Sweep>::Nodes;
     using Forces = typename MergeTeam<Sweep>::Forces;
-    template <class Records>
-    static __device__ Records at(double* memory, int /*count*/) {
-        return {memory};
-    }
 };
 
 /// A block's part of a stage, in its shared memory: its words, which are read once, and the segments and forces at its places. A sweep
@@ -91,9 +85,9 @@ class BlockOfStage {
           block_(block),
           sweep_(sweep),
           words_(stage_.layout, reinterpret_cast<dca::StageWord*>(memory)),
-          segments_(Records::template at<Segments>(memory + numbers_of_words(stage), stage.layout.items)),
-          nodes_(Records::template at<Nodes>(segments_.origin, stage.layout.items)),
-          forces_(Records::template at<Forces>(segments_.origin + Segments::size(stage.layout.items), stage.forces)),
+          segments_{memory + numbers_of_words(stage)},
+          nodes_{segments_.origin},
+          forces_{segments_.origin + Segments::size(stage.layout.items)},
           memory_(memory),
           parts_(memory + before_parts(stage)) {}
     /// First of all; before anything else the block's threads must meet.
@@ -115,7 +109,7 @@ class BlockOfStage {
         else if (!stage_.runs)
             each_of(head.items, [&](int i) { segments_.store(i, sweep_.load(words_.item(i).own_slot())); });
         else
-            climb_some_runs<and_down>(
+            climb_some_runs<and_down, true>(
                 stage_.runs, head.first_item, head.first_item + head.items, sweep_, parts_, part,
                 [&](std::int64_t i, Segment const& segment) { segments_.store(static_cast<int>(i - head.first_item), segment); });
     }

@@ -88,27 +88,54 @@ constexpr int blocks_at_once = Sweep::Sweeps::K == 1 ? 4 : 1;
 /// Whether a thread takes a whole run on the way up: larger handles would have most of them wait for one that joins the parts.
 template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;
+/// As climb_run(), quickly. `read(p)`: of part p.
+template <class Sweep, class Read>
+__device__ void climb_parts_quickly(Sweep const& sweep, dca::Run const& run, Read const& read) {
+    dca::climb_parts(
+        sweep, run, [&](int p) { return part_quickly(sweep, run, p, read(p)); },
+        [&](auto const& inboard, auto const& outboard, dca::JointAt const& at) {
+            typename Sweep::Node node;
+            auto const joined = joined_quickly(sweep, inboard, outboard, at, node);
+            sweep.keep(at.k, node);
+            return joined;
+        });
+}
+template <class Sweep>
+__device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
+    if constexpr (comes_ahead<Sweep>) {
+        using Bodies = BodiesInTurn<BodiesOf<Sweep>>;
+        Bodies bodies(sweep.bodies, run.body, run.body + run.count, shared_numbers);
+        climb_parts_quickly(sweep, run, [&](int) { return typename Bodies::Part{bodies}; });
+    } else if constexpr (takes_factors<Sweep> && !dca::takes_whole_runs<Sweep>) {
+        climb_parts_quickly(sweep, run, [&](int p) { return sweep.read(dca::begin_of(run, p), dca::end_of(run, p)); });
+    } else {
+        climb_run(sweep, run);
+    }
+}
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     if constexpr (whole_runs<Sweep>) {
-        if (std::int64_t const i = thread(); i < count) climb_run(sweep, runs[i]);
+        if (std::int64_t const i = thread(); i < count) climb_whole(sweep, runs[i]);
     } else {
         typename Sweep::Part part;
-        climb_some_runs<false>(runs, static_cast<std::int64_t>(blockIdx.x) * (threads / dca::parts_of_run), count, sweep, shared_numbers,
-                               part, [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
+        climb_some_runs<false, false>(runs, static_cast<std::int64_t>(blockIdx.x) * (threads / dca::parts_of_run), count, sweep,
+                                      shared_numbers, part,
+                                      [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
     }
 }
+/// From the last block to the first: what the way up read last is still near.
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
+    std::int64_t const block = gridDim.x - 1 - blockIdx.x;
     if constexpr (dca::takes_whole_runs<Sweep>) {
-        if (std::int64_t const i = thread(); i < count) descend_run(sweep, runs[i]);
+        if (std::int64_t const i = block * blockDim.x + threadIdx.x; i < count) descend_run(sweep, runs[i]);
     } else {
         descend_some_runs<true, false, true>(
-            runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
+            runs, block * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
     }
@@ -127,23 +154,31 @@ inline RunsGrid grid_of_runs(std::int64_t runs, int threads_of_run, int threads_
 /// Threads of a block of whole runs: a warp, so that few runs spread over a GPU.
 template <class Sweep>
 constexpr int threads_of_whole_runs = dca::takes_whole_runs<Sweep> ? 32 : threads;
-template <class Sweep>
-RunsGrid grid_of_climb(std::int64_t runs) {
-    RunsGrid grid =
-        whole_runs<Sweep> ? grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>) : grid_of_runs(runs, dca::parts_of_run, threads);
-    if (!whole_runs<Sweep>) grid.shared_bytes = sizeof(double) * SharedRecords<typename Sweep::Segment>::size(threads);
+/// The largest blocks whose numbers(threads) in shared memory the GPU has.
+template <class Numbers>
+RunsGrid grid_that_fits(std::int64_t runs, int threads_of_run, int most_threads, std::size_t most_shared_bytes, Numbers const& numbers) {
+    int of_block = most_threads;
+    while (of_block > 32 && sizeof(double) * numbers(of_block) > most_shared_bytes) of_block /= 2;
+    RunsGrid grid = grid_of_runs(runs, threads_of_run, of_block);
+    grid.shared_bytes = sizeof(double) * numbers(of_block);
     return grid;
 }
 /// Of a GPU whose blocks may share so many bytes.
 template <class Sweep>
+RunsGrid grid_of_climb(std::int64_t runs, std::size_t most_shared_bytes) {
+    if constexpr (comes_ahead<Sweep>)
+        return grid_that_fits(runs, 1, threads, most_shared_bytes, BodiesInTurn<BodiesOf<Sweep>>::size);
+    else if constexpr (whole_runs<Sweep>)
+        return grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>);
+    else
+        return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes, PackedRecords<typename Sweep::Segment>::size);
+}
+template <class Sweep>
 RunsGrid grid_of_descent(std::int64_t runs, std::size_t most_shared_bytes) {
-    if constexpr (dca::takes_whole_runs<Sweep>) return grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>);
-    auto const bytes = [](int of_block) { return sizeof(double) * numbers_of_descent<Sweep>(of_block); };
-    int of_block = threads;
-    while (of_block > 32 && bytes(of_block) > most_shared_bytes) of_block /= 2;
-    RunsGrid grid = grid_of_runs(runs, dca::parts_of_run, of_block);
-    grid.shared_bytes = bytes(of_block);
-    return grid;
+    if constexpr (dca::takes_whole_runs<Sweep>)
+        return grid_of_runs(runs, 1, threads_of_whole_runs<Sweep>);
+    else
+        return grid_that_fits(runs, dca::parts_of_run, threads, most_shared_bytes, numbers_of_descent<Sweep>);
 }
 
 }  // namespace catena::cuda::kernels

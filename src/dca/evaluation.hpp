@@ -29,6 +29,12 @@ struct Resting {
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
         return {leaf.body(loads, part.begin + i), restricted[part.begin + i]};
     }
+    /// Of bodies that come by another way (cuda/bodies_ahead.cuh).
+    template <class AnyPart>
+        requires requires(AnyPart const& part) { part.body(0); }
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(AnyPart const& part, int i) const {
+        return part.body(i);
+    }
     /// What its accelerations need of what its segment needed.
     template <class Place>
     struct Kept : Leaf::template Turned<Place> {
@@ -226,15 +232,15 @@ struct Evaluation {
     CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
         return bodies.part(begin, end, inverse_length);
     }
-    template <class Factors = dca::Factors>
-    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, Part const& part, Factors const& factors = {}) const {
+    template <class AnyPart, class Factors = dca::Factors>
+    CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factors const& factors = {}) const {
         std::int64_t const begin = begin_of(run, p);
         return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, factors);
     }
     /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
     /// `factors`: as factorize(), if not always.
-    template <class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, Part const& part, Kept&& kept, Factors const& factors) const {
+    template <class AnyPart, class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, AnyPart const& part, Kept&& kept, Factors const& factors) const {
         Lost found;
         Segment segment = first_of(bodies.segment(bodies.body(part, 0)), kept);
         each_body<unrolled<K>>(1, count, [&](int i) {
@@ -307,10 +313,17 @@ struct Evaluation {
         PassagesHere passages;
         down<unroll && !keeps_passages>(run, p, part, first, next, passages);
     }
-    /// `passages`: put(i, Passage) and get(i), i < most_passages.
-    template <bool unroll, class Passages>
+    /// In registers.
+    struct PassagesHere {
+        Passage passage[part_length - 1] = {};  // larger handles leave the last one unused, which compilers do not see
+        CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
+        CATENA_HD Passage const& get(int i) const { return passage[i]; }
+    };
+    /// `passages`: put(i, Passage) and get(i), i < most_passages. `factors`: as factorize(), always.
+    template <bool unroll, class Passages, class Factors = dca::Factors>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next,
-                                 Passages&& passages) const {
+                                 Passages&& passages, Factors const& factors = {}) const {
+        static_assert(!Factors::may_fail);
         constexpr bool unrolled_here = unroll || unrolled<K>;
         std::int64_t const k = begin_of(run, p);
         int const last = static_cast<int>(end_of(run, p) - k) - 1;
@@ -321,7 +334,7 @@ struct Evaluation {
         each_body<unrolled_here>(1, last + 1, [&](int i) {
             Body const body = bodies.body(part, i);
             Segment const segment = bodies.segment(body);
-            Passage const passed = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted);
+            Passage const passed = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted, factors);
             if (keeps_passages && i == last)
                 at_last = force(passed, next);
             else
@@ -361,11 +374,6 @@ struct Evaluation {
   private:
     struct Forgotten {
         CATENA_HD static void put(int, Passed const&) {}
-    };
-    struct PassagesHere {
-        Passage passage[part_length - 1] = {};  // larger handles leave the last one unused, which compilers do not see
-        CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
-        CATENA_HD Passage const& get(int i) const { return passage[i]; }
     };
     template <class Kept>
     CATENA_HD_IN_PLACE static Segment first_of(Segment const& own, Kept&& kept) {

@@ -8,7 +8,7 @@ namespace catena::dca {
 
 template <int D, class Place>
 CATENA_HD Vector<RealAt<Place>, D> read_or_zero(ConstView<D> const& view, Place k) {
-    return view.origin ? read(view, k) : Vector<RealAt<Place>, D>::zero();
+    return ReadHere{}.if_any(view, k);
 }
 
 /// Direction of the link on the outboard side of body k; 0 where there is none.
@@ -131,9 +131,9 @@ class MeetingFrames {
         Vector<Real, 4> rotation;
         Vector<Real, 6> axes1, axes2;
     };
-    template <class Place>
-    CATENA_HD State<RealAt<Place>> state(Place k) const {
-        return {read(group_.r1, k), read(r2_, k), read(rotation_, k), read(group_.axes1, k), read(axes2_, k)};
+    template <class Place, class Reader = ReadHere>
+    CATENA_HD State<RealAt<Place>> state(Place k, Reader&& by = {}) const {
+        return {by(group_.r1, k), by(r2_, k), by(rotation_, k), by(group_.axes1, k), by(axes2_, k)};
     }
     /// In B.
     template <class Real>
@@ -188,9 +188,9 @@ class GroundFrames {
         Vector<Real, 3> r1, r2;
         Vector<Real, 4> rotation;
     };
-    template <class Place>
-    CATENA_HD State<RealAt<Place>> state(Place k) const {
-        return {read(r1_, k), read(r2_, k), read(rotation_, k)};
+    template <class Place, class Reader = ReadHere>
+    CATENA_HD State<RealAt<Place>> state(Place k, Reader&& by = {}) const {
+        return {by(r1_, k), by(r2_, k), by(rotation_, k)};
     }
     template <class Place>
     CATENA_HD TurnedHandlePair<GroundHandle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/,
@@ -221,10 +221,10 @@ class LinkFrames {
         Vector<Real, 3> r1, r2, inboard, outboard;  // directions
         Vector<Real, 4> rotation;
     };
-    template <class Place>
-    CATENA_HD State<RealAt<Place>> state(Place k) const {
-        return {read(group_.r1, k), read(group_.r2, k), read(direction_, k), outboard_direction(group_, direction_, tip_direction_, k),
-                read(rotation_, k)};
+    template <class Place, class Reader = ReadHere>
+    CATENA_HD State<RealAt<Place>> state(Place k, Reader&& by = {}) const {
+        return {by(group_.r1, k), by(group_.r2, k), read(direction_, k), outboard_direction(group_, direction_, tip_direction_, k),
+                by(rotation_, k)};
     }
     template <class Place>
     CATENA_HD TurnedHandlePair<Handle<RealAt<Place>, K>, RealAt<Place>> handles(State<RealAt<Place>> const& state, Place /*k*/,
@@ -273,15 +273,15 @@ class BodyLeaf {
         typename Frames::template State<Real> state;
         Vector<Real, 3> force, torque, omega;
     };
-    template <class Place>
-    CATENA_HD Body<Place> body(LoadsView const& loads, Place k) const {
+    template <class Place, class Reader = ReadHere>
+    CATENA_HD Body<Place> body(LoadsView const& loads, Place k, Reader&& by = {}) const {
         return {k,
-                read(group_.inverse_mass, k)[0],
-                as_symmetric(read(group_.inverse_inertia, k)),
-                frames_.state(k),
-                read_or_zero(loads.force, k),
-                read_or_zero(loads.torque, k),
-                read_or_zero(loads.omega, k)};
+                by(group_.inverse_mass, k)[0],
+                as_symmetric(by(group_.inverse_inertia, k)),
+                frames_.state(k, by),
+                by.if_any(loads.force, k),
+                by.if_any(loads.torque, k),
+                by.if_any(loads.omega, k)};
     }
     /// What both a body's segment and its accelerations need, and takes longer to compute than to keep.
     template <class Place>

@@ -39,6 +39,17 @@ template <class T, int D>
 CATENA_HD double read(FieldView<T, D> const& view, std::int64_t k, int component) {
     return view.at(k, component);
 }
+/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere. Another reader may have them elsewhere.
+struct ReadHere {
+    template <class T, int D, class Place>
+    CATENA_HD Vector<RealAt<Place>, D> operator()(FieldView<T, D> const& view, Place k) const {
+        return read(view, k);
+    }
+    template <class T, int D, class Place>
+    CATENA_HD Vector<RealAt<Place>, D> if_any(FieldView<T, D> const& view, Place k) const {
+        return view.origin ? read(view, k) : Vector<RealAt<Place>, D>::zero();
+    }
+};
 template <int D>
 CATENA_HD void write(View<D> const& view, std::int64_t k, Vector<double, D> const& value) {
     view.store(k, value);

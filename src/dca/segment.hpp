@@ -215,11 +215,11 @@ CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const
 }
 /// One side of `append`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
 /// that force's part in it); they become the joined segment's.
-template <class Real, int K>
+template <class Real, int K, class Factors = dca::Factors>
 CATENA_HD Elimination<Real, K> eliminate(Symmetric<Real, K>& z22, Vector<Real, K>& b2, SegmentMatrix<Real, K> const& outboard,
-                                         SegmentBias<Real, K> const& bias, int restricted) {
+                                         SegmentBias<Real, K> const& bias, int restricted, Factors const& factors = {}) {
     OneSided<Real, K> joint;
-    joint.factor = factorize(z22 + outboard.z11, restricted);
+    joint.factor = factors(z22 + outboard.z11, restricted);
     joint.outboard = solve_lower(joint.factor, outboard.z12);
     joint.bias = bias;
     CATENA_UNROLL

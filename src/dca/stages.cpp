@@ -329,14 +329,16 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
 }
 
 StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t at_once) {
-    std::int64_t const numbers = records.segment + 2 * records.state + 10;  // and of a merge, of an item, of what is handed over
     StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs, records.at_once};
-    auto const bytes = [&](std::int64_t items) { return 8 * numbers * (items + items / 16 + 1); };
+    auto const bytes = [&](std::int64_t items) {
+        constexpr std::int64_t words = 10;  // of a merge, of an item, of what is handed over
+        return 8 * (packed_numbers(records.segment, items) + 2 * packed_numbers(records.state, items) + words * items);
+    };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.
     auto const of_runs = [&](std::int64_t threads) {
         constexpr std::int64_t ranges = 16;
-        return bytes(threads / parts_of_run) + 8 * (records.segment * (threads + threads / 16 + 1) + ranges);
+        return bytes(threads / parts_of_run) + 8 * (packed_numbers(records.segment, threads) + ranges);
     };
     constexpr std::int64_t fewest_threads = 32;
     while (sizes.threads > fewest_threads && of_runs(sizes.threads) > shared_bytes) sizes.threads /= 2;

@@ -258,18 +258,24 @@ struct BiasSweep {
 template <class Sweep>
 concept takes_whole_runs = requires { requires Sweep::takes_whole_runs; };
 
-/// A run's parts join one after the other.
+/// A run's parts join one after the other: part(p) of each, in turn, and join(segment, outboard, joint).
+template <class Sweep, class Part, class Join>
+CATENA_HD void climb_parts(Sweep const& sweep, Run const& run, Part const& part, Join const& join) {
+    typename Sweep::Segment segment;
+    CATENA_NO_UNROLL
+    for (int p = 0; p < parts_of(run); ++p) {
+        auto const next = part(p);
+        segment = p == 0 ? next : join(segment, next, sweep.s.at(begin_of(run, p)));
+    }
+    sweep.store(run.slot, segment);
+}
 template <class Sweep>
 CATENA_HD void climb_run(Sweep const& sweep, Run const& run) {
     if constexpr (takes_whole_runs<Sweep>)
         if (sweep.takes(run)) return sweep.store(run.slot, sweep.climb(run));
-    typename Sweep::Segment segment;
-    CATENA_NO_UNROLL
-    for (int p = 0; p < parts_of(run); ++p) {
-        auto const part = sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p)));
-        segment = p == 0 ? part : sweep.joined(segment, part, sweep.s.at(begin_of(run, p)));
-    }
-    sweep.store(run.slot, segment);
+    climb_parts(
+        sweep, run, [&](int p) { return sweep.part(run, p, sweep.read(begin_of(run, p), end_of(run, p))); },
+        [&](auto const& inboard, auto const& outboard, JointAt const& at) { return sweep.joined(inboard, outboard, at); });
 }
 template <class Sweep>
 CATENA_HD void climb_merge(Sweep const& sweep, Merge const& m) {

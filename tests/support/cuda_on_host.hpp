@@ -196,6 +196,18 @@ class Block {
         return found;
     }
 
+    /// Copies to shared memory that a thread has started: they come when it waits for them.
+    static void start_copy(double* to, double const* from) { here_->fibers_[threadIdx.x].copies.push_back({to, from}); }
+    static void close_copies() {
+        Fiber& fiber = here_->fibers_[threadIdx.x];
+        fiber.together.push_back(fiber.copies.size());
+    }
+    static void wait_for_copies(std::size_t left) {
+        Fiber& fiber = here_->fibers_[threadIdx.x];
+        if (fiber.together.size() <= left) return;
+        std::size_t const end = fiber.together[fiber.together.size() - 1 - left];
+        for (; fiber.come < end; ++fiber.come) *fiber.copies[fiber.come].to = *fiber.copies[fiber.come].from;
+    }
     static void note_wait_for_launch() { here_->fibers_[threadIdx.x].waited_for_launch = true; }
 
   private:
@@ -206,6 +218,13 @@ class Block {
         int line = 0;
         Whole waits_for = Whole::nobody;
         double given = 0;
+        struct Copy {
+            double* to;
+            double const* from;
+        };
+        std::vector<Copy> copies;
+        std::vector<std::size_t> together;  // where those end that go together
+        std::size_t come = 0;
     };
     /// What all of its lanes wait for.
     struct Warp {
@@ -329,6 +348,13 @@ T __shfl_sync(unsigned, T value, int lane, int line = __builtin_LINE()) {
 inline double __longlong_as_double(long long bits) { return std::bit_cast<double>(bits); }
 inline long long __double_as_longlong(double value) { return std::bit_cast<long long>(value); }
 namespace catena::cuda::kernels {
+
+inline void start_copy(double* to_shared, double const* from) { cuda_on_host::Block::start_copy(to_shared, from); }
+inline void close_copies() { cuda_on_host::Block::close_copies(); }
+template <int left>
+void wait_for_copies() {
+    cuda_on_host::Block::wait_for_copies(left);
+}
 
 class Inbox {
   public:

@@ -171,7 +171,7 @@ class StageSpace : public HostSpace {
                     ++seen.teams;
                     return over_runs(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
                 }
-            over_runs(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs), sweep);
+            over_runs(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs, tree.shared_bytes_), sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
