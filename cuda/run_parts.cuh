@@ -52,7 +52,8 @@ __device__ void move_some(int begin, int end, int step, Get const& get, Put cons
     }
 }
 
-/// A sweep that takes factors of ours (Evaluation). As joined() and part() of any, in fewer instructions where it does.
+/// A sweep that takes factors of ours, in joined(), part(), read() and down() (Evaluation). As these of any, in fewer instructions where it
+/// does.
 template <class Sweep>
 concept takes_factors = requires(Sweep const& sweep, typename Sweep::Segment const& segment, typename Sweep::Node& node) {
     sweep.joined(segment, segment, dca::JointAt{}, node, QuickFactors<Sweep::K == 1>{});
@@ -144,7 +145,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
                 typename Sweep::Node node;
                 segment = joined_quickly(sweep, segment, parts.load(there), at, node);
                 NodesOfParts<Sweep>{memory}.store(there, node);
-            } else {
+            } else {  // not quickly: registers are few where links' runs are apart
                 segment = sweep.joined(segment, parts.load(there), at);
             }
         }
@@ -190,7 +191,7 @@ constexpr std::size_t numbers_of_descent(int threads) {
 }
 
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a state a thread, or numbers_of_descent() where it is `roomy`; `part`: as climb_some_runs left it, or null.
+/// those after it. `memory`: for a state a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`: as climb_some_runs left it, or null.
 /// `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,

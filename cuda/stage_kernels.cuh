@@ -103,6 +103,7 @@ __device__ void climb_parts_quickly(Sweep const& sweep, dca::Run const& run, Rea
 template <class Sweep>
 __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
     if constexpr (comes_ahead<Sweep>) {
+        static_assert(!QuickFactors < Sweep::K == 1 > ::may_fail);  // bodies come once
         using Bodies = BodiesInTurn<BodiesOf<Sweep>>;
         Bodies bodies(sweep.bodies, run.body, run.body + run.count, shared_numbers);
         climb_parts_quickly(sweep, run, [&](int) { return typename Bodies::Part{bodies}; });
@@ -120,7 +121,7 @@ __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca
         if (std::int64_t const i = thread(); i < count) climb_whole(sweep, runs[i]);
     } else {
         typename Sweep::Part part;
-        climb_some_runs<false, false>(runs, static_cast<std::int64_t>(blockIdx.x) * (threads / dca::parts_of_run), count, sweep,
+        climb_some_runs<false, false>(runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep,
                                       shared_numbers, part,
                                       [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
     }

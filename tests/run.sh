@@ -11,12 +11,12 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests but for some that are slow under them (1, 2 ranks)
-  no-mpi      build without MPI, the tests but those of the mathematics, which is the same there
+  no-mpi      build without MPI, the tests but long ones of mathematics that is the same there
   minimal     build without any optional package, the same tests
   tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
 
   --quick  format and release alone
-  --long   also the long tests (statistics, drift; an hour or so), and most of those that sanitizers make slow
+  --long   also the long tests (statistics, drift; an hour or so), most of those that sanitizers make slow, and all without MPI
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
            job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
 On two cores a first run takes an hour, half of it compilers, whose work ccache keeps.
@@ -148,7 +148,7 @@ if build asan-ubsan; then
     if [ $long = yes ]; then slow='ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
-same_anywhere='^(dca|dca_levels|dca_stage_kernels|dca_articulated|dca_campaign|oracle|simd|kinematics|implicit|physics[a-z_]*)[./]|^physics'
+same_anywhere='^(dca_levels|dca_stage_kernels|dca_articulated|dca_campaign|oracle|kinematics|simd.ranks|physics_(order|trimer|energy))'
 if [ $long = yes ]; then same_anywhere='^$'; fi
 for preset in no-mpi minimal; do
     if build $preset; then ctests $preset-tests --preset $preset -E "$same_anywhere"; fi

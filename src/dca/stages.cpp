@@ -331,8 +331,8 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
 StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t at_once) {
     StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs, records.at_once};
     auto const bytes = [&](std::int64_t items) {
-        constexpr std::int64_t words = 10;  // of a merge, of an item, of what is handed over
-        return 8 * (packed_numbers(records.segment, items) + 2 * packed_numbers(records.state, items) + words * items);
+        constexpr std::int64_t words = 10, heads = 16;  // of a merge, of an item, of what is handed over; of all
+        return 8 * (packed_numbers(records.segment, items) + 2 * packed_numbers(records.state, items) + words * items + heads);
     };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;
     // A stage of runs has a segment a thread besides, for the parts.

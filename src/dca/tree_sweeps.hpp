@@ -7,8 +7,8 @@
 // states at the ends of part p. One that `keeps_nodes` has joined(..., node) and keep(joint, node) as well. One that `goes_short`
 // (cuda/short_chain.cuh) also has first_force(JointAt, segment), forces() and accelerate(k, ...) from what part(..., kept, factors) or, of
 // bodies read `one_by_one`, join_bodies() kept, and nobody reads its joints, forces or slots afterwards: they are not written then. One
-// that has matrices() and biases() may leave stages with runs to these, one after the other (cuda/stage_walk.cuh); one that
-// `keeps_passages` has down(..., passages), too, for `most_passages` of its Passage (cuda/run_parts.cuh).
+// that has matrices() and biases() may leave stages with runs to these, one after the other (cuda/stage_walk.cuh); one that takes factors
+// has joined(..., factors), down(..., passages, factors) and PassagesHere or, `keeps_passages`, others (cuda/run_parts.cuh).
 #pragma once
 
 #include "dca/closure.hpp"

@@ -1,7 +1,7 @@
 // CUDA's words for a host compiler, so that kernels run where there is no GPU. A block is a thread of the host and its threads are fibers
 // of that: from barrier to barrier they go one after the other, each time in another order, and what passes between them without a barrier
-// comes too late for some. Blocks of a cluster, or that wait for each other, go side by
-// side. The thread sanitizer takes every fiber for a thread.
+// comes too late for some. Blocks of a cluster, or that wait for each other, go side by side. The thread sanitizer takes every fiber for a
+// thread.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -31,6 +31,12 @@
 #if __has_feature(thread_sanitizer)
 #define CATENA_FIBERS_ARE_WATCHED
 #endif
+#if __has_feature(address_sanitizer)
+#define CATENA_STACKS_ARE_WATCHED
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__)
+#define CATENA_STACKS_ARE_WATCHED
 #endif
 #if defined(__SANITIZE_THREAD__)
 #define CATENA_FIBERS_ARE_WATCHED
@@ -44,6 +50,9 @@
 #define __host__
 #define __shared__ thread_local
 #define __launch_bounds__(...)
+
+/// _longjmp() without the check that it leads down the same stack, which some compilers put before it.
+extern "C" [[noreturn]] void catena_jump_to_another_stack(jmp_buf, int) __asm__("_longjmp");
 
 namespace catena::cuda_on_host {
 
@@ -79,13 +88,13 @@ class Stop {
         context_.uc_stack = stack;
         makecontext(&context_, entry, 0);
     }
-#if defined(CATENA_FIBERS_ARE_WATCHED) || defined(__SANITIZE_ADDRESS__)
+#if defined(CATENA_FIBERS_ARE_WATCHED) || defined(CATENA_STACKS_ARE_WATCHED)
     void switch_to(Stop& other) { swapcontext(&context_, &other.context_); }
 #else
     void switch_to(Stop& other) {
         if (_setjmp(jump_) != 0) return;
         has_jump_ = true;
-        if (other.has_jump_) _longjmp(other.jump_, 1);
+        if (other.has_jump_) catena_jump_to_another_stack(other.jump_, 1);
         setcontext(&other.context_);
     }
 #endif
@@ -196,8 +205,11 @@ class Block {
         return found;
     }
 
-    /// Copies to shared memory that a thread has started: they come when it waits for them.
-    static void start_copy(double* to, double const* from) { here_->fibers_[threadIdx.x].copies.push_back({to, from}); }
+    /// Copies to shared memory that a thread has started: they come when it waits for them, but what was there is lost at once.
+    static void start_copy(double* to, double const* from) {
+        *to = std::numeric_limits<double>::quiet_NaN();
+        here_->fibers_[threadIdx.x].copies.push_back({to, from});
+    }
     static void close_copies() {
         Fiber& fiber = here_->fibers_[threadIdx.x];
         fiber.together.push_back(fiber.copies.size());
@@ -207,6 +219,10 @@ class Block {
         if (fiber.together.size() <= left) return;
         std::size_t const end = fiber.together[fiber.together.size() - 1 - left];
         for (; fiber.come < end; ++fiber.come) *fiber.copies[fiber.come].to = *fiber.copies[fiber.come].from;
+        if (fiber.come < fiber.copies.size()) return;
+        fiber.copies.clear();
+        fiber.together.clear();
+        fiber.come = 0;
     }
     static void note_wait_for_launch() { here_->fibers_[threadIdx.x].waited_for_launch = true; }
 
@@ -255,6 +271,7 @@ class Block {
             ADD_FAILURE() << "a thread has not waited for the launch before";  // as cuda/launch.cuh asks of every kernel
             std::abort();
         }
+        if (!here_->fibers_[threadIdx.x].copies.empty()) ADD_FAILURE() << "a thread has not waited for its copies";
         here_->leave_fiber(0, Whole::nobody);
     }
     /// No race with the fibers that read it.

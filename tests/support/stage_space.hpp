@@ -22,7 +22,7 @@ struct StagedGpu {
     bool runs_apart = false;               // also where they are few, and a thread each
     std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
     bool short_chains = false;             // by themselves
-    std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart downwards
+    std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
 };
 /// In launches so far.
 struct StagesSeen {
