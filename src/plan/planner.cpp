@@ -38,12 +38,12 @@ Points const& measured_at(Points& curve, Numbers const& numbers, Measure const& 
 }  // namespace
 
 PhaseCurve const& Planner::phases_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
-    return measured_at(calibration_.of(family, arrangement), of_evaluations.around(bodies, largest(family)),
+    return measured_at(calibration_.of(family, arrangement), of_evaluations.around(bodies, largest(family, arrangement)),
                        [&](std::int64_t n) { return machine_.measure(family, n, arrangement); });
 }
 
 DriftCurve const& Planner::drifts_of(Family const& family, Arrangement const& arrangement, std::int64_t bodies) {
-    return measured_at(calibration_.of_drifts(family, arrangement), of_evaluations.around(bodies, largest(family)),
+    return measured_at(calibration_.of_drifts(family, arrangement), of_evaluations.around(bodies, largest(family, arrangement)),
                        [&](std::int64_t n) { return machine_.measure_drifts(family, n, arrangement); });
 }
 
@@ -105,9 +105,9 @@ Prediction Planner::predict(std::vector<Share> const& shares, LevelPlan const& l
 
 void Planner::measure_everything() {
     for (Family const& family : all_families()) {
-        for (std::int64_t const n : of_evaluations.up_to(largest(family), largest(family)))
-            for (auto const* list : {&machine_.alike, &machine_.others})
-                for (Arrangement const& arrangement : *list) {
+        for (auto const* list : {&machine_.alike, &machine_.others})
+            for (Arrangement const& arrangement : *list)
+                for (std::int64_t const n : of_evaluations.up_to(largest(family, arrangement), largest(family, arrangement))) {
                     phases_of(family, arrangement, n);
                     if (family.axes == Axes::world) drifts_of(family, arrangement, n);
                 }

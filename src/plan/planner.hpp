@@ -20,7 +20,8 @@ struct Prediction {
 
 class Planner {
   public:
-    /// Measures chains of at most `largest` bodies, and of four times as many beads, which take that much less memory each.
+    /// Measures chains of at most `largest` bodies, and of four times as many beads, which take that much less memory each, or bodies on a
+    /// GPU, which few do not fill.
     Planner(Machine machine, Calibration known, std::int64_t largest)
         : machine_(std::move(machine)), calibration_(std::move(known)), known_(calibration_.points()), largest_(largest) {}
 
@@ -45,7 +46,9 @@ class Planner {
     PhaseCurve const& phases_of(Family const&, Arrangement const&, std::int64_t bodies);
     DriftCurve const& drifts_of(Family const&, Arrangement const&, std::int64_t bodies);
     LevelCurve const& levels_of(Family const&, Place, std::int64_t bodies);
-    std::int64_t largest(Family const& family) const { return family.beads() ? 4 * largest_ : largest_; }
+    std::int64_t largest(Family const& family, Arrangement const& arrangement) const {
+        return family.beads() || uses_gpu(arrangement.backend) ? 4 * largest_ : largest_;
+    }
 
     Machine machine_;
     Calibration calibration_;
