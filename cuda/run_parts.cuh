@@ -191,8 +191,8 @@ constexpr std::size_t numbers_of_descent(int threads) {
 }
 
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a state a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`: as climb_some_runs left it, or null.
-/// `nodes_stay`: so does `memory`.
+/// those after it. `memory`: for a state a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`:
+/// as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
