@@ -34,6 +34,10 @@ class BodiesInTurn {
             n += D;
             return {};
         }
+        template <class T, int D>
+        __device__ Vector<double, D> if_any_turning(FieldView<T, D> const& view, std::int64_t k) {
+            return if_any(view, k);
+        }
     };
     struct Take {
         double const* from;
@@ -51,6 +55,10 @@ class BodiesInTurn {
             int const first = n;
             n += D;
             return view.origin ? Take{from, first}(view, k) : Vector<double, D>::zero();
+        }
+        template <class T, int D>
+        __device__ Vector<double, D> if_any_turning(FieldView<T, D> const& view, std::int64_t k) {
+            return if_any(view, k);
         }
     };
 

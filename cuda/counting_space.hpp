@@ -93,6 +93,12 @@ class CountingSpace : public HostAccess {
         explicit Fixed(Field<D> const& host) : FieldOf<D>(host.size()) {}
         ConstView<D> view() const { return {}; }
     };
+    template <int D>
+    class Alike : public FieldOf<D> {
+      public:
+        explicit Alike(Field<D> const& host) : FieldOf<D>(rows_are_one(host) ? gpu_order::tile : host.size()) {}
+        ConstView<D> view() const { return {}; }
+    };
     class Directions {
       public:
         Directions() = default;
@@ -125,20 +131,19 @@ class CountingSpace : public HostAccess {
         List<std::uint8_t> is_first_, is_last_, restricted_;
         List<std::int32_t> jointed_tip_;
         List<Vec3> tip_screw_;
-        Fixed<1> inverse_mass_;
-        Fixed<6> inverse_inertia_;
-        Fixed<3> r1_, r2_;
-        Fixed<6> axes1_, axes2_;
+        Alike<1> inverse_mass_;
+        Alike<6> inverse_inertia_;
+        Alike<3> r1_, r2_;
+        Alike<6> axes1_, axes2_;
         Fixed<3> screw_;
-        Fixed<1> mass_;
-        Fixed<6> inertia_;
+        Alike<1> mass_;
+        Alike<6> inertia_;
     };
     template <class T, dca::Order order>
     class Records {
       public:
         explicit Records(std::int64_t count) {
-            std::int64_t const pitch = order == dca::Order::by_body ? gpu_order::padded(count) : (count + 31) / 32 * 32;
-            Count::add(static_cast<std::int64_t>(sizeof(double)) * pitch * dca::RecordsView<T, order>::numbers);
+            Count::add(static_cast<std::int64_t>(sizeof(double)) * dca::padded_on_gpu(order, count) * dca::RecordsView<T, order>::numbers);
         }
         dca::RecordsView<T, order> view() { return {}; }
     };

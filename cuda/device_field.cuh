@@ -1,4 +1,4 @@
-// Fields on a GPU: as BasicField and DirectionsField on the host, in the GPU's order (gpu_order). The host's order is made and undone on
+// Fields on a GPU: as BasicField and DirectionsField on the host, as the GPU has them (gpu_order). The host's order is made and undone on
 // the device.
 #pragma once
 
@@ -13,12 +13,12 @@ namespace kernels {
 static __global__ void to_gpu_order(double const* host, std::int64_t host_pitch, double* device, std::int64_t pitch, std::int64_t begin,
                                     std::int64_t end) {
     std::int64_t const k = begin + static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-    if (k < end) device[blockIdx.y * pitch + gpu_order::place(k)] = host[blockIdx.y * host_pitch + k];
+    if (k < end) device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes] = host[blockIdx.y * host_pitch + k];
 }
 static __global__ void to_host_order(double const* device, std::int64_t pitch, double* host, std::int64_t host_pitch, std::int64_t begin,
                                      std::int64_t end) {
     std::int64_t const k = begin + static_cast<std::int64_t>(blockIdx.x) * blockDim.x + threadIdx.x;
-    if (k < end) host[blockIdx.y * host_pitch + k] = device[blockIdx.y * pitch + gpu_order::place(k)];
+    if (k < end) host[blockIdx.y * host_pitch + k] = device[gpu_order::first_number(k, pitch) + blockIdx.y * gpu_order::lanes];
 }
 
 }  // namespace kernels
@@ -49,10 +49,9 @@ class DeviceColumns {
         : first_(first_body),
           count_(count),
           columns_(columns),
-          pitch_(count > 0 ? halo + gpu_order::padded(first_body + count) : 0),
-          data_(static_cast<std::size_t>(pitch_ * columns)) {}
-    double* origin() const { return data_.data() ? data_.data() + halo : nullptr; }
-    std::int64_t pitch() const { return pitch_; }
+          data_(static_cast<std::size_t>(count > 0 ? pitch() + gpu_order::padded(first_body + count) * columns : 0)) {}
+    double* origin() const { return data_.data() ? data_.data() + pitch() : nullptr; }  // the halo's row comes before
+    std::int64_t pitch() const { return gpu_order::pitch(columns_); }
     int columns() const { return columns_; }
 
     /// `host`: the number of body 0 in the first column.
@@ -60,24 +59,22 @@ class DeviceColumns {
         if (!host || !origin()) return;
         Scratch const plain(count_ * columns_, stream);
         copy_columns(plain.data(), count_, host + first_, host_pitch, count_, columns_, cudaMemcpyHostToDevice, stream);
-        kernels::to_gpu_order<<<grid(), threads, 0, stream>>>(plain.data() - first_, count_, origin(), pitch_, first_, first_ + count_);
+        kernels::to_gpu_order<<<grid(), threads, 0, stream>>>(plain.data() - first_, count_, origin(), pitch(), first_, first_ + count_);
         check(cudaGetLastError(), "start a kernel");
     }
     void download(double* host, std::int64_t host_pitch, cudaStream_t stream) const {
         if (!host || !origin()) return;
         Scratch const plain(count_ * columns_, stream);
-        kernels::to_host_order<<<grid(), threads, 0, stream>>>(origin(), pitch_, plain.data() - first_, count_, first_, first_ + count_);
+        kernels::to_host_order<<<grid(), threads, 0, stream>>>(origin(), pitch(), plain.data() - first_, count_, first_, first_ + count_);
         check(cudaGetLastError(), "start a kernel");
         copy_columns(host + first_, host_pitch, plain.data(), count_, count_, columns_, cudaMemcpyDeviceToHost, stream);
     }
 
   private:
-    static constexpr std::int64_t halo = gpu_order::lanes;  // keeps lines whole
     static constexpr int threads = 256;
     dim3 grid() const { return {static_cast<unsigned>((count_ + threads - 1) / threads), static_cast<unsigned>(columns_)}; }
     std::int64_t first_ = 0, count_ = 0;
     int columns_ = 0;
-    std::int64_t pitch_ = 0;
     Buffer<double> data_;
 };
 

@@ -3,6 +3,7 @@
 
 #include "chain/chain_group.hpp"
 #include "cuda/device_field.cuh"
+#include "cuda/memory.hpp"
 
 namespace catena::cuda {
 
@@ -17,6 +18,27 @@ class FixedField {
     ConstView<D> view() const { return field_.view(); }
 
   private:
+    DeviceField<D> field_;
+};
+
+/// Of bodies that are all alike one row of the GPU's memory, from which it is no way to the next: all rows of bodies are there.
+/// Precondition: nobody asks for the halo.
+template <int D>
+class AlikeField {
+  public:
+    explicit AlikeField(Field<D> const& host)
+        : size_(host.size()), one_row_(rows_are_one(host)), field_(one_row_ ? gpu_order::tile : size_) {
+        field_.upload(host.view(), nullptr);
+        check(cudaStreamSynchronize(nullptr), "take the model");
+    }
+    ConstView<D> view() const {
+        ConstView<D> const all = field_.view();
+        return one_row_ ? ConstView<D>{all.origin, 0, size_} : all;
+    }
+
+  private:
+    std::int64_t size_;
+    bool one_row_;
     DeviceField<D> field_;
 };
 
@@ -62,13 +84,13 @@ class DeviceModel {
     Buffer<std::uint8_t> is_first_, is_last_, restricted_;
     Buffer<std::int32_t> jointed_tip_;
     Buffer<Vec3> tip_screw_;
-    FixedField<1> inverse_mass_;
-    FixedField<6> inverse_inertia_;
-    FixedField<3> r1_, r2_;
-    FixedField<6> axes1_, axes2_;
+    AlikeField<1> inverse_mass_;
+    AlikeField<6> inverse_inertia_;
+    AlikeField<3> r1_, r2_;
+    AlikeField<6> axes1_, axes2_;
     FixedField<3> screw_;
-    FixedField<1> mass_;
-    FixedField<6> inertia_;
+    AlikeField<1> mass_;
+    AlikeField<6> inertia_;
 };
 
 }  // namespace catena::cuda

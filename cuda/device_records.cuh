@@ -13,12 +13,10 @@ template <class T, dca::Order order>
 class DeviceRecords {
   public:
     explicit DeviceRecords(std::int64_t count)
-        : pitch_(order == dca::Order::by_body ? gpu_order::padded(count) : (count + 31) / 32 * 32),
-          numbers_(static_cast<std::size_t>(pitch_ * dca::RecordsView<T, order>::numbers)) {}
-    dca::RecordsView<T, order> view() { return {numbers_.data(), pitch_}; }
+        : numbers_(static_cast<std::size_t>(dca::padded_on_gpu(order, count) * dca::RecordsView<T, order>::numbers)) {}
+    dca::RecordsView<T, order> view() { return {numbers_.data()}; }
 
   private:
-    std::int64_t pitch_;
     Buffer<double> numbers_;
 };
 

@@ -188,7 +188,7 @@ class DeviceSpace {
     template <int D>
     Vector<double, D> get(ConstView<D> field, std::int64_t k) const {
         static_assert(D <= most_of_a_body);
-        for_each(D, kernels::TakeBody{field.origin + gpu_order::place(k), field.pitch, letter_->data()});
+        for_each(D, kernels::TakeBody{number_of(field, k), letter_->data()});
         wait();
         Vector<double, D> value;
         std::copy_n(letter_->data(), D, value.data);
@@ -196,7 +196,7 @@ class DeviceSpace {
     }
     template <int D>
     void put(View<D> field, std::int64_t k, Vector<double, D> const& value) const {
-        for_each(D, kernels::PutBody<D>{field.origin + gpu_order::place(k), field.pitch, value});
+        for_each(D, kernels::PutBody<D>{number_of(field, k), value});
     }
     template <int D>
     void exchange(Communicator const& communicator, BodyExchange<D> const& e) const {
@@ -205,8 +205,7 @@ class DeviceSpace {
         message.exchanges = 1;
         message.sent_bytes = e.to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
         communicator.tally(message);
-        exchange(peers_.to_and_from<D>(e.to, e.source), kernels::BodyNumbers{e.from.origin + gpu_order::place(e.i), e.from.pitch,
-                                                                             e.into.origin + gpu_order::place(e.j), e.into.pitch});
+        exchange(peers_.to_and_from<D>(e.to, e.source), kernels::BodyNumbers{number_of(e.from, e.i), number_of(e.into, e.j)});
     }
     using Direct = PeerCall;
     Direct connect(dca::Schedule const& schedule, int width) const { return peers_.among_all(schedule, width); }
@@ -283,6 +282,11 @@ class DeviceSpace {
     int threads() const { return 1; }
 
   private:
+    /// Where body k's first one stands in the GPU's memory.
+    template <class Real, int D>
+    static Real* number_of(FieldView<Real, D> const& field, std::int64_t k) {
+        return field.origin + gpu_order::first_number(k, field.pitch);
+    }
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
     static void started() { check(cudaGetLastError(), "start a kernel"); }

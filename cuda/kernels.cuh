@@ -24,16 +24,14 @@ __global__ void over(Item const* items, std::int64_t count, Action action) {
 /// Item i: number i of a body, between a field and memory that the host reaches or gave.
 struct TakeBody {
     double const* from;
-    std::int64_t pitch;
     double* to;
-    __device__ void operator()(std::int64_t i) const { to[i] = from[i * pitch]; }
+    __device__ void operator()(std::int64_t i) const { to[i] = from[i * gpu_order::lanes]; }
 };
 template <int D>
 struct PutBody {
     double* to;
-    std::int64_t pitch;
     Vector<double, D> value;
-    __device__ void operator()(std::int64_t i) const { to[i * pitch] = value[static_cast<int>(i)]; }
+    __device__ void operator()(std::int64_t i) const { to[i * gpu_order::lanes] = value[static_cast<int>(i)]; }
 };
 
 /// Doubles from 0 on have the order of their bits, and a NaN is above them all.

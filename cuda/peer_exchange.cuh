@@ -104,11 +104,9 @@ __global__ void exchange(PeerCall call, Numbers numbers) {
 /// Of a body on its way into another rank's halo.
 struct BodyNumbers {
     double const* from;
-    std::int64_t from_pitch;
     double* to;
-    std::int64_t to_pitch;
-    __device__ double show(std::int64_t i) const { return from[i * from_pitch]; }
-    __device__ void take(std::int64_t i, double value) const { to[i * to_pitch] = value; }
+    __device__ double show(std::int64_t i) const { return from[i * gpu_order::lanes]; }
+    __device__ void take(std::int64_t i, double value) const { to[i * gpu_order::lanes] = value; }
 };
 
 }  // namespace kernels

@@ -1,5 +1,5 @@
 // Quotients and roots without branches, so that what is independent of them goes on meanwhile. They have the bits of those that are rounded
-// once: steps and ranges are the ones that nvcc takes itself before it looks for the rest. Beyond these ranges they answer NaN.
+// once: steps and ranges are the ones that nvcc takes itself before it looks for the rest. Beyond these ranges they say so, or answer NaN.
 #pragma once
 
 #include <limits>
@@ -8,21 +8,23 @@
 
 namespace catena::cuda::kernels {
 
+__device__ inline double not_known() { return __builtin_nan(""); }
+
 #if defined(__CUDACC__)
 /// A double's upper half: its sign, eleven bits of its exponent, and the leading ones of its mantissa.
 namespace upper {
 constexpr unsigned no_sign = 0x7fffffff, exponent_step = 0x00100000, infinite = 0x7ff00000;
-constexpr int not_a_number = 0x7ff80000;
 __device__ inline unsigned of(double x) { return static_cast<unsigned>(__double2hiint(x)); }
 }  // namespace upper
-__device__ inline double not_known() { return __hiloint2double(upper::not_a_number, 0); }
 /// A first guess has twenty good bits in its upper half; nvcc puts something there for the lower one that tells of the range as well.
 __device__ inline double first_guess(double coarse, unsigned lower) {
     return __hiloint2double(__double2hiint(coarse), static_cast<int>(lower));
 }
 #endif
 
+/// 1 / x, or anything where it does not `know`.
 struct QuickInverse {
+    bool& known;
     __device__ double operator()(double x) const {
 #if defined(__CUDACC__)
         constexpr unsigned shift = 0x00300402;  // the sign's bit and those below it tell where the exponent is too large
@@ -35,10 +37,12 @@ struct QuickInverse {
         y = __fma_rn(y, e, y);
         e = __fma_rn(-x, y, 1.0);
         y = __fma_rn(y, e, y);
-        return (lower & upper::no_sign) >= shift + upper::exponent_step ? y : not_known();
+        known = known & ((lower & upper::no_sign) >= shift + upper::exponent_step);
+        return y;
 #else
         double const size = x < 0 ? -x : x;
-        return size >= std::numeric_limits<double>::min() && size < 0x1p1022 ? 1 / x : std::numeric_limits<double>::quiet_NaN();
+        known = known && size >= std::numeric_limits<double>::min() && size < 0x1p1022;
+        return known ? 1 / x : not_known();
 #endif
     }
 };
@@ -58,11 +62,13 @@ struct QuickInverseLength {
         double const root = __dmul_rn(x, y);
         double const half = __hiloint2double(static_cast<int>(upper::of(y) - upper::exponent_step), __double2loint(y));  // of y
         double const length = __fma_rn(__fma_rn(root, -root, x), half, root);
-        double const found = QuickInverse{}(length);  // in any case: no branch
-        return lower < upper::infinite - least ? found : not_known();
+        bool known = lower < upper::infinite - least;
+        double const found = QuickInverse{known}(length);  // in any case: no branch
+        return known ? found : not_known();
 #else
         double const x = dot(d, d);
-        return x >= 0x1p-960 && x < 0x1p1023 ? QuickInverse{}(norm(d)) : std::numeric_limits<double>::quiet_NaN();
+        bool known = x >= 0x1p-960 && x < 0x1p1023;
+        return QuickInverse{known}(norm(d));
 #endif
     }
 };
@@ -73,17 +79,21 @@ struct QuickFactors {
     static constexpr bool may_fail = gives_up;
     template <int K>
     __device__ Symmetric<double, K> operator()(Symmetric<double, K> const& z, int restricted) const {
-        auto quick = dca::factorize(z, K, QuickInverse{});
+        bool known = gives_up || restricted == K;
+        auto quick = dca::factorize(z, K, QuickInverse{known});
         if constexpr (gives_up) {
             static_assert(K == 1);
-            quick(0, 0) = restricted > 0 ? quick(0, 0) : 0;
+            quick(0, 0) = restricted <= 0 ? 0 : known ? quick(0, 0) : not_known();
             return quick;
         } else {
-            double sum = 0;
-        CATENA_UNROLL
-            for (int i = 0; i < K; ++i) sum = sum + quick(i, i);
-            return restricted == K && sum == sum ? quick : dca::factorize(z, restricted);
+            return known ? quick : dca::factorize(z, restricted);
         }
+    }
+    template <class Result>
+    __device__ auto with_inverse(Result const& result) const {
+        bool known = true;
+        auto const quick = result(QuickInverse{known});
+        return known ? quick : result(dca::Quotient{});
     }
 };
 

@@ -154,15 +154,13 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
     __syncthreads();
 }
 
-/// A sweep whose parts leave what their joints pass on in memory (Evaluation).
-template <class Sweep>
-concept keeps_passages = requires { requires Sweep::keeps_passages; };
-/// Where a thread leaves that.
+/// Where a thread leaves what a part's joints pass on, but the last one.
 template <class Sweep>
 struct PassagesInMemory {
+    static constexpr int most = dca::part_length - 2;
     using Passage = typename Sweep::Passage;
     double* memory;
-    static __host__ __device__ constexpr std::size_t size(int threads) { return Sweep::most_passages * PackedRecords<Passage>::size(threads); }
+    static __host__ __device__ constexpr std::size_t size(int threads) { return most * PackedRecords<Passage>::size(threads); }
     __device__ void put(int i, Passage const& passage) const { records(i).store(static_cast<int>(threadIdx.x), passage); }
     __device__ Passage get(int i) const { return records(i).load(static_cast<int>(threadIdx.x)); }
 
@@ -173,6 +171,53 @@ struct PassagesInMemory {
 };
 template <class Sweep>
 using BodiesOf = decltype(Sweep::bodies);
+/// A sweep that reads a part's bodies one by one and comes by them twice on its way down.
+template <class Sweep>
+concept comes_twice = requires { requires Sweep::one_by_one; };
+/// Where a thread leaves what such a sweep wants again. What is of bodies lies together, an odd number of numbers, so that threads do not meet
+/// in a bank; passages, where there are no registers for them, come after.
+template <class Sweep>
+class LeftInMemory {
+    using Turning = typename BodiesOf<Sweep>::Turning;
+    using Passage = typename Sweep::Passage;
+    static constexpr bool passages_too = Sweep::K > 2;
+    using Passages = std::conditional_t<passages_too, PassagesInMemory<Sweep>, typename Sweep::PassagesHere>;
+    static constexpr int of_thread = dca::part_length * numbers_of<Turning> | 1;
+    static __host__ __device__ constexpr std::size_t size_of_turnings(int threads) {
+        return static_cast<std::size_t>(of_thread) * static_cast<std::size_t>(threads);
+    }
+
+  public:
+    static constexpr bool keeps_turnings = true, in_loops = passages_too;
+    static constexpr int most = Passages::most;
+    static __host__ __device__ constexpr std::size_t size(int threads) {
+        std::size_t const turnings = size_of_turnings(threads);
+        if constexpr (passages_too)
+            return turnings + Passages::size(threads);
+        else
+            return turnings;
+    }
+    __device__ explicit LeftInMemory(double* memory) : turnings_(memory + threadIdx.x * of_thread) {
+        if constexpr (passages_too) passages_.memory = memory + size_of_turnings(static_cast<int>(blockDim.x));
+    }
+    __device__ void put(int i, Passage const& passage) { passages_.put(i, passage); }
+    __device__ Passage get(int i) const { return passages_.get(i); }
+    __device__ void keep(int i, Turning const& turning) const {
+        auto const values = __builtin_bit_cast(NumbersOf<Turning>, turning);
+        CATENA_UNROLL
+        for (int n = 0; n < numbers_of<Turning>; ++n) turnings_[i * numbers_of<Turning> + n] = values[n];
+    }
+    __device__ Turning turning(int i) const {
+        NumbersOf<Turning> values;
+        CATENA_UNROLL
+        for (int n = 0; n < numbers_of<Turning>; ++n) values[n] = turnings_[i * numbers_of<Turning> + n];
+        return __builtin_bit_cast(Turning, values);
+    }
+
+  private:
+    double* turnings_;
+    Passages passages_;
+};
 /// Whether bodies of runs come ahead of the thread that waits for them: it gains where handles are spherical, others lose a little.
 template <class Sweep>
 constexpr bool comes_ahead = false;
@@ -184,8 +229,8 @@ constexpr bool comes_ahead<Sweep> = Sweep::K == 3;
 template <class Sweep>
 constexpr std::size_t numbers_of_descent(int threads) {
     std::size_t const states = PackedRecords<typename Sweep::Sweeps::State>::size(threads);
-    if constexpr (keeps_passages<Sweep>)
-        return states + PassagesInMemory<Sweep>::size(threads);
+    if constexpr (comes_twice<Sweep>)
+        return states + LeftInMemory<Sweep>::size(threads);
     else
         return states;
 }
@@ -229,11 +274,12 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     }
     if (mine.part >= count) return;
     if (mine.part == 0 && count > 1) next = at_part.load(here + lanes);
-    if constexpr (roomy && keeps_passages<Sweep>)
-        down_quickly<false>(sweep, run, mine.part, part ? *part : read, own, next,
-                            PassagesInMemory<Sweep>{memory + PackedRecords<State>::size(static_cast<int>(blockDim.x))});
+    if constexpr (roomy && comes_twice<Sweep>)
+        down_quickly<unroll && !LeftInMemory<Sweep>::in_loops>(
+            sweep, run, mine.part, part ? *part : read, own, next,
+            LeftInMemory<Sweep>(memory + PackedRecords<State>::size(static_cast<int>(blockDim.x))));
     else if constexpr (takes_factors<Sweep>)
-        down_quickly<unroll && !keeps_passages<Sweep>>(sweep, run, mine.part, part ? *part : read, own, next,
+        down_quickly<unroll && !Sweep::in_loops>(sweep, run, mine.part, part ? *part : read, own, next,
                                                        typename Sweep::PassagesHere{});
     else
         sweep.template down<unroll>(run, mine.part, part ? *part : read, own, next);

@@ -138,8 +138,8 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage s
     }
     meet_cluster();
     std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
-    for (std::int64_t place = thread(); place < gpu_order::padded(count); place += threads)
-        if (std::int64_t const k = gpu_order::body(place); k < count) action(k);
+    for (std::int64_t i = thread(); i < gpu_order::padded(count); i += threads)
+        if (std::int64_t const k = gpu_order::body(i); k < count) action(k);
 }
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {

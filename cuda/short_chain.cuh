@@ -100,7 +100,7 @@ class ShortWarp {
             std::int64_t const begin = (static_cast<std::int64_t>(warp_) * lanes_of_warp + lane_) * dca::part_length;
             auto const is_here = [&](int i) { return i < dca::part_length && begin + i < chain_.bodies; };
             CATENA_NO_UNROLL
-            for (int i = beside_; is_here(i); i += beside) kept.put(i, sweep_.bodies.segment(body(begin + i)));
+            for (int i = beside_; is_here(i); i += beside) kept.put(i, sweep_.bodies.segment(body(begin + i), Factors{}));
             __syncthreads();
             wait_for_cluster();
             if (beside_ == 0) join(here, kept);
@@ -112,7 +112,7 @@ class ShortWarp {
                 typename Sweep::Body const own = next;
                 if (is_here(i + beside)) next = body(begin + i + beside);
                 Ends const ends = kept.template get<Ends>(i);
-                sweep_.accelerate(begin + i, own, ends.first, ends.next);
+                sweep_.accelerate(begin + i, own, ends.first, ends.next, Factors{});
             }
         } else {
             join(here, kept);
@@ -227,7 +227,7 @@ class ShortWarp {
             if constexpr (one_by_one)
                 kept.put(i, Ends{inboard, outboard});
             else
-                sweep_.accelerate(here.begin + i, sweep_.bodies.body(read, i), inboard, outboard);
+                sweep_.accelerate(here.begin + i, sweep_.bodies.body(read, i), inboard, outboard, Factors{});
         });
     }
     __device__ dca::Run run_here() const {

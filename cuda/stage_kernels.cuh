@@ -82,9 +82,12 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     block.template give_items<false>(&part);
     if (threadIdx.x == 0) letters.close();
 }
-/// Blocks of `threads` that share a multiprocessor: links want few registers, and many to hide that memory is far.
+/// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want few registers, and many to hide that
+/// memory is far; on spherical joints the way down does.
 template <class Sweep>
-constexpr int blocks_at_once = Sweep::Sweeps::K == 1 ? 4 : 1;
+constexpr int blocks_of_climb = Sweep::Sweeps::K == 1 ? 4 : 1;
+template <class Sweep>
+constexpr int blocks_of_descent = Sweep::Sweeps::K == 3 && comes_twice<Sweep> ? 3 : blocks_of_climb<Sweep>;
 /// Whether a thread takes a whole run on the way up: larger handles would have most of them wait for one that joins the parts.
 template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;
@@ -114,7 +117,7 @@ __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
     }
 }
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     if constexpr (whole_runs<Sweep>) {
@@ -128,7 +131,7 @@ __global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) climb_runs(dca
 }
 /// From the last block to the first: what the way up read last is still near.
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_at_once<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     std::int64_t const block = gridDim.x - 1 - blockIdx.x;

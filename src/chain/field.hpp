@@ -1,10 +1,11 @@
 // One quantity of D components for every body a rank holds, component after component (a structure of arrays), with one
 // halo body on either side. All addressing is here, in DirectionsView and in RecordsView: a GPU's arrays have an order of their own
-// (place_of), so that host code must not reach through a view of a device, nor the other way round.
+// (gpu_order), so that host code must not reach through a view of a device, nor the other way round.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 #include <type_traits>
 
@@ -17,22 +18,39 @@ namespace catena {
 template <class Real, int D>
 struct FieldView {
     Real* origin = nullptr;  // component 0 of body 0
-    std::int64_t pitch = 0;  // from one component to the next
+    std::int64_t pitch = 0;  // as place_of() has it
     std::int64_t size = 0;
 
-    CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * pitch + place_of(k)]; }
+    CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * to_next_number(pitch) + place_of(k, pitch)]; }
     CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const {
         Vector<std::remove_const_t<Real>, D> v;
-        Real* const first = origin + place_of(k);
+        Real* const first = origin + place_of(k, pitch);
         CATENA_UNROLL
-        for (int i = 0; i < D; ++i) v[i] = first[i * pitch];
+        for (int i = 0; i < D; ++i) v[i] = first[i * to_next_number(pitch)];
         return v;
+    }
+    /// Where nobody will want it soon: it may leave a GPU's caches first.
+    CATENA_HD Vector<std::remove_const_t<Real>, D> load_last(std::int64_t k) const {
+#if defined(__CUDA_ARCH__)
+        Vector<std::remove_const_t<Real>, D> v;
+        Real* const first = origin + place_of(k, pitch);
+        CATENA_UNROLL
+        for (int i = 0; i < D; ++i) v[i] = __ldcs(first + i * to_next_number(pitch));
+        return v;
+#else
+        return load(k);
+#endif
     }
     template <class Value>
     CATENA_HD void store(std::int64_t k, Vector<Value, D> const& v) const {
-        Real* const first = origin + place_of(k);
+        Real* const first = origin + place_of(k, pitch);
         CATENA_UNROLL
-        for (int i = 0; i < D; ++i) first[i * pitch] = v[i];
+        for (int i = 0; i < D; ++i) first[i * to_next_number(pitch)] = v[i];
+    }
+    /// `count` of the components, as a field of their own.
+    template <int count>
+    CATENA_HD FieldView<Real, count> components(int first) const {
+        return {origin + first * to_next_number(pitch), pitch, size};
     }
     CATENA_HD operator FieldView<Real const, D>() const { return {origin, pitch, size}; }
 };
@@ -53,6 +71,15 @@ class BasicField {
         return data_.empty() ? FieldView<Real const, D>{} : FieldView<Real const, D>{data_.data() + halo, pitch_, size_};
     }
     Vector<Real, D> operator[](std::int64_t k) const { return view().load(k); }
+    /// Whether all bodies have the same numbers, to the bit; the halo may have others.
+    bool alike() const {
+        for (int i = 0; i < D; ++i) {
+            Real const* const first = size_ > 0 ? &view().at(0, i) : nullptr;
+            for (std::int64_t k = 1; k < size_; ++k)
+                if (std::memcmp(first, first + k, sizeof(Real)) != 0) return false;
+        }
+        return true;
+    }
     void set(std::int64_t k, Vector<Real, D> const& v) { view().store(k, v); }
 
   private:

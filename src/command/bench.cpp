@@ -128,9 +128,11 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
         {0, 2, 10});
     Outcome outcome = begun("solve", communicator);
     outcome.json["loads"] = request.loads;
+    outcome.json["alike"] = request.alike;
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request), request.loads);
+            if (request.alike) make_alike(scene);
             bool const with_oracle = communicator.rank() == 0 && scene.bodies() <= most_bodies_of_oracle;
             Spread const oracle = with_oracle ? time_oracle(scene, std::min(request.repeat, 5)) : Spread{};
             for (Backend const backend : backends) {
@@ -153,9 +155,10 @@ Outcome solve(Communicator const& communicator, BenchRequest const& request) {
 struct Traffic {
     double read = 0, write = 0;
 };
-Traffic traffic_of(std::string const& joint) {
-    if (joint == "link") return {80, 24};
-    if (joint == "spherical") return {208, 48};
+/// Of alike bodies what never changes does not count.
+Traffic traffic_of(std::string const& joint, bool alike) {
+    if (joint == "link") return {alike ? 72.0 : 80.0, 24};
+    if (joint == "spherical") return {alike ? 104.0 : 208.0, 48};
     return {};
 }
 /// So many evaluations one after the other that a moment's noise does not count.
@@ -207,15 +210,17 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
     std::vector<Backend> const backends = backends_at_once(request);
     Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
     Outcome outcome = begun("evaluation", communicator);
+    outcome.json["alike"] = request.alike;
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
             Scene scene = random_scene(joint, bodies, overrides_of(request));
+            if (request.alike) make_alike(scene);
             for (Backend const backend : backends) {
                 AtOnce const found = time_at_once(scene, backend, communicator, request.repeat);
                 bool const valid = found.residual <= found.bound;
                 outcome.valid = outcome.valid && valid;
                 auto const n = static_cast<double>(scene.bodies());
-                Traffic const traffic = traffic_of(joint);
+                Traffic const traffic = traffic_of(joint, request.alike);
                 double const rate = n * (traffic.read + traffic.write) / found.seconds.median * 1e-9;
                 // Two sweeps over what is read, at what an H200's memory delivers, each rank's.
                 double const floor = n / communicator.size() * (2 * traffic.read + traffic.write) / 4.2e12 / found.seconds.median;

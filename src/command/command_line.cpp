@@ -33,7 +33,7 @@ struct Words {
         suite, cases;
     std::vector<std::string> scenes;
     SamplingWords sampling;
-    bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false;
+    bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false, alike = false;
 };
 
 void add_common(CLI::App& command, Words& words) {
@@ -171,6 +171,8 @@ void add_commands(CLI::App& app, Words& words) {
         ->add_option("--loads", words.loads,
                      "of solve and peers, beside gravity: none | torques of joints | wrenches (default), in ground axes on every body, too")
         ->type_name("LOADS");
+    command->add_flag("--alike", words.alike,
+                      "of solve and evaluation: bodies that have the same mass, inertia and joints (default: random ones)");
     add_repeat(*command, words, "21");
     command
         ->add_option("--backend", words.backends,
@@ -333,8 +335,10 @@ BenchRequest bench_request(Words const& words) {
     if (words.name == later_bench) throw not_in_this_version("catena bench " + words.name);
     request.name = known_value("catena bench", words.name, bench_names);
     using Given = std::pair<char const*, std::string const&>;
-    for (auto const& [option, given] : {Given{"--figure", words.figures}, Given{"--output", words.output}, Given{"--joints", words.joints},
-                                        Given{"--sizes", words.sizes}, Given{"--repeat", words.repeat}, Given{"--loads", words.loads}})
+    std::string const alike = words.alike ? "yes" : "";
+    for (auto const& [option, given] :
+         {Given{"--figure", words.figures}, Given{"--output", words.output}, Given{"--joints", words.joints}, Given{"--sizes", words.sizes},
+          Given{"--repeat", words.repeat}, Given{"--loads", words.loads}, Given{"--alike", alike}})
         if (!given.empty() && !bench_takes(request.name, option))
             throw InputError(fmt::format("{} is nothing to catena bench {}", option, request.name), "command line", "leave it out");
     request.sizes = bench_sizes(request.name);
@@ -344,6 +348,7 @@ BenchRequest bench_request(Words const& words) {
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
     for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
     if (!words.loads.empty()) request.loads = words.loads;
+    request.alike = words.alike;
     known_value("--loads", request.loads, load_names);
     if (!words.backends.empty())
         for (std::string const& backend : comma_list("--backend", words.backends))

@@ -22,6 +22,17 @@ Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<st
     return scene;
 }
 
+void make_alike(Scene& scene) {
+    auto const as_first = [](auto& values) {
+        if (!values.empty()) std::fill(values.begin() + 1, values.end(), values.front());
+    };
+    ChainSpec& chain = scene.chains.front();
+    as_first(chain.beads.mass);
+    BodyArrays& b = chain.bodies;
+    as_first(b.mass), as_first(b.com), as_first(b.inertia);
+    as_first(b.axis), as_first(b.first_axis), as_first(b.rotation), as_first(b.translation), as_first(b.pitch);
+}
+
 Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides) {
     std::string const text = fmt::format(
         "title: 8 swinging bodies, {0}\n"

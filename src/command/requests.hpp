@@ -65,6 +65,7 @@ struct BenchRequest : CommonOptions {
     std::vector<std::int64_t> sizes;  // empty: the benchmark's own
     std::vector<std::string> joints{"link", "spherical", "revolute"};
     std::string loads = "wrenches";  // of solve and peers, as random_scene()
+    bool alike = false;              // of solve and evaluation: make_alike()
     std::vector<Backend> backends;   // empty: all of this build
     std::vector<std::string> figures;
     std::string output;  // folder, of figures and of overlap's pictures

@@ -26,8 +26,9 @@ struct Resting {
     CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/, InverseLength const& /*inverse_length*/ = {}) const {
         return {begin};
     }
-    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
-        return {leaf.body(loads, part.begin + i), restricted[part.begin + i]};
+    template <class Reader = ReadHere>
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i, Reader const& by = {}) const {
+        return {leaf.body(loads, part.begin + i, by), restricted[part.begin + i]};
     }
     /// Of bodies that come by another way (cuda/bodies_ahead.cuh).
     template <class AnyPart>
@@ -45,13 +46,27 @@ struct Resting {
         return {leaf.turned(loads, body), body.k};
     }
 
-    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
-                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
-        leaf.accelerate(loads, part.begin + i, inboard, outboard, out);
+    /// What its segment and its accelerations need, for one that keeps less.
+    using Turning = typename Leaf::template Turning<std::int64_t>;
+    template <class Factors>
+    CATENA_HD Turning turning(Body<std::int64_t> const& body, Factors const& factors) const {
+        return leaf.turning(loads, body, factors);
     }
-    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
+    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Turning const& turning, Vector<double, Leaf::K> const& inboard,
                                        Vector<double, Leaf::K> const& outboard, AccelerationsView const& out) const {
-        if (out.acceleration.origin) leaf.accelerate(body, leaf.turned(loads, body), inboard, outboard, out);
+        if (out.acceleration.origin) leaf.accelerate(body, leaf.turned(body, turning), inboard, outboard, out);
+    }
+    template <class Factors = dca::Factors>
+    CATENA_HD_IN_PLACE void accelerate(Body<std::int64_t> const& body, Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out,
+                                       Factors const& factors = {}) const {
+        if (out.acceleration.origin) accelerate(body, turning(body, factors), inboard, outboard, out);
+    }
+    template <class Factors>
+    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, Leaf::K> const& inboard,
+                                       Vector<double, Leaf::K> const& outboard, AccelerationsView const& out,
+                                       Factors const& factors) const {
+        accelerate(body(part, i), inboard, outboard, out, factors);
     }
     /// Of several bodies side by side, whose joints restrict what handles carry.
     template <class Place>
@@ -65,9 +80,12 @@ struct Resting {
         return {*this, begin};
     }
 
-    template <class Place>
-    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body) const {
-        return leaf.segment(loads, body, leaf.turned(loads, body));
+    template <class Place, class Factors = dca::Factors>
+    CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body, Factors const& factors = {}) const {
+        return leaf.segment(loads, body, leaf.turned(body, leaf.turning(loads, body, factors)));
+    }
+    CATENA_HD BiasedSegment<double, Leaf::K> segment(Body<std::int64_t> const& body, Turning const& turning) const {
+        return leaf.segment(loads, body, leaf.turned(body, turning));
     }
     template <class Place>
     CATENA_HD BiasedSegment<RealAt<Place>, Leaf::K> segment(Body<Place> const& body, Kept<Place> const& kept) const {
@@ -160,9 +178,8 @@ struct Evaluation {
     static constexpr bool keeps_nodes = sizeof(Node) <= sizeof(Segment);  // a node takes a segment's place
     static constexpr bool takes_whole_runs = Leaf::by_inertia;
     static constexpr bool goes_short = !takes_whole_runs;
-    /// Whether what a part's joints pass on, but the last one, may be left in memory by who has some: larger handles want that.
-    static constexpr bool keeps_passages = K > 3;
-    static constexpr int most_passages = part_length - (keeps_passages ? 2 : 1);
+    /// Whether parts are walked in loops in any case: larger handles fill a processor's instruction cache.
+    static constexpr bool in_loops = K > 3;
     Sweeps s;
     Bodies bodies;
     AccelerationsView out;
@@ -242,10 +259,10 @@ struct Evaluation {
     template <class AnyPart, class Kept, class Factors>
     CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, AnyPart const& part, Kept&& kept, Factors const& factors) const {
         Lost found;
-        Segment segment = first_of(bodies.segment(bodies.body(part, 0)), kept);
+        Segment segment = first_of(bodies.segment(bodies.body(part, 0), factors), kept);
         each_body<unrolled<K>>(1, count, [&](int i) {
             Body const body = bodies.body(part, i);
-            pass_up(segment, i, bodies.segment(body), {begin + i, body.restricted}, kept, found, factors);
+            pass_up(segment, i, bodies.segment(body, factors), {begin + i, body.restricted}, kept, found, factors);
         });
         if constexpr (Factors::may_fail)
             if (!found.none()) return this->part(begin, count, part, kept, dca::Factors{});
@@ -311,38 +328,44 @@ struct Evaluation {
     template <bool unroll>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next) const {
         PassagesHere passages;
-        down<unroll && !keeps_passages>(run, p, part, first, next, passages);
+        down<unroll && !in_loops>(run, p, part, first, next, passages);
     }
     /// In registers.
     struct PassagesHere {
-        Passage passage[part_length - 1] = {};  // larger handles leave the last one unused, which compilers do not see
+        static constexpr int most = part_length - (in_loops ? 2 : 1);
+        Passage passage[part_length - 1] = {};  // some leave the last one unused, which compilers do not see
         CATENA_HD void put(int i, Passage const& passed) { passage[i] = passed; }
         CATENA_HD Passage const& get(int i) const { return passage[i]; }
     };
-    /// `passages`: put(i, Passage) and get(i), i < most_passages. `factors`: as factorize(), always.
+    /// `passages`: put(i, Passage) and get(i), i < `most`, of what a part's joints pass on, the last one's apart where there is no place
+    /// for it; one that `keeps_turnings`: keep(i, Bodies::Turning) and turning(i), i < part_length, as well. `factors`: as factorize(),
+    /// always.
     template <bool unroll, class Passages, class Factors = dca::Factors>
     CATENA_HD_IN_PLACE void down(Run const& run, int p, Part const& part, Directions const& first, Directions next,
                                  Passages&& passages, Factors const& factors = {}) const {
         static_assert(!Factors::may_fail);
-        constexpr bool unrolled_here = unroll || unrolled<K>;
+        constexpr bool unrolled_here = unroll || unrolled<K>, last_apart = std::remove_reference_t<Passages>::most < part_length - 1;
         std::int64_t const k = begin_of(run, p);
         int const last = static_cast<int>(end_of(run, p) - k) - 1;
         Directions at_last = first;
-        Segment const begins = bodies.segment(bodies.body(part, 0));
+        Segment const begins = segment_of(body_of<Passages>(part, 0), 0, passages, factors);
         Symmetric<double, K> z22 = begins.matrix.z22;
         Directions b2 = begins.bias.b2 + transposed_times(begins.matrix.z12, first);
         each_body<unrolled_here>(1, last + 1, [&](int i) {
-            Body const body = bodies.body(part, i);
-            Segment const segment = bodies.segment(body);
+            Body const body = body_of<Passages>(part, i);
+            Segment const segment = segment_of(body, i, passages, factors);
             Passage const passed = eliminate(z22, b2, segment.matrix, segment.bias, body.restricted, factors);
-            if (keeps_passages && i == last)
+            if (last_apart && i == last)
                 at_last = force(passed, next);
             else
                 passages.put(i - 1, passed);
         });
         each_body_back<unrolled_here>(0, last + 1, [&](int i) {
-            Directions const at_i = i == 0 ? first : keeps_passages && i == last ? at_last : force(passages.get(i - 1), next);
-            bodies.accelerate(part, i, at_i, next, out);
+            Directions const at_i = i == 0 ? first : last_apart && i == last ? at_last : force(passages.get(i - 1), next);
+            if constexpr (turnings_kept<Passages>)
+                bodies.accelerate(bodies.body(part, i, ReadAgain{}), passages.turning(i), at_i, next, out);
+            else
+                bodies.accelerate(part, i, at_i, next, out, factors);
             store_forces(s.leaf.group(), out, k + i, at_i, next);
             next = at_i;
         });
@@ -366,12 +389,34 @@ struct Evaluation {
         });
     }
     /// What the forces at its joints do to body k.
-    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard) const {
-        bodies.accelerate(body, inboard, outboard, out);
+    template <class Factors>
+    CATENA_HD_IN_PLACE void accelerate(std::int64_t k, Body const& body, Directions const& inboard, Directions const& outboard,
+                                       Factors const& factors) const {
+        bodies.accelerate(body, inboard, outboard, out, factors);
         store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
 
   private:
+    template <class Passages>
+    static constexpr bool turnings_kept = requires { requires std::remove_reference_t<Passages>::keeps_turnings; };
+    template <class Passages>
+    CATENA_HD_IN_PLACE Body body_of(Part const& part, int i) const {
+        if constexpr (turnings_kept<Passages>)
+            return bodies.body(part, i, ReadFirst{});
+        else
+            return bodies.body(part, i);
+    }
+    template <class Passages, class Factors>
+    CATENA_HD_IN_PLACE Segment segment_of(Body const& body, [[maybe_unused]] int i, [[maybe_unused]] Passages& passages,
+                                          Factors const& factors) const {
+        if constexpr (turnings_kept<Passages>) {
+            auto const turning = bodies.turning(body, factors);
+            passages.keep(i, turning);
+            return bodies.segment(body, turning);
+        } else {
+            return bodies.segment(body, factors);
+        }
+    }
     struct Forgotten {
         CATENA_HD static void put(int, Passed const&) {}
     };

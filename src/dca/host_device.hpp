@@ -65,27 +65,53 @@ CATENA_HD void lower_to(unsigned long long* place, unsigned long long value) {
 }
 
 /// The order of bodies in a GPU's arrays: in tiles of `lanes` runs of `steps` bodies, the runs' first bodies next to each other, then
-/// their second ones, ..., so that threads that walk along a run each touch whole cache lines together.
+/// their second ones, ..., so that threads that walk along a run each touch whole cache lines together. Of each such row of bodies the
+/// first numbers come together, then the second ones, ...: from one number of a body to the next it is `lanes`, whatever the array.
 namespace gpu_order {
 inline constexpr std::int32_t lanes = 32, steps = 16, tile = lanes * steps;
-CATENA_HD constexpr std::int64_t place(std::int64_t k) {
-    auto const in_tile = static_cast<std::int32_t>(k & (tile - 1));  // what fits is computed in 32 bits
-    return k + ((in_tile % steps) * lanes + in_tile / steps - in_tile);
+inline constexpr int bits_of_tile = 9;
+static_assert(1 << bits_of_tile == tile);
+/// Numbers from one row to the next.
+CATENA_HD constexpr std::int64_t pitch(int columns) { return std::int64_t{lanes} * columns; }
+/// a b + c. In one instruction on a GPU: nvcc forgets that the factors are short.
+CATENA_HD std::int64_t wide_product(std::int32_t a, std::int32_t b, std::int64_t c) {
+#if defined(__CUDA_ARCH__)
+    std::int64_t sum;
+    asm("mad.wide.s32 %0, %1, %2, %3;" : "=l"(sum) : "r"(a), "r"(b), "l"(c));
+    return sum;
+#else
+    return std::int64_t{a} * b + c;
+#endif
 }
-CATENA_HD constexpr std::int64_t body(std::int64_t place) {
-    auto const in_tile = static_cast<std::int32_t>(place & (tile - 1));
-    return place + ((in_tile % lanes) * steps + in_tile / lanes - in_tile);
+/// Where body k's first number stands in columns of that pitch. What fits is computed in 32 bits.
+CATENA_HD std::int64_t first_number(std::int64_t k, std::int64_t pitch) {
+    auto const in_tile = static_cast<std::int32_t>(k & (tile - 1)),
+               row = static_cast<std::int32_t>(k >> bits_of_tile) * steps + in_tile % steps;
+    return wide_product(row, static_cast<std::int32_t>(pitch), in_tile / steps);
+}
+/// Body i, row by row.
+CATENA_HD constexpr std::int64_t body(std::int64_t i) {
+    auto const in_tile = static_cast<std::int32_t>(i & (tile - 1));
+    return i + ((in_tile % lanes) * steps + in_tile / lanes - in_tile);
 }
 /// Of whole tiles that hold `bodies`.
 CATENA_HD constexpr std::int64_t padded(std::int64_t bodies) { return (bodies + tile - 1) / tile * tile; }
 }  // namespace gpu_order
 
-/// Where body k stands in arrays of the processor that runs this: on the host one body follows the other.
-CATENA_HD std::int64_t place_of(std::int64_t k) {
+/// Where body k's first number stands in arrays of the processor that runs this, and how far it is to its next one. On the host one body
+/// follows the other, and `pitch` is from one number of a body to the next; on a GPU from one row of bodies to the next.
+CATENA_HD std::int64_t place_of(std::int64_t k, [[maybe_unused]] std::int64_t pitch) {
 #if defined(__CUDA_ARCH__)
-    return gpu_order::place(k);
+    return gpu_order::first_number(k, pitch);
 #else
     return k;
+#endif
+}
+CATENA_HD std::int64_t to_next_number([[maybe_unused]] std::int64_t pitch) {
+#if defined(__CUDA_ARCH__)
+    return gpu_order::lanes;
+#else
+    return pitch;
 #endif
 }
 

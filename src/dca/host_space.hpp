@@ -73,7 +73,7 @@ class HostSpace : public HostAccess {
     class Records {
       public:
         explicit Records(std::int64_t count) : records_(static_cast<std::size_t>(count)) {}
-        dca::RecordsView<T, order> view() { return {reinterpret_cast<double*>(records_.data()), 0}; }
+        dca::RecordsView<T, order> view() { return {reinterpret_cast<double*>(records_.data())}; }
 
       private:
         LongArray<T> records_;

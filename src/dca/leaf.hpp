@@ -174,9 +174,9 @@ CATENA_HD Vector<Real, 3> moment(GroundHandle<Real, K> const& h, Vector<Real, K>
 }
 
 /// A x from the inverse of A, symmetric and positive definite.
-template <class Real>
-CATENA_HD Vector<Real, 3> times_inverse_of(Symmetric<Real, 3> const& inverse, Vector<Real, 3> const& x) {
-    Symmetric<Real, 3> const factor = factorize(inverse, 3);
+template <class Real, class Inverse = Quotient>
+CATENA_HD Vector<Real, 3> times_inverse_of(Symmetric<Real, 3> const& inverse, Vector<Real, 3> const& x, Inverse const& quotient = {}) {
+    Symmetric<Real, 3> const factor = factorize(inverse, 3, quotient);
     return solve_upper(factor, solve_lower(factor, x));
 }
 

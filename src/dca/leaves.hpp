@@ -280,18 +280,33 @@ class BodyLeaf {
                 as_symmetric(by(group_.inverse_inertia, k)),
                 frames_.state(k, by),
                 by.if_any(loads.force, k),
-                by.if_any(loads.torque, k),
-                by.if_any(loads.omega, k)};
+                by.if_any_turning(loads.torque, k),
+                by.if_any_turning(loads.omega, k)};
     }
     /// What both a body's segment and its accelerations need, and takes longer to compute than to keep.
     template <class Place>
-    struct Turned {
-        Mat3At<Place> turn;    // to_matrix() of its rotation
+    struct Turning {
+        RealAt<Place> scale;   // matrix_scale() of its rotation
         Vec3At<Place> torque;  // the gyroscopic one included
     };
     template <class Place>
+    struct Turned {
+        Mat3At<Place> turn;  // to_matrix() of its rotation
+        Vec3At<Place> torque;
+    };
+    template <class Place, class Factors = dca::Factors>
+    CATENA_HD Turning<Place> turning(LoadsView const& loads, Body<Place> const& body, Factors const& factors = {}) const {
+        return factors.with_inverse([&](auto const& inverse) {
+            return Turning<Place>{matrix_scale(as_quaternion(body.state.rotation), inverse), applied_torque(loads, body, inverse)};
+        });
+    }
+    template <class Place>
+    CATENA_HD static Turned<Place> turned(Body<Place> const& body, Turning<Place> const& t) {
+        return {to_matrix(as_quaternion(body.state.rotation), t.scale), t.torque};
+    }
+    template <class Place>
     CATENA_HD Turned<Place> turned(LoadsView const& loads, Body<Place> const& body) const {
-        return {to_matrix(as_quaternion(body.state.rotation)), applied_torque(loads, body)};
+        return turned(body, turning(loads, body));
     }
     template <class Place>
     CATENA_HD BiasedSegment<RealAt<Place>, K> segment(LoadsView const& loads, Body<Place> const& body, Turned<Place> const& t) const {
@@ -397,11 +412,11 @@ class BodyLeaf {
         add_joint_biases(group_, loads, body.k, b);
         return b;
     }
-    template <class Place>
-    CATENA_HD Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body) const {
+    template <class Place, class Inverse>
+    CATENA_HD Vector<RealAt<Place>, 3> applied_torque(LoadsView const& loads, Body<Place> const& body, Inverse const& inverse) const {
         if (!loads.gyroscopic) return body.torque;
         if constexpr (by_inertia) return body.torque - cross(body.omega, as_symmetric(read(group_.inertia, body.k)) * body.omega);
-        return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega));
+        return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega, inverse));
     }
 
     GroupView group_;

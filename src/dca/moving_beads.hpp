@@ -104,9 +104,10 @@ struct MovingBeads {
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
         return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
     }
+    template <class Factors>
     CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard, Vector<double, K> const& outboard,
-                                       AccelerationsView const& out) const {
-        accelerate(body(part, i), inboard, outboard, out);
+                                       AccelerationsView const& out, Factors const& factors) const {
+        accelerate(body(part, i), inboard, outboard, out, factors);
     }
     template <class Place>
     CATENA_HD static Body<Place> keep(Body<Place> const& body) {
@@ -134,8 +135,8 @@ struct MovingBeads {
         return Walk<Place>(*this, begin);
     }
 
-    template <class Place>
-    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body) const {
+    template <class Place, class Factors = dca::Factors>
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Factors const& /*factors*/ = {}) const {
         using Kind = Vector<RealAt<Place>, K>;
         auto const &u1 = body.inboard.direction, &u2 = body.outboard.direction;
         BiasedSegment<RealAt<Place>, K> s{bead_matrix(body.inverse_mass, u1, u2, Kind{}),
@@ -147,9 +148,10 @@ struct MovingBeads {
     CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Body<Place> const& /*kept*/) const {
         return segment(body);
     }
-    template <class Place>
+    template <class Place, class Factors = dca::Factors>
     CATENA_HD void accelerate(Body<Place> const& body, Vector<RealAt<Place>, K> const& inboard_force,
-                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out) const {
+                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out,
+                              Factors const& /*factors*/ = {}) const {
         write(out.acceleration, body.k,
               bead_acceleration(body.inverse_mass, body.force, inboard_force[0], body.inboard.direction, outboard_force[0],
                                 body.outboard.direction));

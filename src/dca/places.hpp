@@ -39,7 +39,8 @@ template <class T, int D>
 CATENA_HD double read(FieldView<T, D> const& view, std::int64_t k, int component) {
     return view.at(k, component);
 }
-/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere. Another reader may have them elsewhere.
+/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere, and some are wanted for what turns the body
+/// alone. Another reader may have them elsewhere.
 struct ReadHere {
     template <class T, int D, class Place>
     CATENA_HD Vector<RealAt<Place>, D> operator()(FieldView<T, D> const& view, Place k) const {
@@ -48,6 +49,32 @@ struct ReadHere {
     template <class T, int D, class Place>
     CATENA_HD Vector<RealAt<Place>, D> if_any(FieldView<T, D> const& view, Place k) const {
         return view.origin ? read(view, k) : Vector<RealAt<Place>, D>::zero();
+    }
+    template <class T, int D, class Place>
+    CATENA_HD Vector<RealAt<Place>, D> if_any_turning(FieldView<T, D> const& view, Place k) const {
+        return if_any(view, k);
+    }
+};
+/// Of a body whose turning is kept (leaves.hpp), and which is read once more.
+struct ReadFirst : ReadHere {
+    template <class T, int D>
+    CATENA_HD Vector<double, D> if_any_turning(FieldView<T, D> const& view, std::int64_t k) const {
+        return view.origin ? view.load_last(k) : Vector<double, D>::zero();
+    }
+};
+/// That.
+struct ReadAgain {
+    template <class T, int D>
+    CATENA_HD Vector<double, D> operator()(FieldView<T, D> const& view, std::int64_t k) const {
+        return view.load_last(k);
+    }
+    template <class T, int D>
+    CATENA_HD Vector<double, D> if_any(FieldView<T, D> const& view, std::int64_t k) const {
+        return view.origin ? view.load_last(k) : Vector<double, D>::zero();
+    }
+    template <class T, int D>
+    CATENA_HD Vector<double, D> if_any_turning(FieldView<T, D> const&, std::int64_t) const {
+        return Vector<double, D>::zero();
     }
 };
 template <int D>

@@ -1,12 +1,17 @@
 // Records of doubles (segments, eliminated joints, directions), one for each of many places, and how they lie in memory: one record
-// after the other on the host, a number of all records after the other on a GPU.
+// after the other on the host, as fields on a GPU.
 #pragma once
 
 #include "dca/linear.hpp"
 
 namespace catena::dca {
 
-enum class Order { by_body, plain };  // by_body: as fields (place_of)
+enum class Order { by_body, plain };  // by_body: as fields; plain: these in turn
+
+/// So many records does a GPU have memory for that is to hold `count`: whole rows.
+inline std::int64_t padded_on_gpu(Order order, std::int64_t count) {
+    return order == Order::by_body ? gpu_order::padded(count) : (count + gpu_order::lanes - 1) / gpu_order::lanes * gpu_order::lanes;
+}
 
 /// Of memory of the processor that runs this.
 template <class T, Order order>
@@ -14,35 +19,54 @@ struct RecordsView {
     static constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double));
     using Numbers = Vector<double, numbers>;
     double* origin = nullptr;
-    std::int64_t pitch = 0;  // from one number to the next, where they are apart
 
     CATENA_HD double& number(std::int64_t i, int n) const {
 #if defined(__CUDA_ARCH__)
-        return origin[(order == Order::by_body ? place_of(i) : i) + n * pitch];
+        return on_gpu(i)[n * gpu_order::lanes];
 #else
         return origin[i * numbers + n];
 #endif
     }
     CATENA_HD T load(std::int64_t i) const {
 #if defined(__CUDA_ARCH__)
-        double const* const first = origin + (order == Order::by_body ? place_of(i) : i);
+        double const* const first = on_gpu(i);
         Numbers values;
         CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) values[n] = first[n * pitch];
+        for (int n = 0; n < numbers; ++n) values[n] = first[n * gpu_order::lanes];
         return __builtin_bit_cast(T, values);
 #else
         return reinterpret_cast<T const*>(origin)[i];
 #endif
     }
+    /// Where nobody will want it soon (FieldView::load_last()).
+    CATENA_HD T load_last(std::int64_t i) const {
+#if defined(__CUDA_ARCH__)
+        double const* const first = on_gpu(i);
+        Numbers values;
+        CATENA_UNROLL
+        for (int n = 0; n < numbers; ++n) values[n] = __ldcs(first + n * gpu_order::lanes);
+        return __builtin_bit_cast(T, values);
+#else
+        return load(i);
+#endif
+    }
     CATENA_HD void store(std::int64_t i, T const& record) const {
 #if defined(__CUDA_ARCH__)
-        double* const first = origin + (order == Order::by_body ? place_of(i) : i);
+        double* const first = on_gpu(i);
         auto const values = __builtin_bit_cast(Numbers, record);
         CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) first[n * pitch] = values[n];
+        for (int n = 0; n < numbers; ++n) first[n * gpu_order::lanes] = values[n];
 #else
         reinterpret_cast<T*>(origin)[i] = record;
 #endif
+    }
+
+  private:
+    /// Number 0 of record i there.
+    CATENA_HD double* on_gpu(std::int64_t i) const {
+        constexpr std::int64_t pitch = gpu_order::pitch(numbers);
+        if constexpr (order == Order::by_body) return origin + gpu_order::first_number(i, pitch);
+        return origin + (i / gpu_order::lanes * pitch + i % gpu_order::lanes);
     }
 };
 

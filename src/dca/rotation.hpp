@@ -50,7 +50,12 @@ CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q, Real const& s)
     return {{Real(1) - (yy + zz), fused(q.x, ys, -wz), fused(q.x, zs, wy), fused(q.x, ys, wz), Real(1) - (xx + zz), fused(q.y, zs, -wx),
              fused(q.x, zs, -wy), fused(q.y, zs, wx), Real(1) - (xx + yy)}};
 }
-/// q need not be normalised to the last bit: the scale is divided out.
+/// s of q, which need not be normalised to the last bit. `inverse(x)`: 1 / x.
+template <class Real, class Inverse>
+CATENA_HD Real matrix_scale(Quaternion<Real> const& q, Inverse const& inverse) {
+    return Real(2) * inverse(squared_norm(q));
+}
+/// The same: the scale is divided out.
 template <class Real>
 CATENA_HD Matrix<Real, 3, 3> to_matrix(Quaternion<Real> const& q) {
     return to_matrix(q, Real(2) / squared_norm(q));

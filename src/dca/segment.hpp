@@ -33,7 +33,7 @@ struct JointMatrix {
     Matrix<Real, K, K> inboard, outboard;
 };
 
-/// 1 / x. Another way to it may answer NaN where it does not know.
+/// 1 / x.
 struct Quotient {
     template <class Real>
     CATENA_HD Real operator()(Real const& x) const {
@@ -65,8 +65,14 @@ CATENA_HD Symmetric<Real, K> factorize(Symmetric<Real, K> const& z, int restrict
     return f;
 }
 
+/// How matrices are factorized, and inverses taken, as the leaves and the sweeps want them.
 struct Factors {
     static constexpr bool may_fail = false;
+    /// result(inverse), inverse(x) = 1 / x. Another way may ask for it again with another inverse.
+    template <class Result>
+    CATENA_HD auto with_inverse(Result const& result) const {
+        return result(Quotient{});
+    }
     template <class Real, int K>
     CATENA_HD Symmetric<Real, K> operator()(Symmetric<Real, K> const& z, int restricted) const {
         return factorize(z, restricted);

@@ -12,25 +12,25 @@
 
 namespace catena {
 
-/// K numbers a body (K known at run time only), component after component.
+/// K numbers a body (K known at run time only), laid out as fields.
 template <class Real>
 struct BasicDirectionsView {
     Real* origin = nullptr;
-    std::int64_t pitch = 0;
-    CATENA_HD Real& at(std::int64_t k, int direction) const { return origin[direction * pitch + place_of(k)]; }
+    std::int64_t pitch = 0;  // as place_of() has it
+    CATENA_HD Real& at(std::int64_t k, int direction) const { return origin[direction * to_next_number(pitch) + place_of(k, pitch)]; }
     template <int K>
     CATENA_HD Vector<double, K> load(std::int64_t k) const {
         Vector<double, K> v;
-        Real* const first = origin + place_of(k);
+        Real* const first = origin + place_of(k, pitch);
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) v[i] = first[i * pitch];
+        for (int i = 0; i < K; ++i) v[i] = first[i * to_next_number(pitch)];
         return v;
     }
     template <int K>
     CATENA_HD void store(std::int64_t k, Vector<double, K> const& v) const {
-        Real* const first = origin + place_of(k);
+        Real* const first = origin + place_of(k, pitch);
         CATENA_UNROLL
-        for (int i = 0; i < K; ++i) first[i * pitch] = v[i];
+        for (int i = 0; i < K; ++i) first[i * to_next_number(pitch)] = v[i];
     }
     CATENA_HD explicit operator bool() const { return origin != nullptr; }
     CATENA_HD operator BasicDirectionsView<Real const>() const { return {origin, pitch}; }

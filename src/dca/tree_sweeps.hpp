@@ -8,7 +8,7 @@
 // (cuda/short_chain.cuh) also has first_force(JointAt, segment), forces() and accelerate(k, ...) from what part(..., kept, factors) or, of
 // bodies read `one_by_one`, join_bodies() kept, and nobody reads its joints, forces or slots afterwards: they are not written then. One
 // that has matrices() and biases() may leave stages with runs to these, one after the other (cuda/stage_walk.cuh); one that takes factors
-// has joined(..., factors), down(..., passages, factors) and PassagesHere or, `keeps_passages`, others (cuda/run_parts.cuh).
+// has joined(..., factors), down(..., passages, factors) and PassagesHere, instead of which there may be others (cuda/run_parts.cuh).
 #pragma once
 
 #include "dca/closure.hpp"
@@ -84,7 +84,7 @@ struct TreeSweeps {
         Joint joint;
         Directions offset;
     };
-    CATENA_HD Node node(std::int64_t k) const { return {joints.load(k), offsets.load(k)}; }
+    CATENA_HD Node node(std::int64_t k) const { return {joints.load_last(k), offsets.load_last(k)}; }
     /// Number n of that.
     CATENA_HD double& number_of_node(std::int64_t k, int n) const {
         constexpr int of_joint = sizeof(Joint) / sizeof(double);

@@ -147,10 +147,8 @@ struct EmbeddedSteps {
     CATENA_HD bool is_angular(std::int64_t k) const { return steps.chains.joints().joint[k] != JointType::prismatic; }
     /// NaN stays.
     CATENA_HD static double worse(double a, double b) { return b > a || b != b ? b : a; }
-    CATENA_HD View<rates> of_stage(int i) const { return {kept.origin + i * rates * kept.pitch, kept.pitch, kept.size}; }
-    CATENA_HD View<base_rates> base_of_stage(int i) const {
-        return {kept_base.origin + i * base_rates * kept_base.pitch, kept_base.pitch, kept_base.size};
-    }
+    CATENA_HD View<rates> of_stage(int i) const { return kept.template components<rates>(i * rates); }
+    CATENA_HD View<base_rates> base_of_stage(int i) const { return kept_base.template components<base_rates>(i * base_rates); }
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, rates> rates_of(Place k, Vec3At<Place> const& qdd) const {
         using Real = RealAt<Place>;

@@ -6,6 +6,13 @@
 namespace catena::test {
 namespace {
 
+struct OfNumber {
+    __device__ double operator()(double x) const {
+        bool known = true;
+        double const inverse = cuda::kernels::QuickInverse{known}(x);
+        return known ? inverse : cuda::kernels::not_known();
+    }
+};
 struct OfLength {
     __device__ double operator()(double x) const { return cuda::kernels::QuickInverseLength{}(Vec3{{x, 0, 0}}); }
 };
@@ -25,7 +32,7 @@ std::vector<double> each_of(std::vector<double> x, Of of) {
 
 }  // namespace
 
-std::vector<double> quick_inverses(std::vector<double> const& x) { return each_of(x, cuda::kernels::QuickInverse{}); }
+std::vector<double> quick_inverses(std::vector<double> const& x) { return each_of(x, OfNumber{}); }
 std::vector<double> quick_inverse_lengths(std::vector<double> const& x) { return each_of(x, OfLength{}); }
 
 }  // namespace catena::test
