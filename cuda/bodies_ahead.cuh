@@ -35,7 +35,7 @@ class BodiesInTurn {
             return {};
         }
         template <class T, int D>
-        __device__ Vector<double, D> if_any_turning(FieldView<T, D> const& view, std::int64_t k) {
+        __device__ Vector<double, D> once_if_any(FieldView<T, D> const& view, std::int64_t k) {
             return if_any(view, k);
         }
     };
@@ -57,7 +57,7 @@ class BodiesInTurn {
             return view.origin ? Take{from, first}(view, k) : Vector<double, D>::zero();
         }
         template <class T, int D>
-        __device__ Vector<double, D> if_any_turning(FieldView<T, D> const& view, std::int64_t k) {
+        __device__ Vector<double, D> once_if_any(FieldView<T, D> const& view, std::int64_t k) {
             return if_any(view, k);
         }
     };

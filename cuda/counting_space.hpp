@@ -96,7 +96,7 @@ class CountingSpace : public HostAccess {
     template <int D>
     class Alike : public FieldOf<D> {
       public:
-        explicit Alike(Field<D> const& host) : FieldOf<D>(rows_are_one(host) ? gpu_order::tile : host.size()) {}
+        explicit Alike(Field<D> const& host) : FieldOf<D>(one_tile_serves(host) ? gpu_order::tile : host.size()) {}
         ConstView<D> view() const { return {}; }
     };
     class Directions {

@@ -1,4 +1,4 @@
-// Fields on a GPU: as BasicField and DirectionsField on the host, as the GPU has them (gpu_order). The host's order is made and undone on
+// Fields on a GPU: BasicField and DirectionsField of the host, in the order of gpu_order. The host's order is made and undone on
 // the device.
 #pragma once
 

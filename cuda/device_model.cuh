@@ -21,24 +21,24 @@ class FixedField {
     DeviceField<D> field_;
 };
 
-/// Of bodies that are all alike one row of the GPU's memory, from which it is no way to the next: all rows of bodies are there.
-/// Precondition: nobody asks for the halo.
+/// Of bodies that are all alike one tile, and a pitch of 0: its first row is every row of bodies. The halo then is as any body, not as on
+/// the host.
 template <int D>
 class AlikeField {
   public:
     explicit AlikeField(Field<D> const& host)
-        : size_(host.size()), one_row_(rows_are_one(host)), field_(one_row_ ? gpu_order::tile : size_) {
+        : size_(host.size()), one_tile_(one_tile_serves(host)), field_(one_tile_ ? gpu_order::tile : size_) {
         field_.upload(host.view(), nullptr);
         check(cudaStreamSynchronize(nullptr), "take the model");
     }
     ConstView<D> view() const {
         ConstView<D> const all = field_.view();
-        return one_row_ ? ConstView<D>{all.origin, 0, size_} : all;
+        return one_tile_ ? ConstView<D>{all.origin, 0, size_} : all;
     }
 
   private:
     std::int64_t size_;
-    bool one_row_;
+    bool one_tile_;
     DeviceField<D> field_;
 };
 

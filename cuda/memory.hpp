@@ -27,9 +27,9 @@ std::int64_t free_memory(Communicator const&);
 /// What the driver keeps on the GPU chosen last where a kernel's threads have so many bytes of stack each: of all that fit on it at once.
 std::int64_t stacks(std::int64_t bytes_of_thread);
 
-/// Whether a GPU keeps a row of memory for all bodies of a field that never changes: they are alike, and more than fit a tile.
+/// Whether a GPU keeps one tile for all bodies of a field that never changes: they are alike, and more than fit one.
 template <int D>
-bool rows_are_one(Field<D> const& field) {
+bool one_tile_serves(Field<D> const& field) {
     return field.size() > gpu_order::tile && field.alike();
 }
 

@@ -68,10 +68,12 @@ __device__ typename Sweep::Segment joined_quickly(Sweep const& sweep, typename S
         return sweep.joined(inboard, outboard, at, node);
 }
 /// `quick`: where there are registers for it.
-template <bool quick, class Sweep>
-__device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t begin, std::int64_t end) {
+template <bool quick, class Sweep, class Reader = dca::ReadHere>
+__device__ typename Sweep::Part read_quickly(Sweep const& sweep, std::int64_t begin, std::int64_t end, Reader const& by = {}) {
     if constexpr (quick && takes_factors<Sweep>)
-        return sweep.read(begin, end, QuickInverseLength{});
+        return sweep.read(begin, end, QuickInverseLength{}, by);
+    else if constexpr (takes_factors<Sweep>)
+        return sweep.read(begin, end, dca::InverseLength{}, by);
     else
         return sweep.read(begin, end);
 }
@@ -175,21 +177,19 @@ using BodiesOf = decltype(Sweep::bodies);
 template <class Sweep>
 concept comes_twice = requires { requires Sweep::one_by_one; };
 /// Where a thread leaves what such a sweep wants again. What is of bodies lies together, an odd number of numbers, so that threads do not meet
-/// in a bank; passages, where there are no registers for them, come after.
-template <class Sweep>
+/// in a bank; passages, where they do not stay with the thread, come after.
+template <class Sweep, bool passages_too>
 class LeftInMemory {
     using Turning = typename BodiesOf<Sweep>::Turning;
     using Passage = typename Sweep::Passage;
-    static constexpr bool passages_too = Sweep::K > 2;
     using Passages = std::conditional_t<passages_too, PassagesInMemory<Sweep>, typename Sweep::PassagesHere>;
-    static constexpr int of_thread = dca::part_length * numbers_of<Turning> | 1;
     static __host__ __device__ constexpr std::size_t size_of_turnings(int threads) {
         return static_cast<std::size_t>(of_thread) * static_cast<std::size_t>(threads);
     }
 
   public:
-    static constexpr bool keeps_turnings = true, in_loops = passages_too;
-    static constexpr int most = Passages::most;
+    static constexpr bool keeps_turnings = true;
+    static constexpr int most = Passages::most, of_thread = dca::part_length * numbers_of<Turning> | 1;
     static __host__ __device__ constexpr std::size_t size(int threads) {
         std::size_t const turnings = size_of_turnings(threads);
         if constexpr (passages_too)
@@ -218,11 +218,22 @@ class LeftInMemory {
     double* turnings_;
     Passages passages_;
 };
+/// Whether passages stay in registers where there is memory for them.
+template <class Sweep>
+constexpr bool passages_stay = Sweep::K <= 2;
+/// Whether there is room for them where a thread has a segment's memory, and its state there too.
+template <class Sweep>
+constexpr bool turnings_fit = false;
+template <class Sweep>
+    requires comes_twice<Sweep>
+constexpr bool turnings_fit<Sweep> = PackedRecords<typename Sweep::Sweeps::State>::stride + LeftInMemory<Sweep, false>::of_thread <=
+                                     PackedRecords<typename Sweep::Segment>::stride;
+
 /// Whether bodies of runs come ahead of the thread that waits for them: it gains where handles are spherical, others lose a little.
 template <class Sweep>
 constexpr bool comes_ahead = false;
 template <class Sweep>
-    requires Sweep::one_by_one
+    requires comes_twice<Sweep>
 constexpr bool comes_ahead<Sweep> = Sweep::K == 3;
 
 /// Numbers of a block that descend_some_runs() takes in memory.
@@ -230,13 +241,13 @@ template <class Sweep>
 constexpr std::size_t numbers_of_descent(int threads) {
     std::size_t const states = PackedRecords<typename Sweep::Sweeps::State>::size(threads);
     if constexpr (comes_twice<Sweep>)
-        return states + LeftInMemory<Sweep>::size(threads);
+        return states + LeftInMemory<Sweep, !passages_stay<Sweep>>::size(threads);
     else
         return states;
 }
 
 /// The same runs again from the forces at their ends, of_first(run, i) and of_next(run, i): a thread knows the force at its own part from
-/// those after it. `memory`: for a state a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`:
+/// those after it. `memory`: for a segment a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`:
 /// as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, class OfNext>
 __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
@@ -253,7 +264,7 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     typename Sweep::Sweeps::Node node;
     State own, next;
     if (mine.part < count) {  // all that is read before any of it is needed
-        if (!part) read = read_quickly<!roomy>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
+        if (!part) read = read_quickly<!roomy>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part), dca::ReadLast{});
         if constexpr (nodes_stay && Sweep::keeps_nodes) {
             if (mine.part > 0) node = NodesOfParts<Sweep>{memory}.load(here);
         } else {
@@ -274,10 +285,12 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     }
     if (mine.part >= count) return;
     if (mine.part == 0 && count > 1) next = at_part.load(here + lanes);
+    double* const beyond = memory + PackedRecords<State>::size(static_cast<int>(blockDim.x));
     if constexpr (roomy && comes_twice<Sweep>)
-        down_quickly<unroll && !LeftInMemory<Sweep>::in_loops>(
-            sweep, run, mine.part, part ? *part : read, own, next,
-            LeftInMemory<Sweep>(memory + PackedRecords<State>::size(static_cast<int>(blockDim.x))));
+        down_quickly<unroll && passages_stay<Sweep>>(sweep, run, mine.part, part ? *part : read, own, next,
+                                                     LeftInMemory<Sweep, !passages_stay<Sweep>>(beyond));
+    else if constexpr (turnings_fit<Sweep>)
+        down_quickly<unroll && !Sweep::in_loops>(sweep, run, mine.part, part ? *part : read, own, next, LeftInMemory<Sweep, false>(beyond));
     else if constexpr (takes_factors<Sweep>)
         down_quickly<unroll && !Sweep::in_loops>(sweep, run, mine.part, part ? *part : read, own, next,
                                                        typename Sweep::PassagesHere{});

@@ -83,11 +83,11 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     if (threadIdx.x == 0) letters.close();
 }
 /// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want few registers, and many to hide that
-/// memory is far; on spherical joints the way down does.
+/// memory is far; on planar and spherical joints the way down does.
 template <class Sweep>
 constexpr int blocks_of_climb = Sweep::Sweeps::K == 1 ? 4 : 1;
 template <class Sweep>
-constexpr int blocks_of_descent = Sweep::Sweeps::K == 3 && comes_twice<Sweep> ? 3 : blocks_of_climb<Sweep>;
+constexpr int blocks_of_descent = comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3 : blocks_of_climb<Sweep>;
 /// Whether a thread takes a whole run on the way up: larger handles would have most of them wait for one that joins the parts.
 template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;

@@ -76,7 +76,8 @@ struct ChainGroup {
     // bodies
     Field<6> inertia,
         inverse_inertia;            // about the centre of mass, B (lower triangle: xx yx yy zx zy zz); planar: the inverse about the axis
-    Field<3> r1, r2;                // inboard and outboard joint from the centre of mass, B (sliding outboard joint: at q = 0)
+    Field<3> r1, r2;                // inboard and outboard joint from the centre of mass, B (sliding outboard joint: at q = 0); of a last
+                                    // body whose tip nobody holds r2 and axes2 are as of the body before
     Field<6> axes1;                 // joint's axes in M (kept_axes()); the same components in B turn with the joint
     Field<6> axes2;                 // the outboard joint's axes in B (universal: at q = 0)
     Field<4> joint_rotation;        // quaternion of J of the inboard joint in the inboard body's axes (first body: W)

@@ -346,7 +346,10 @@ BenchRequest bench_request(Words const& words) {
     if (request.name == "plan") request.joints = {"link", "planar", "spherical", "universal", "revolute", "mixed"};
     if (!words.sizes.empty()) request.sizes = sizes_of(words);
     if (!words.joints.empty()) request.joints = comma_list("--joints", words.joints);
-    for (std::string const& joint : request.joints) known_value("--joints", joint, joint_names);
+    for (std::string const& joint : request.joints) {
+        known_value("--joints", joint, joint_names);
+        if (words.alike && joint == "mixed") throw InputError("mixed joints are not alike", "--alike", "leave it out, or mixed");
+    }
     if (!words.loads.empty()) request.loads = words.loads;
     request.alike = words.alike;
     known_value("--loads", request.loads, load_names);

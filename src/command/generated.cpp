@@ -23,14 +23,17 @@ Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<st
 }
 
 void make_alike(Scene& scene) {
-    auto const as_first = [](auto& values) {
-        if (!values.empty()) std::fill(values.begin() + 1, values.end(), values.front());
+    auto const as_second = [](auto& values, std::ptrdiff_t first = 0) {
+        if (values.size() < 2) return;
+        auto const second = values[1];
+        std::fill(values.begin() + first, values.end(), second);
     };
     ChainSpec& chain = scene.chains.front();
-    as_first(chain.beads.mass);
+    as_second(chain.beads.mass);
     BodyArrays& b = chain.bodies;
-    as_first(b.mass), as_first(b.com), as_first(b.inertia);
-    as_first(b.axis), as_first(b.first_axis), as_first(b.rotation), as_first(b.translation), as_first(b.pitch);
+    as_second(b.mass), as_second(b.com), as_second(b.inertia);
+    as_second(b.axis), as_second(b.first_axis), as_second(b.pitch);
+    as_second(b.rotation, 1), as_second(b.translation, 1);
 }
 
 Scene swinging_scene(std::string const& joint, std::vector<std::string> const& overrides) {

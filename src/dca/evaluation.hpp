@@ -22,8 +22,9 @@ struct Resting {
     struct Part {
         std::int64_t begin;
     };
-    template <class InverseLength = dca::InverseLength>
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/, InverseLength const& /*inverse_length*/ = {}) const {
+    template <class InverseLength, class Reader>
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t /*end*/, InverseLength const& /*inverse_length*/,
+                                 Reader const& /*by*/) const {
         return {begin};
     }
     template <class Reader = ReadHere>
@@ -245,9 +246,9 @@ struct Evaluation {
         if (out.hinge_acceleration.origin) out.hinge_acceleration.at(run.body + i, 0) = of_hinge;
     }
 
-    template <class InverseLength = dca::InverseLength>
-    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
-        return bodies.part(begin, end, inverse_length);
+    template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
+    CATENA_HD_IN_PLACE Part read(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}, Reader const& by = {}) const {
+        return bodies.part(begin, end, inverse_length, by);
     }
     template <class AnyPart, class Factors = dca::Factors>
     CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factors const& factors = {}) const {
@@ -363,7 +364,7 @@ struct Evaluation {
         each_body_back<unrolled_here>(0, last + 1, [&](int i) {
             Directions const at_i = i == 0 ? first : last_apart && i == last ? at_last : force(passages.get(i - 1), next);
             if constexpr (turnings_kept<Passages>)
-                bodies.accelerate(bodies.body(part, i, ReadAgain{}), passages.turning(i), at_i, next, out);
+                bodies.accelerate(bodies.body(part, i, ReadLast{}), passages.turning(i), at_i, next, out);
             else
                 bodies.accelerate(part, i, at_i, next, out, factors);
             store_forces(s.leaf.group(), out, k + i, at_i, next);

@@ -280,8 +280,8 @@ class BodyLeaf {
                 as_symmetric(by(group_.inverse_inertia, k)),
                 frames_.state(k, by),
                 by.if_any(loads.force, k),
-                by.if_any_turning(loads.torque, k),
-                by.if_any_turning(loads.omega, k)};
+                by.once_if_any(loads.torque, k),
+                by.once_if_any(loads.omega, k)};
     }
     /// What both a body's segment and its accelerations need, and takes longer to compute than to keep.
     template <class Place>

@@ -58,8 +58,9 @@ struct MovingBeads {
         std::uint8_t restricted[part_length];
     };
     /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
-    template <class InverseLength = dca::InverseLength>
-    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {}) const {
+    template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {},
+                                 Reader const& by = {}) const {
         Part read;
         read.begin = begin;
         bool const starts = group.is_first[begin] != 0, goes_on = group.is_last[end - 1] == 0;
@@ -67,12 +68,12 @@ struct MovingBeads {
         CATENA_UNROLL
         for (int i = 0; i < part_length + 2; ++i) {
             std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;  // fields have a halo, and `restricted` more
-            position[i] = configuration.position.load(k);
-            velocity[i] = loads.velocity.load(k);
+            position[i] = by(configuration.position, k);
+            velocity[i] = by(loads.velocity, k);
             if (i == 0 || i > part_length) continue;
-            read.inverse_mass[i - 1] = group.inverse_mass.at(k, 0);
+            read.inverse_mass[i - 1] = by(group.inverse_mass, k)[0];
             read.restricted[i - 1] = restricted[k];
-            read.force[i - 1] = loads.force.origin ? loads.force.load(k) : Vec3::zero();
+            read.force[i - 1] = by.if_any(loads.force, k);
         }
         bool const floats = starts && read.restricted[0] == 0;
         if constexpr (InverseLength::may_fail) {  // which has no branch that others would wait for

@@ -39,8 +39,8 @@ template <class T, int D>
 CATENA_HD double read(FieldView<T, D> const& view, std::int64_t k, int component) {
     return view.at(k, component);
 }
-/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere, and some are wanted for what turns the body
-/// alone. Another reader may have them elsewhere.
+/// What leaves read a body's numbers by: each field in turn, of which some may be nowhere, and some are wanted once: accelerations do
+/// without them where the turning is known (leaves.hpp). Another reader may have them elsewhere.
 struct ReadHere {
     template <class T, int D, class Place>
     CATENA_HD Vector<RealAt<Place>, D> operator()(FieldView<T, D> const& view, Place k) const {
@@ -51,19 +51,19 @@ struct ReadHere {
         return view.origin ? read(view, k) : Vector<RealAt<Place>, D>::zero();
     }
     template <class T, int D, class Place>
-    CATENA_HD Vector<RealAt<Place>, D> if_any_turning(FieldView<T, D> const& view, Place k) const {
+    CATENA_HD Vector<RealAt<Place>, D> once_if_any(FieldView<T, D> const& view, Place k) const {
         return if_any(view, k);
     }
 };
-/// Of a body whose turning is kept (leaves.hpp), and which is read once more.
+/// Of a body whose turning is kept, and which is read once more, for its accelerations.
 struct ReadFirst : ReadHere {
     template <class T, int D>
-    CATENA_HD Vector<double, D> if_any_turning(FieldView<T, D> const& view, std::int64_t k) const {
+    CATENA_HD Vector<double, D> once_if_any(FieldView<T, D> const& view, std::int64_t k) const {
         return view.origin ? view.load_last(k) : Vector<double, D>::zero();
     }
 };
-/// That.
-struct ReadAgain {
+/// Then; and of one that is not read again.
+struct ReadLast {
     template <class T, int D>
     CATENA_HD Vector<double, D> operator()(FieldView<T, D> const& view, std::int64_t k) const {
         return view.load_last(k);
@@ -73,7 +73,7 @@ struct ReadAgain {
         return view.origin ? view.load_last(k) : Vector<double, D>::zero();
     }
     template <class T, int D>
-    CATENA_HD Vector<double, D> if_any_turning(FieldView<T, D> const&, std::int64_t) const {
+    CATENA_HD Vector<double, D> once_if_any(FieldView<T, D> const&, std::int64_t) const {
         return Vector<double, D>::zero();
     }
 };

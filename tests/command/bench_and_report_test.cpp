@@ -99,6 +99,14 @@ TEST(Bench, EvaluationsAreValidAndAsked) {
         EXPECT_LE(row.at("residual").get<double>(), row.at("residual_bound").get<double>());
         EXPECT_EQ(row.at("valid"), true);
     }
+    Ended const alike =
+        catena({"bench", "evaluation", "--sizes", "600", "--repeat", "1", "--backend", "segments", "--alike", "--json", "-"});
+    expect_good(alike);
+    EXPECT_EQ(alike.json().at("alike"), true);
+    EXPECT_EQ(json.at("alike"), false);
+    expect_refused(catena({"bench", "peers", "--alike"}), 2, "--alike is nothing to catena bench peers");
+    expect_refused(catena({"bench", "solve", "--joints", "link,mixed", "--alike"}), 2,
+                   "mixed joints are not alike (--alike): leave it out");
     for (auto const& [option, value] : {std::pair{"--joints", "revolute"}, {"--backend", "serial"}, {"--handles", "full"}})
         EXPECT_EQ(catena({"bench", "evaluation", "--sizes", "20", option, value}).status, 2) << option;
 }

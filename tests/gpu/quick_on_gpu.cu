@@ -13,6 +13,11 @@ struct OfNumber {
         return known ? inverse : cuda::kernels::not_known();
     }
 };
+struct InAnyCase {
+    __device__ double operator()(double x) const {
+        return cuda::kernels::QuickFactors<false>{}.with_inverse([&](auto const& inverse) { return inverse(x); });
+    }
+};
 struct OfLength {
     __device__ double operator()(double x) const { return cuda::kernels::QuickInverseLength{}(Vec3{{x, 0, 0}}); }
 };
@@ -33,6 +38,7 @@ std::vector<double> each_of(std::vector<double> x, Of of) {
 }  // namespace
 
 std::vector<double> quick_inverses(std::vector<double> const& x) { return each_of(x, OfNumber{}); }
+std::vector<double> inverses_in_any_case(std::vector<double> const& x) { return each_of(x, InAnyCase{}); }
 std::vector<double> quick_inverse_lengths(std::vector<double> const& x) { return each_of(x, OfLength{}); }
 
 }  // namespace catena::test

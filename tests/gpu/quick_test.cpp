@@ -52,6 +52,15 @@ TEST_F(GpuQuick, InverseIsKnownOrSaysSo) {
     std::vector<double> const x = numbers();
     expect_known_or_same(x, quick_inverses(x), 0x1p-1022, 0x1p1021, [](double v) { return 1 / v; });
 }
+TEST_F(GpuQuick, WhatIsNotKnownIsFoundAgain) {
+    std::vector<double> const x = numbers(), found = inverses_in_any_case(x);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (std::isnan(x[i]))
+            ASSERT_TRUE(std::isnan(found[i]));
+        else
+            ASSERT_EQ(std::bit_cast<std::uint64_t>(found[i]), std::bit_cast<std::uint64_t>(1 / x[i])) << x[i];
+    }
+}
 TEST_F(GpuQuick, InverseLengthIsKnownOrSaysSo) {
     std::vector<double> const x = numbers();
     expect_known_or_same(x, quick_inverse_lengths(x), 0x1p-480, 0x1p511, [](double v) { return 1 / std::sqrt(v * v); });

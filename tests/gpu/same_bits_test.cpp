@@ -5,6 +5,7 @@
 #include <string>
 
 #include "cuda/clusters.hpp"
+#include "cuda/memory.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
@@ -66,6 +67,13 @@ class Gpu : public ::testing::Test {
         Accelerations const device = solve(scene, Backend::cuda, axes, 3);
         EXPECT_GE(cuda::turns_together, before + (cuda::blocks_at_once() > 0 ? 4 : 0));
         expect_same_bits(device, solve(scene, Backend::segments, axes, 3));
+    }
+    /// Matrices and biases in one sweep, of any number of bodies.
+    void expect_same_at_once(std::string const& chain, Axes axes) const {
+        SCOPED_TRACE(chain);
+        Scene scene = scene_of(chain, Handles::projected);
+        scene.solver.simd = SimdLevel::off;
+        expect_same_bits(solve(scene, Backend::cuda, axes, 2), solve(scene, Backend::segments, axes, 2));
     }
     static std::string random_chain_of(int bodies, std::string const& joint, std::string const& rest = "base: fixed") {
         return "{" + rest + ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 2}}}";
@@ -142,6 +150,40 @@ TEST_F(Gpu, GroupsThatTurnTogether) {
 /// For the checkers.
 TEST_F(Gpu, ShortTurnsTogether) {
     for (char const* const joint : {"link", "spherical"}) expect_same_together(random_chain_of(8500, joint));
+}
+
+/// What never changes of bodies that are all alike has one tile of memory.
+TEST_F(Gpu, AlikeBodies) {
+    auto const expect_one_tile = [&](Scene const& scene) {
+        ChainSystem const system(scene, Axes::joint, *communicator_);
+        ChainGroup const& group = *system.groups().front();
+        bool const one = group.size > 512;
+        EXPECT_EQ(cuda::one_tile_serves(group.inverse_mass), one);
+        EXPECT_EQ(group.r1.size() > 0 && cuda::one_tile_serves(group.r1), one && group.r1.size() > 0);
+        EXPECT_EQ(group.r2.size() > 0 && cuda::one_tile_serves(group.r2), one && group.r2.size() > 0);
+    };
+    auto const of = [](std::string const& generator, int bodies, std::string const& rest = "base: fixed") {
+        return "{" + rest + ", generator: {" + generator + std::to_string(bodies) + ", mass: 2, length: 1.5}}}";
+    };
+    std::string const rods = "elastic_rod: {bend: 3, twist: 2, radius: 0.1, bodies: ", beads = "freely_jointed: {beads: ",
+                      ring = "polygon: {joint: spherical, spin: [0.1, 0.2, 0.3], bodies: ";
+    for (int const bodies : {512, 513, 2049, 20011, 300001}) {
+        SCOPED_TRACE(bodies);
+        for (std::string const& kind : {of("pendulum: {links: ", bodies), of(beads, bodies), of(rods, bodies)})
+            expect_one_tile(scene_of(kind, Handles::projected));
+        expect_same(scene_of(of("pendulum: {links: ", bodies), Handles::projected));
+        for (char const* const base : {"base: fixed", "base: free"}) {
+            expect_same(scene_of(of(beads, bodies, base), Handles::projected));
+            expect_same_at_once(of(beads, bodies, base), Axes::joint);
+            for (Axes const axes : {Axes::joint, Axes::world}) expect_same(scene_of(of(rods, bodies, base), Handles::projected), axes);
+            expect_same_at_once(of(rods, bodies, base), Axes::world);
+        }
+        if (HasFailure()) return;
+    }
+    for (Handles const handles : {Handles::projected, Handles::full}) {
+        expect_same(scene_of(of(ring, 700, "base: free, tip: {ring: {type: spherical, translation: [1.5, 0, 0]}}"), handles));
+        expect_same(scene_of(of(rods, 700, "name: a, count: 3") + ", " + of("pendulum: {links: ", 600, "name: b, base: fixed"), handles));
+    }
 }
 
 TEST_F(Gpu, AMillionAndOne) {
