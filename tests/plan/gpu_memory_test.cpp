@@ -20,7 +20,8 @@ TEST(GpuMemory, GrowsWithBodiesAndDirections) {
             SCOPED_TRACE(family.name());
             double const small = static_cast<double>(needed(family, 2000, backend).sum());
             double const large = static_cast<double>(needed(family, 20000, backend).sum());
-            EXPECT_NEAR(large / small, 10, 0.5);
+            EXPECT_LE(large / small, 10.5);
+            EXPECT_GE(large / small, 9);  // axes of joints that have none, and the like, are those of all bodies: a tile of either
             // What the solver keeps of the joints alone: a factor, two gains and three vectors of its directions.
             int const k = family.handles == Handles::full ? (family.joint == scene::RandomJoint::link ? 3 : 6) : 1;
             EXPECT_GT(small, 2000.0 * 8 * k * (k + 1) / 2);
