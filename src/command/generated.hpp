@@ -14,8 +14,8 @@ namespace catena::command {
 Scene random_scene(std::string const& joint, std::int64_t bodies, std::vector<std::string> const& overrides,
                    std::string const& loads = "wrenches");
 
-/// Gives all bodies of a random chain the second one's mass, inertia and joints, where there is one; how the chain stands on the ground, its
-/// coordinates and velocities stay. Precondition: not of mixed joints.
+/// Gives all bodies of a random chain the second one's mass, inertia and joints, where there is one; how the chain stands on the ground,
+/// its coordinates and velocities stay. Precondition: not of mixed joints.
 void make_alike(Scene& scene);
 
 /// Eight bodies that swing under gravity from a given start without losing energy. `joint`: revolute | spherical | mixed | link.
