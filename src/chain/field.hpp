@@ -22,25 +22,9 @@ struct FieldView {
     std::int64_t size = 0;
 
     CATENA_HD Real& at(std::int64_t k, int component) const { return origin[component * to_next_number(pitch) + place_of(k, pitch)]; }
-    CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const {
-        Vector<std::remove_const_t<Real>, D> v;
-        Real* const first = origin + place_of(k, pitch);
-        CATENA_UNROLL
-        for (int i = 0; i < D; ++i) v[i] = first[i * to_next_number(pitch)];
-        return v;
-    }
+    CATENA_HD Vector<std::remove_const_t<Real>, D> load(std::int64_t k) const { return taken<false>(k); }
     /// Where nobody will want it soon: it may leave a GPU's caches first.
-    CATENA_HD Vector<std::remove_const_t<Real>, D> load_last(std::int64_t k) const {
-#if defined(__CUDA_ARCH__)
-        Vector<std::remove_const_t<Real>, D> v;
-        Real* const first = origin + place_of(k, pitch);
-        CATENA_UNROLL
-        for (int i = 0; i < D; ++i) v[i] = __ldcs(first + i * to_next_number(pitch));
-        return v;
-#else
-        return load(k);
-#endif
-    }
+    CATENA_HD Vector<std::remove_const_t<Real>, D> load_last(std::int64_t k) const { return taken<true>(k); }
     template <class Value>
     CATENA_HD void store(std::int64_t k, Vector<Value, D> const& v) const {
         Real* const first = origin + place_of(k, pitch);
@@ -53,6 +37,16 @@ struct FieldView {
         return {origin + first * to_next_number(pitch), pitch, size};
     }
     CATENA_HD operator FieldView<Real const, D>() const { return {origin, pitch, size}; }
+
+  private:
+    template <bool last>
+    CATENA_HD Vector<std::remove_const_t<Real>, D> taken(std::int64_t k) const {
+        Vector<std::remove_const_t<Real>, D> v;
+        Real* const first = origin + place_of(k, pitch);
+        CATENA_UNROLL
+        for (int i = 0; i < D; ++i) v[i] = taken_number<last>(first + i * to_next_number(pitch));
+        return v;
+    }
 };
 
 /// Owner of a field on the host. Zero-initialised.

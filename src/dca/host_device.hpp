@@ -114,5 +114,13 @@ CATENA_HD std::int64_t to_next_number([[maybe_unused]] std::int64_t pitch) {
     return pitch;
 #endif
 }
+/// What is there; the `last` one to take it lets it leave a GPU's caches first.
+template <bool last, class Real>
+CATENA_HD Real taken_number(Real const* place) {
+#if defined(__CUDA_ARCH__)
+    if constexpr (last) return __ldcs(place);
+#endif
+    return *place;
+}
 
 }  // namespace catena

@@ -27,29 +27,9 @@ struct RecordsView {
         return origin[i * numbers + n];
 #endif
     }
-    CATENA_HD T load(std::int64_t i) const {
-#if defined(__CUDA_ARCH__)
-        double const* const first = on_gpu(i);
-        Numbers values;
-        CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) values[n] = first[n * gpu_order::lanes];
-        return __builtin_bit_cast(T, values);
-#else
-        return reinterpret_cast<T const*>(origin)[i];
-#endif
-    }
+    CATENA_HD T load(std::int64_t i) const { return taken<false>(i); }
     /// Where nobody will want it soon (FieldView::load_last()).
-    CATENA_HD T load_last(std::int64_t i) const {
-#if defined(__CUDA_ARCH__)
-        double const* const first = on_gpu(i);
-        Numbers values;
-        CATENA_UNROLL
-        for (int n = 0; n < numbers; ++n) values[n] = __ldcs(first + n * gpu_order::lanes);
-        return __builtin_bit_cast(T, values);
-#else
-        return load(i);
-#endif
-    }
+    CATENA_HD T load_last(std::int64_t i) const { return taken<true>(i); }
     CATENA_HD void store(std::int64_t i, T const& record) const {
 #if defined(__CUDA_ARCH__)
         double* const first = on_gpu(i);
@@ -62,6 +42,18 @@ struct RecordsView {
     }
 
   private:
+    template <bool last>
+    CATENA_HD T taken(std::int64_t i) const {
+#if defined(__CUDA_ARCH__)
+        double const* const first = on_gpu(i);
+        Numbers values;
+        CATENA_UNROLL
+        for (int n = 0; n < numbers; ++n) values[n] = taken_number<last>(first + n * gpu_order::lanes);
+        return __builtin_bit_cast(T, values);
+#else
+        return reinterpret_cast<T const*>(origin)[i];
+#endif
+    }
     /// Number 0 of record i there.
     CATENA_HD double* on_gpu(std::int64_t i) const {
         constexpr std::int64_t pitch = gpu_order::pitch(numbers);
