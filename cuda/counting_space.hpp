@@ -211,6 +211,9 @@ class CountingSpace : public HostAccess {
     void climb_and_descend(AnyTree const&, Sweep const&) const {}
     template <class Scan, class Action>
     void climb_and_descend(ScanTree const&, Scan const&, std::int64_t, Action const&) const {}
+    template <class Scan, class T, class Action>
+    void climb_and_descend(ScanTree const&, Scan const&, List<T> const&, Action const&) const {}
+    static bool has_threads_to_spare(std::int64_t) { return false; }
     template <class Value>
     double largest(std::int64_t, Value const&) const {
         return 0;

@@ -147,6 +147,13 @@ class DeviceSpace {
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
+    template <class Scan, class T, class Action>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, Buffer<T> const& items, Action const& action) const {
+        auto const count = static_cast<std::int64_t>(items.size());
+        if (count > 0 && tree.at_once(scan, count, kernels::OfItem<T, Action>{items.data(), action}, stream())) return;
+        climb_and_descend(tree, scan);
+        over(items, action);
+    }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
         walk(tree).climb(sweep);
@@ -162,6 +169,7 @@ class DeviceSpace {
             if (tree.short_(sweep, stream())) return;
         walk(tree).climb_and_descend(sweep);
     }
+    static bool has_threads_to_spare(std::int64_t items) { return items <= most_items_with_threads_to_spare; }
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {
         if (count == 0) return 0;
@@ -282,6 +290,7 @@ class DeviceSpace {
     int threads() const { return 1; }
 
   private:
+    static constexpr std::int64_t most_items_with_threads_to_spare = 16384;
     /// Where body k's first one stands in the GPU's memory.
     template <class Real, int D>
     static Real* number_of(FieldView<Real, D> const& field, std::int64_t k) {

@@ -31,6 +31,7 @@ class BodiesOfTeam {
 /// What a run needs of a body to go on to it. All are found before what the way up needs takes the registers; not those of the first and
 /// the last, so that eight warps have room.
 struct BodyAhead : dca::LoadedBodyInRun<double> {
+    double torque_about;  // the hinge, where that is in no body's own
     static constexpr int slots = static_cast<int>(dca::longest_run) - 2;
     __device__ static int slot(int i) { return i - 1; }
 };
@@ -50,32 +51,31 @@ class HingeTeam {
 
   public:
     /// `works`: else it only goes along with the warp's other teams.
-    __device__ HingeTeam(int lane, bool works) : own_(lane % lanes_of_team), leader_(lane - own_), leads_(works && own_ == 0) {}
-    __device__ bool leads() const { return leads_; }
+    __device__ HingeTeam(int lane, bool works) : own_(lane % lanes_of_team), leader_(lane - own_), works_(works) {}
+    __device__ bool leads() const { return works_ && own_ == 0; }
 
     /// As dca::climb_hinges(), of dca::longest_run bodies, where the team's first lane keeps; all lanes of the warp come to these.
     template <class BodyOf, class Kept>
     __device__ dca::BiasedSegment<double, 5> climb(BodyOf const& body, BodiesOfTeam<BodyAhead> const& bodies, Kept& kept) {
         Prepared const last_one = prepare(body, bodies);
         begin(body(0));
-        CATENA_NO_UNROLL
-        for (int i = 1; i < count - 1; ++i) {
-            BodyAhead const ahead = bodies.get(i);
-            dca::ReleasedHinge<double> const hinge = go_on(ahead);
-            if (leads()) kept.put(i, hinge, ahead);
-        }
+        go_on<dca::Undriven>(bodies, kept);
         dca::InertiaRun<double> run = whole();
         Body const last = body(count - 1);
-        dca::ReleasedHinge<double> hinge;
-        dca::OutboardHandle<double> const before =
-            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last);
-        dca::RunsEnd<double> const end = end_run(run, before, last, hinge, dca::Undriven{});
-        if (leads()) {
-            kept.put(count - 1, hinge);
-            kept.put(end);
-            kept.put_axes(before.axes);
-        }
-        return segment_of(run, end, last);
+        return end(run, of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last), last,
+                   dca::Undriven{}, kept);
+    }
+    /// The same where hinges' loads are given. `all`: as FollowedBodies.
+    template <class Leaf, class Kept>
+    __device__ dca::BiasedSegment<double, 5> climb(dca::RunWithLoads<Leaf> const& loaded, bool all, BodiesOfTeam<BodyAhead> const& bodies,
+                                                   Kept& kept) {
+        dca::FollowedState<double> const last_one = follow(loaded, all, bodies, kept);
+        begin(loaded.first());
+        go_on<double>(bodies, kept);
+        dca::InertiaRun<double> run = whole();
+        dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(count - 2), last_one.inward};
+        Body const last = loaded.last(before.axes, last_one.omega, kept);
+        return end(run, before, last, loaded.torque_about(count - 1), kept);
     }
     /// As dca::descend_hinges(), by every lane. Precondition: not of all bodies.
     template <class Frame, class Kept, class Accelerate, class Turn>
@@ -129,12 +129,54 @@ class HingeTeam {
             }
             Vec3 const inward = mine * here.inward2;
             Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
-            BodyAhead const ahead{in_run(here, mine, own_ == 0 ? of_last : inward_before)};
+            BodyAhead const ahead{in_run(here, mine, own_ == 0 ? of_last : inward_before), 0.0};
             if (int const i = first + own_; i > 0 && i < count - 1) bodies.put(i, ahead);
             own = {mine, here.e2, inward};
         }
         __syncwarp();
         return own;
+    }
+    /// All bodies, as FollowedBodies; returns the last but one.
+    template <class Leaf, class Kept>
+    __device__ dca::FollowedState<double> follow(dca::RunWithLoads<Leaf> const& loaded, bool all, BodiesOfTeam<BodyAhead> const& bodies,
+                                                 Kept& kept) const {
+        dca::FollowedState<double> own{Quat::identity(), loaded.first_omega(), loaded.first_inward()};
+        Vec3 const first_inward = own.inward;
+        Quat turn = own.turn;
+        Vec3 omega = own.omega;
+        CATENA_NO_UNROLL
+        for (int first = 0; first < count; first += lanes_of_team) {
+            int const i = first + own_;
+            dca::BodyOnHinge<double> const here = loaded.on_hinge(i);
+            own.turn = turn;
+            CATENA_NO_UNROLL
+            for (int lane = 0; lane < lanes_of_team; ++lane) {
+                if (first + lane > 0) turn = of_lane(turn * here.turn, lane);
+                if (lane == own_) own.turn = turn;
+            }
+            Mat3 const mine = to_matrix_of_unit(own.turn);
+            Vec3 const axis = mine * here.axis;
+            Vec3 omega_before = omega;
+            CATENA_NO_UNROLL
+            for (int lane = 0; lane < lanes_of_team; ++lane) {
+                if (lane == own_) omega_before = omega;
+                if (first + lane > 0) omega = of_lane(plus_scaled(omega, here.rate, axis), lane);
+            }
+            dca::FollowedBody<double> const body = dca::follow(here, mine, omega_before);
+            Vec3 const inward = i == 0 ? first_inward : body.inward2;
+            int const before = leader_ + (own_ + lanes_of_team - 1) % lanes_of_team;
+            Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
+            own.inward = own_ == 0 ? of_last : inward_before;
+            BodyAhead ahead{own.go_on(body), loaded.torque_about(i)};
+            own.inward = inward;
+            loaded.add_wrench(i, ahead);
+            if (i > 0 && i < count - 1) {
+                bodies.put(i, ahead);
+                if (works_ && (all || i == count - 2)) kept.put_omega(i, transposed_times(mine, own.omega));
+            }
+        }
+        __syncwarp();
+        return of_lane(own, before_last);
     }
     /// Of the team's last lane.
     template <class T>
@@ -156,12 +198,26 @@ class HingeTeam {
             for (int i = 0; i < bias; ++i) row_[s][i] = 0;
         }
     }
+    /// To all bodies but the first and the last. `Torque`: as dca::release_driven.
+    template <class Torque, class Kept>
+    __device__ void go_on(BodiesOfTeam<BodyAhead> const& bodies, Kept& kept) {
+        CATENA_NO_UNROLL
+        for (int i = 1; i < count - 1; ++i) {
+            BodyAhead const ahead = bodies.get(i);
+            dca::ReleasedHinge<double> const hinge = go_on<Torque>(ahead);
+            if (leads()) kept.put(i, hinge, ahead);
+        }
+    }
+    template <class Torque>
     __device__ dca::ReleasedHinge<double> go_on(BodyAhead const& body) {
         dca::ReleasedHinge<double> h;
         dca::Release<double> const r = release_hinge(all_, body.axis, h);
         double along[2];
-        CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) along[s] = release_hinge(wrench_[s], r);
+        along[0] = release_hinge(wrench_[0], r);
+        if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
+            along[1] = release_driven(wrench_[1], r, own_ == bias % lanes_of_team ? body.torque_about : -0.0);
+        else
+            along[1] = release_hinge(wrench_[1], r);
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes_of_team], j % lanes_of_team);
         h.bias = of_lane(along[bias / lanes_of_team], bias % lanes_of_team);
@@ -180,6 +236,18 @@ class HingeTeam {
         move_point(all_, body.across);
         add_body(all_, body.mass, body.inertia, body.centre);
         return h;
+    }
+    template <class Torque, class Kept>
+    __device__ dca::BiasedSegment<double, 5> end(dca::InertiaRun<double>& run, dca::OutboardHandle<double> const& before, Body const& last,
+                                                 Torque const& torque, Kept& kept) const {
+        dca::ReleasedHinge<double> hinge;
+        dca::RunsEnd<double> const end = end_run(run, before, last, hinge, torque);
+        if (leads()) {
+            kept.put(count - 1, hinge);
+            kept.put(end);
+            kept.put_axes(before.axes);
+        }
+        return segment_of(run, end, last);
     }
     /// What all lanes have together.
     __device__ dca::InertiaRun<double> whole() const {
@@ -202,7 +270,7 @@ class HingeTeam {
     }
 
     int own_, leader_;  // lane of the team, and of the warp that is the team's first
-    bool leads_;
+    bool works_;
     dca::SpatialInertia<double> all_;
     Wrench wrench_[2];
     double row_[2][bias], e_[2] = {};
@@ -225,8 +293,14 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(dca::Run const* runs, 
     dca::Run const run = runs[wanted < count ? wanted : count - 1];
     if (all_lanes(lane, run.count == dca::longest_run && sweep.takes(run))) {
         dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run);
-        auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
-        typename Sweep::Segment const segment = team.climb(body, BodiesOfTeam<BodyAhead>(shared_numbers, lane), kept);
+        BodiesOfTeam<BodyAhead> const bodies(shared_numbers, lane);
+        typename Sweep::Segment segment;
+        if (sweep.follows()) {
+            segment = team.climb(sweep.with_loads(run), sweep.goes_by_all(), bodies, kept);
+        } else {
+            auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
+            segment = team.climb(body, bodies, kept);
+        }
         sweep.s.note(kept.lost());
         if (team.leads()) sweep.store(run.slot, segment);
     } else if (team.leads()) {
@@ -244,7 +318,7 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(dca::Run const* runs
     bool const whole = run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run);
     if (all_lanes(lane, whole)) {
         dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run);
-        auto const frame = [&](int i) { return sweep.s.leaf.hinged_frame(sweep.bodies.loads, run.body + i); };
+        auto const frame = [&](int i) { return sweep.frame(run, kept, i); };
         team.descend(
             frame, BodiesOfTeam<HingeBehind>(shared_numbers, lane), kept, sweep.s.forces.load(run.body), sweep.s.forces.load(run.next),
             [&](int i, dca::HingedFrame<double> const& of_body, dca::BodyAcceleration<double> const& a) {

@@ -79,6 +79,7 @@ class JointKinematics {
           screw_(group.screw),
           tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots, group.schedule.slots),
           top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
+          runs_(group.schedule.runs),
           roots_(group.schedule.roots),
           top_roots_(group.schedule.top_roots),
           from_top_(own_shared_),
@@ -144,6 +145,17 @@ class JointKinematics {
         if (group_.moving_meeting()) exchange_meeting(s);
     }
 
+    /// By a scan that does more with runs than MotionScan; then last(run) for every one. `between`: before other ranks' part in it.
+    template <class Scan, class Between, class Last>
+    void sweep_runs(Scan const& scan, Between const& between, Last const& last) {
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan, runs_, last);
+        space_.climb(tree_, scan);
+        between();
+        sweep_shared(scan.motions());
+        space_.descend(tree_, scan);
+        space_.over(runs_, last);
+    }
+
     // Not private: nvcc takes lambdas for kernels from public members alone.
     template <bool positions>
     void evaluate(JointScan const& s) {
@@ -189,6 +201,7 @@ class JointKinematics {
     typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
     std::vector<dca::Run> no_runs_;
     typename Space::ScanTree tree_, top_;
+    typename Space::template List<dca::Run> runs_;
     typename Space::template List<dca::Root> roots_, top_roots_;
     typename Space::template List<dca::TopCopy> from_top_;
     typename Space::template List<std::int32_t> slot_;

@@ -2,6 +2,7 @@
 // again on the way down, but for what takes longer than to keep it.
 #pragma once
 
+#include "dca/followed_run.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {
@@ -100,16 +101,19 @@ struct Resting {
 };
 
 /// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end(), hinge()
-/// and body() are asked for was put; axes(): of a run of three bodies or more.
+/// body() and omega() are asked for was put; axes(), omega() and orientation(): of a run of three bodies or more.
 template <class Sweeps>
 class HingesInJoints {
     using Hinge = ReleasedHinge<double>;
     using Body = BodyInRun<double>;
     using End = RunsEnd<double>;
-    // The last hinge's and the end's numbers lie together, the axes beside the body before: a run of two has none between its ends.
-    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_body = sizeof(Body) / sizeof(double), of_axes = 9;
+    // The last hinge's and the end's numbers lie together, what else is of the last body beside the body before: a run of two has none
+    // between its ends.
+    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
     static constexpr int of_end = sizeof(End) / sizeof(double), most = sizeof(typename Sweeps::Node) / sizeof(double);
-    static_assert(of_hinge + of_end <= most && of_hinge + of_body + of_axes <= most);
+    static constexpr int at_axes = of_hinge + of_body, at_omega = at_axes + of_axes, at_last_omega = at_omega + of_omega,
+                         at_orientation = at_last_omega + of_omega;
+    static_assert(of_hinge + of_end <= most && at_orientation + of_axes <= most);
 
   public:
     CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run) : sweeps_(sweeps), run_(run) {}
@@ -127,12 +131,25 @@ class HingesInJoints {
         for (int i = 0; i < 6; ++i) watch(last(), end.factor(i, i));
     }
     CATENA_HD void put_axes(Mat3 const& axes) {
-        if (last() > 1) store(last() - 1, of_hinge + of_body, axes);
+        if (last() > 1) store(last() - 1, at_axes, axes);
+    }
+    /// Of a body that is not the first, in its axes.
+    CATENA_HD void put_omega(int i, Vec3 const& omega) {
+        if (i < last())
+            store(i, at_omega, omega);
+        else if (last() > 1)
+            store(last() - 1, at_last_omega, omega);
+    }
+    /// What turns from the ground's axes to the last body's.
+    CATENA_HD void put_orientation(Mat3 const& from_ground) {
+        if (last() > 1) store(last() - 1, at_orientation, from_ground);
     }
     CATENA_HD Hinge hinge(int i) const { return load<Hinge>(i, 0); }
     CATENA_HD Body body(int i) const { return load<Body>(i, of_hinge); }
     CATENA_HD End end() const { return load<End>(last(), of_hinge); }
-    CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, of_hinge + of_body); }
+    CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, at_axes); }
+    CATENA_HD Vec3 omega(int i) const { return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega); }
+    CATENA_HD Mat3 orientation() const { return load<Mat3>(last() - 1, at_orientation); }
     CATENA_HD Lost const& lost() const { return lost_; }
 
   private:
@@ -205,26 +222,45 @@ struct Evaluation {
     }
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
         HingesInJoints<Sweeps> kept(s, run);
-        auto const body = [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); };
-        Segment const segment = climb_hinges<double>(
-            static_cast<int>(run.count), BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; }, kept);
+        int const count = static_cast<int>(run.count);
+        Segment segment;
+        if (follows()) {
+            RunWithLoads<Leaf> const loaded = with_loads(run);
+            segment = climb_hinges<double>(
+                count, FollowedBodies<Leaf, HingesInJoints<Sweeps>>(loaded, goes_by_all(), kept),
+                [&](int i) { return loaded.torque_about(i); }, kept);
+        } else {
+            auto const body = [&](int i) { return s.leaf.hinged(bodies.loads, run.body + i); };
+            segment = climb_hinges<double>(count, BodiesOfRun<double, decltype(body)>(body), [](int) { return Undriven{}; }, kept);
+        }
         s.note(kept.lost());
         return segment;
     }
     CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
         HingesInJoints<Sweeps> const kept(s, run);
-        Directions outboard = next;
+        typename RunWithLoads<Leaf>::PassedOn passed{next};
+        Directions& outboard = passed.force;
         descend_hinges<double>(
-            static_cast<int>(run.count), goes_by_all(), [&](int i) { return s.leaf.hinged_frame(bodies.loads, run.body + i); }, kept, first,
-            next,
+            static_cast<int>(run.count), goes_by_all(), [&](int i) { return frame(run, kept, i); }, kept, first, next,
             [&](int i, HingedFrame<double> const& frame, BodyAcceleration<double> const& a) {
                 std::int64_t const k = run.body + i;
                 accelerate(run, i, frame, a);
                 if (!out.joint_force) return;
-                outboard = i == 0 ? first : inboard_force(s.leaf.hinged(bodies.loads, k), a, outboard);
+                if (i == 0)
+                    outboard = first;
+                else if (follows())
+                    with_loads(run).pass_on(i, frame, a, kept, passed);
+                else
+                    outboard = inboard_force(s.leaf.hinged(bodies.loads, k), a, outboard);
                 write_directions<K>(out.joint_force, k, outboard);
             },
             [](int, BodyAcceleration<double>&) {}, [&](int i, double of_hinge) { turn(run, i, of_hinge); });
+    }
+    /// Whether what moves within runs is found on the way.
+    CATENA_HD bool follows() const { return bodies.loads.hinges.given; }
+    CATENA_HD RunWithLoads<Leaf> with_loads(Run const& run) const { return {s.leaf, bodies.loads, run}; }
+    CATENA_HD HingedFrame<double> frame(Run const& run, HingesInJoints<Sweeps> const& kept, int i) const {
+        return follows() ? with_loads(run).frame(i, kept) : s.leaf.hinged_frame(bodies.loads, run.body + i);
     }
     /// Whether anything is wanted of each of a run's bodies.
     CATENA_HD bool goes_by_all() const { return out.by_all_bodies(); }

@@ -176,6 +176,14 @@ class HostSpace : public HostAccess {
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
+    /// And then action(item) for each item.
+    template <class Scan, class T, class Action>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items, Action const& action) const {
+        climb_and_descend(tree, scan);
+        over(items, action);
+    }
+    /// Whether loops over so many items leave threads without work that loops over the bodies in them would give them.
+    static bool has_threads_to_spare(std::int64_t /*items*/) { return false; }
     /// The largest of value(0), ..., value(count - 1), which are 0 or more; a NaN counts as the largest. 0 of none.
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {

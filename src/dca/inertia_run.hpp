@@ -52,6 +52,14 @@ struct LoadedBodyInRun : BodyInRun<Real> {
     Symmetric<Real, 3> inertia;
     Vector<Real, 3> torque, force;
 };
+/// A body on a hinge within a run whose motion is found along it (followed_run.hpp), in its own axes.
+template <class Real>
+struct BodyOnHinge {
+    Quaternion<Real> turn;  // to the axes of the body before
+    Vector<Real, 3> axis, r1, r2;
+    Real rate, mass;
+    Symmetric<Real, 3> inertia;
+};
 template <class Real>
 struct InertiaRun {
     SpatialInertia<Real> inertia;

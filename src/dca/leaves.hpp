@@ -356,6 +356,23 @@ class BodyLeaf {
         add_gyroscopic(loads, omega, b);
         return b;
     }
+    /// `loads.hinges.frame` and `loads.hinge_rate` are given.
+    template <class Place>
+    CATENA_HD BodyOnHinge<RealAt<Place>> on_hinge(LoadsView const& loads, Place k) const {
+        auto const state = frames_.state(k);
+        auto const& axes = state.axes1;
+        return {as_quaternion(read(loads.hinges.frame, k)) * as_quaternion(state.rotation),
+                {{axes[3], axes[4], axes[5]}},
+                state.r1,
+                state.r2,
+                read(loads.hinge_rate, k)[0],
+                read(group_.mass, k)[0],
+                as_symmetric(read(group_.inertia, k))};
+    }
+    template <class Place>
+    CATENA_HD Vector<RealAt<Place>, 6> axes2(Place k) const {
+        return frames_.state(k).axes2;
+    }
     // What they are made of. Not copied: a compiler may copy vectors by halves, which the next to read them waits for.
     template <class Place>
     CATENA_HD HingedFrame<RealAt<Place>> frame_at_rest(Place k) const {

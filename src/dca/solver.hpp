@@ -88,10 +88,11 @@ struct ConfigurationView {
     std::int64_t pieces = 0;
 };
 
-/// For one that follows_hinges(): of runs side by side omega is known of first bodies alone, and this stands in the place of torque and
-/// force. A view without origin means zero.
+/// For one that goes_by_hinges(): of runs of two bodies or more - of those side by side alone, where there are any - omega is known of
+/// first bodies alone, and this stands in the place of torque and force. A view without origin means zero.
 struct HingeLoads {
     bool given = false;
+    ConstView<4> frame;  // of hinges: quaternion of their meeting frame in the inboard body; host: those side by side have their own
     /// What joints do along their free directions, on body k along the axes of its inboard joint, of hinges about the last one; [0, size].
     ConstView<3> joint_torque;
     static constexpr int about_hinge = 2;  // component
@@ -185,12 +186,11 @@ class ChainSolver {
     }
     /// Whether assemble_and_solve() is one sweep, which reads beads by their positions and velocities.
     virtual bool at_once() const { return false; }
-    /// Whether it takes runs on hinges by their inertias, and so can do with less: LoadsView::hinge_rate,
+    /// Whether it takes runs on hinges by their inertias, and so can do with less: LoadsView::hinge_rate, HingeLoads,
     /// AccelerationsView::hinge_acceleration.
     virtual bool goes_by_hinges() const { return false; }
-    /// Whether it finds angular velocities and torques along the runs that go side by side (deal_out_runs()) by itself:
-    /// HingeLoads.
-    virtual bool follows_hinges() const { return false; }
+    /// Whether runs go side by side (deal_out_runs()).
+    virtual bool has_runs_side_by_side() const { return false; }
     /// Seconds of assemble_and_solve() where all its views are already, `repeat` times the mean of `chained` calls one after the other.
     /// Collective.
     virtual std::vector<double> time_evaluations(ConfigurationView const&, LoadsView const&, AccelerationsView const&, int chained,

@@ -90,7 +90,7 @@ class TreeSolver final : public ChainSolver {
     /// The chapter's tree of pairs stays plain, and so do full handles.
     bool at_once() const override { return Leaf::projected && group_.partition.trees.front().run_length > 1; }
     bool goes_by_hinges() const override { return takes_runs_whole && at_once() && group_.hinged; }
-    bool follows_hinges() const override { return goes_by_hinges() && aside_.has_value(); }
+    bool has_runs_side_by_side() const override { return aside_.has_value(); }
     std::vector<double> time_evaluations(ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out,
                                          int chained, int repeat) override {
         return space_.time_chained(chained, repeat, shown_matrices_.asks_host(), [&] { assemble_and_solve(configuration, loads, out); });
@@ -192,12 +192,17 @@ class TreeSolver final : public ChainSolver {
                 Evaluation<Leaf, typename Leaf::Moving>{{sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
                 configuration, loads, out);
         else
-            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{{sweeps_}, {sweeps_.leaf, model_.restricted(), loads}, out}, configuration, loads,
-                          out);
+            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{{sweeps_}, {sweeps_.leaf, model_.restricted(), of_others(loads)}, out},
+                          configuration, loads, out);
         ++report_.evaluations;
         if (Space::answers_at_once) check();
     }
 
+    /// Of runs that do not go side by side: where some do, all that moves in the others is known.
+    LoadsView of_others(LoadsView loads) const {
+        if (has_runs_side_by_side()) loads.hinges = {};
+        return loads;
+    }
     /// With runs and merges that go side by side where there are any, and the others of each level after them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {

@@ -8,6 +8,7 @@
 #include "dca/host_space.hpp"
 #include "error.hpp"
 #include "integrate/embedded_steps.hpp"
+#include "integrate/hinge_scan.hpp"
 #include "integrate/joint_dynamics.hpp"
 #include "integrate/joint_lanes.hpp"
 #include "integrate/joint_solution.hpp"
@@ -87,7 +88,8 @@ class JointDynamicsIn final : public JointDynamics {
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions) {
         if constexpr (has_lanes)
-            if (JointLanes lanes(group, given_.springs, solver_->follows_hinges(), space.simd()); lanes.any()) lanes_ = std::move(lanes);
+            if (JointLanes lanes(group, given_.springs, goes_by_hinges_ && solver_->has_runs_side_by_side(), space.simd()); lanes.any())
+                lanes_ = std::move(lanes);
         if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince) pair_.emplace(group);
         if (scene.solver.refine > 0) refinement_.emplace(group);
         set_state(make_joint_state(group, scene));
@@ -235,16 +237,12 @@ class JointDynamicsIn final : public JointDynamics {
     void go_to_configuration(bool leaves_loads) {
         leaves_loads_ = leaves_loads;
         has_matrices_ = false;
-        if constexpr (has_lanes)
-            if (may_follow_hinges()) {
-                if (lanes_ && solver_->follows_hinges())
-                    follow_hinges();
-                else
-                    update(false);
-                has_orientations_ = false;  // as on ranks that follow: to find them is collective
-                return;
-            }
-        update(false);
+        if (!may_follow_hinges()) return update(false);
+        if (follows_hinges())
+            follow_hinges();
+        else
+            update(false);
+        has_orientations_ = false;  // as on ranks that follow: to find them is collective
     }
     void update(bool again) {
         leaves_motions_ = false;
@@ -278,12 +276,28 @@ class JointDynamicsIn final : public JointDynamics {
             t.set_acceleration_bias(i, gravity, out);
         });
     }
-    /// update() where the solver follows_hinges().
+    /// update() where motions within runs are the solver's to find.
     void follow_hinges() {
         leaves_motions_ = true;
         JointChains c = chains();
         c.scan.motion.orients_first_alone = !needs_orientations_;
-        relative_ = false;
+        bool const relative = std::exchange(relative_, false);
+        if constexpr (has_lanes)
+            if (solver_->has_runs_side_by_side()) return follow_by_lanes(c);
+        follow_by_runs(c, relative);
+    }
+    void follow_by_runs(JointChains const& c, bool relative) {
+        HingeScan const scan{c, joint_by_joint()};
+        if (scan.joint_by_joint && !relative)
+            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<false>(k); });
+        kinematics_.sweep_runs(
+            scan,
+            [&] {
+                if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
+            },
+            [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
+    }
+    void follow_by_lanes(JointChains const& c) {
         // Where bodies meet is as fixed as it was at first: on hinges. Of first bodies, on whatever joint, set_relative() finds it.
         lanes_->each_outside(
             space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
@@ -367,7 +381,7 @@ class JointDynamicsIn final : public JointDynamics {
         return all;
     }
     HingeLoads loads_of_hinges() {
-        HingeLoads all{true, {}, {}, {}, {}};
+        HingeLoads all{true, kinematics_.joints().joint_rotation, {}, {}, {}, {}};
         View<4> const joint = joint_load_.view();
         if (given_.joint_loads) all.joint_torque = {joint.origin, joint.pitch, joint.size};
         if (given_.wrenches) {
@@ -382,9 +396,14 @@ class JointDynamicsIn final : public JointDynamics {
     bool leaves_torques() const {
         return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged && !group_.carried_in_scene;
     }
-    /// Whether a rank may follow_hinges(): where nothing acts by bodies' positions. The same on all ranks, not all of which have lanes for
-    /// it; these are those of the solver's.
-    bool may_follow_hinges() const { return has_lanes && leaves_loads_ && !needs_positions_; }
+    /// Whether a rank may follow_hinges(): where nothing acts by bodies' positions. The same on all ranks, not all of which do; lanes are
+    /// those of the solver's.
+    bool may_follow_hinges() const { return leaves_loads_ && !needs_positions_; }
+    bool follows_hinges() const {
+        return goes_by_hinges_ && group_.drives.empty() && !has_implicit() && (lanes_ || !solver_->has_runs_side_by_side());
+    }
+    /// Whether motions joint by joint, which steps may leave, are found before those of runs.
+    bool joint_by_joint() const { return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)); }
     AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
     /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
     /// accelerations instead, where that is enough.
@@ -429,7 +448,7 @@ class JointDynamicsIn final : public JointDynamics {
         c.bias = bias_.view();
         c.outboard_end = outboard_end_.view();
         c.in_run = {in_run_list_.data()};
-        c.left = {leaves_torques(), leaves_loads_, leaves_motions_};
+        c.left = {leaves_torques(), leaves_loads_, leaves_motions_ && !joint_by_joint()};
         if (has_hinges_) c.hinge_acceleration = hinge_acceleration_.view();
         return c;
     }

@@ -45,7 +45,7 @@ JointLoops avx512_joint_loops(bool positions);
 
 class JointLanes {
   public:
-    /// `springs`: whether joints have any. `hinges`: whether the solver follows_hinges(). The group must outlive it.
+    /// `springs`: whether joints have any. `hinges`: whether the solver goes_by_hinges(), side by side. The group must outlive it.
     JointLanes(ChainGroup const&, bool springs, bool hinges, SimdLevel);
     // A copy's tree would be of the original's runs.
     JointLanes(JointLanes&&) = default;
@@ -67,7 +67,7 @@ class JointLanes {
     }
     HostSpace::ScanTree const& tree() const { return *tree_; }
 
-    // Chains whose solver follows_hinges(), none of whose positions is asked for. Precondition: `hinges`.
+    // Chains whose solver goes_by_hinges(), none of whose positions is asked for. Precondition: `hinges`.
 
     /// As each(): of bodies whose runs do not go side by side, and of those that begin a chain.
     template <class Space, class Some, class One>

@@ -36,7 +36,7 @@ struct HingesInRuns {
         return true;
     }
 };
-/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, hinge_rate; and follows_hinges,
+/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, hinge_rate; and HingeLoads,
 /// where an update finds bodies' motions as it needs them (JointLanes::follow_hinges).
 struct LeftToSolver {
     bool gyroscopic = false, biases = false, motions = false;
@@ -143,6 +143,13 @@ struct JointLoads {
         if constexpr (is_one_body<Place>)
             if (implicit.has(k)) return set_implicit(k, along);
         write(joint_load, k, load_along_axes(k, along));
+    }
+    /// The same of a hinge that is neither driven nor implicit: about its axis.
+    CATENA_HD double torque_about_hinge(std::int64_t k) const {
+        double along = given.torque.at(k, 0);
+        if (given.springs) along = along - given.stiffness.at(k, 0) * (scan.state.q.at(k, 0) - given.rest.at(k, 0));
+        if (given.dampers) along = along - given.damping.at(k, 0) * scan.state.qd.at(k, 0);
+        return along;
     }
     /// B along a joint's coordinate i.
     CATENA_HD double implicit_inertia(std::int64_t k, int i) const {
@@ -285,7 +292,15 @@ struct JointLoads {
 
     template <class Place>
     CATENA_HD void set_loads(Place k) const {
+        set_torque(k);
+        set_biases(k);
+    }
+    template <class Place>
+    CATENA_HD void set_torque(Place k) const {
         if (!left.gyroscopic) set_wrench(k);
+    }
+    template <class Place>
+    CATENA_HD void set_biases(Place k) const {
         if (!left.biases || !in_run.has(k)) set_bias(k, turn(k), joints().axes(k));
     }
     template <class Place>

@@ -19,7 +19,6 @@ class GpuJoints : public ::testing::Test {
     /// State after some steps, and what carries to the next.
     std::map<std::string, std::vector<double>> after_steps(Scene scene, Backend backend, Integrator integrator) const {
         scene.solver.backend = backend;
-        if (backend == Backend::segments) scene.solver.simd = SimdLevel::off;  // in vectors chains on hinges go another way
         ChainSystem system(scene, Axes::joint, *communicator_);
         EXPECT_EQ(system.backend(), backend);
         double constexpr h = 0.0005;

@@ -50,15 +50,6 @@ double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     return worst == 0 ? 0 : worst / most;
 }
 
-/// Whether chains go another way in vectors than one body after the other.
-bool go_another_way(Scene scene, Axes axes, SimdLevel level, Communicator const& communicator) {
-    scene.solver.backend = Backend::segments;
-    scene.solver.simd = level;
-    ChainSystem system(scene, axes, communicator);
-    auto const groups = system.joint();
-    return std::any_of(groups.begin(), groups.end(), [](JointDynamics* group) { return group->solver().follows_hinges(); });
-}
-
 /// The same operations in the same order, on hinges in vectors of any width. Where the rest of the program rounds products before it adds,
 /// or goes another way, a chain of n bodies lets the last digits of that grow like n.
 void expect_found(Scene const& scene, Axes axes, std::string const& what) {
@@ -72,7 +63,7 @@ void expect_found(Scene const& scene, Axes axes, std::string const& what) {
         double const tolerance = 64 * static_cast<double>(scene.bodies()) * 0x1p-53;
         EXPECT_LE(difference(expected.acceleration, one.acceleration), tolerance) << name;
         EXPECT_LE(difference(expected.alpha, one.alpha), tolerance) << name;
-        bool const as_one_by_one = rounds_as_vectors() && !go_another_way(scene, axes, level, *alone);
+        bool const as_one_by_one = rounds_as_vectors();
         EXPECT_TRUE(!as_one_by_one || same(expected, one)) << name;
         if (level != SimdLevel::off && !narrow) narrow = one;
         EXPECT_TRUE(!rounds_as_vectors() || !narrow || same(*narrow, one)) << name << ", other vectors";
@@ -181,7 +172,7 @@ TEST(SimdOfSteps, FindTheSame) {
                     return same_bits(a.position, b.position) && same_bits(a.velocity, b.velocity) &&
                            same_bits(a.orientation, b.orientation);
                 };
-                bool const as_one_by_one = rounds_as_vectors() && !go_another_way(scene, Axes::joint, level, *alone);
+                bool const as_one_by_one = rounds_as_vectors();
                 EXPECT_TRUE(!as_one_by_one || same_state(found, expected)) << name;
                 double const tolerance = 64 * static_cast<double>(options.bodies) * 0x1p-53;
                 EXPECT_LE(difference(expected.position, found.position), tolerance) << name;

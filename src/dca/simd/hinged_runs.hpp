@@ -11,7 +11,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
     static constexpr int K = Leaf::K, lanes = Real::lanes, count = static_cast<int>(longest_run);
     static constexpr int numbers_of_hinge = hinge_numbers * lanes;
     using Base = RunsInTile<Real, Leaf>;
-    using Base::work_, Base::bodies_, Base::joint_frame_, Base::out_, Base::fill, Base::empty, Base::ask, Base::in_tile;
+    using Base::work_, Base::bodies_, Base::out_, Base::fill, Base::empty, Base::ask, Base::in_tile;
     static_assert(sizeof(ReleasedHinge<Real>) == released_numbers * sizeof(Real) && sizeof(RunsEnd<Real>) == met_numbers * sizeof(Real) &&
                   sizeof(BodyInRun<Real>) == passed_body_numbers * sizeof(Real));
     using Vector3 = Vector<Real, 3>;
@@ -171,24 +171,13 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             if (i % part_length == 0) all_.fill(runs_, i / part_length, 1);
             all_.ask(runs_, i, 1);
             Column<Real> const here{i % part_length};
-            GroupView const& own = leaf().group();
-            state.turn = state.turn * (as_quaternion(read(all_.joint_frame_, here)) * as_quaternion(read(all_.in_tile().rotation, here)));
+            BodyOnHinge<Real> const on_hinge = leaf().on_hinge(all_.bodies_.loads, here);
+            state.turn = state.turn * on_hinge.turn;
             turn_ = to_matrix_of_unit(state.turn);
-            auto const axes1 = read(own.axes1, here);
-            Vector3 const axis = turn_ * Vector3{{axes1[3], axes1[4], axes1[5]}}, r1 = turn_ * read(own.r1, here),
-                          r2 = turn_ * read(own.r2, here);
-            Real const rate = read(all_.bodies_.loads.hinge_rate, here)[0];
-            Vector3 const angular = rate * cross(state.omega, axis);
-            state.omega = plus_scaled(state.omega, rate, axis);
-            Real const square = dot(state.omega, state.omega);  // omega x (omega x r) in fewer operations
-            auto const inward = [&](Vector3 const& r) { return plus_scaled(dot(state.omega, r) * state.omega, -square, r); };
-            Vector3 const linear = state.inward - inward(r1);
-            state.inward = inward(r2);
-            Symmetric<Real, 3> const inertia = turned(turn_, as_symmetric(read(own.inertia, here)));
-            Vector3 torque = cross(inertia * state.omega, state.omega), force = Vector3::zero();
-            all_.add_wrench(here, from_ground_, torque, force);
+            LoadedBodyInRun<Real> body = state.go_on(follow(on_hinge, turn_, state.omega));
+            all_.add_wrench(here, from_ground_, body.torque, body.force);
             if (i >= count - 2 || all_.out_.by_all_bodies()) keep_omega(i);
-            return {{axis, angular, linear, r2 - r1}, -r2, read(own.mass, here)[0], inertia, torque, force};
+            return body;
         }
         HingedBody<Real> last(int i) {
             all_.ask(runs_, i, 1);
@@ -211,10 +200,8 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             axes_ = turn_ * axes_of(read(leaf().group().axes2, Column<Real>{(count - 2) % part_length}));
             return {axes_, state.inward};
         }
-        struct State {
-            Quaternion<Real> turn;
-            Vector3 omega, inward;
-        } state;
+        using State = FollowedState<Real>;
+        State state;
 
       private:
         static_assert((count - 2) / part_length == (count - 1) / part_length);

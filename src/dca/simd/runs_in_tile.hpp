@@ -114,7 +114,8 @@ class RunsInTile {
             double const* const here = constants(runs, p);
             bodies_ = in_tile_.with({here});
             if constexpr (frame_constants<Leaf> > 0)
-                joint_frame_ = Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>)*part_length * lanes}.template next<4>();
+                bodies_.loads.hinges.frame =
+                    Constants<Real>{here + (constants_of<Leaf> - frame_constants<Leaf>)*part_length * lanes}.template next<4>();
         }
     }
     void empty(RunsInLanes const& runs, int p) {
@@ -154,8 +155,7 @@ class RunsInTile {
 
   protected:
     Bodies bodies_;
-    Column<Real> begin_;          // of the part in the tile
-    ConstView<4> joint_frame_{};  // as frame_constants
+    Column<Real> begin_;  // of the part in the tile
     AccelerationsView out_{};
 };
 
