@@ -10,7 +10,7 @@
 namespace catena::cuda::kernels {
 
 constexpr int lanes_of_team = 4;
-constexpr std::int64_t most_runs_of_teams = 16384;  // more keep a GPU busy with a thread each
+constexpr std::int64_t most_runs_of_teams = 8192;  // more keep a GPU busy with a thread each
 
 /// Bodies of a run, for each of a warp's teams: in T::slots, of which body i has T::slot(i).
 template <class T>
@@ -74,7 +74,7 @@ class HingeTeam {
         go_on<double>(bodies, kept);
         dca::InertiaRun<double> run = whole();
         dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(count - 2), last_one.inward};
-        Body const last = loaded.last(before.axes, last_one.omega, kept);
+        Body const last = loaded.last(before.axes, last_one.omega, ByLeader<Kept>{kept, leads()});
         return end(run, before, last, loaded.torque_about(count - 1), kept);
     }
     /// As dca::descend_hinges(), by every lane. Precondition: not of all bodies.
@@ -86,6 +86,7 @@ class HingeTeam {
             Kept const& kept;
             __device__ dca::ReleasedHinge<double> hinge(int i) const { return i == count - 1 ? kept.hinge(i) : bodies.get(i).hinge; }
             __device__ dca::BodyInRun<double> body(int i) const { return bodies.get(i).body; }
+            __device__ dca::BodyAcceleration<double> swing(int i) const { return kept.swing(i); }
             __device__ dca::RunsEnd<double> end() const { return kept.end(); }
             __device__ Mat3 axes() const { return kept.axes(); }
         } const kept_here{bodies, kept};
@@ -102,6 +103,17 @@ class HingeTeam {
     }
 
   private:
+    template <class Kept>
+    struct ByLeader {
+        Kept& kept;
+        bool leads;
+        __device__ void put_omega(int i, Vec3 const& omega) const {
+            if (leads) kept.put_omega(i, omega);
+        }
+        __device__ void put_orientation(Mat3 const& from_ground) const {
+            if (leads) kept.put_orientation(from_ground);
+        }
+    };
     static constexpr int count = static_cast<int>(dca::longest_run);
     static constexpr int before_last = (count - 2) % lanes_of_team;  // lane that has this body
 
@@ -205,7 +217,7 @@ class HingeTeam {
         for (int i = 1; i < count - 1; ++i) {
             BodyAhead const ahead = bodies.get(i);
             dca::ReleasedHinge<double> const hinge = go_on<Torque>(ahead);
-            if (leads()) kept.put(i, hinge, ahead);
+            if (leads()) kept.put(i, hinge, ahead, swing_);
         }
     }
     template <class Torque>
@@ -221,18 +233,13 @@ class HingeTeam {
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes_of_team], j % lanes_of_team);
         h.bias = of_lane(along[bias / lanes_of_team], bias % lanes_of_team);
-        Wrench with_bias = wrench_[1];
-        take_difference(with_bias, all_, body);
         CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) {
-            gain_row(h, along[s], bias - 1, row_[s], e_[s]);
-            take_difference(e_[s], wrench_[s], body);
-        }
-        bool const has_bias = own_ == bias % lanes_of_team;
-        if (has_bias) wrench_[1] = with_bias;
+        for (int s = 0; s < 2; ++s) gain_row(h, along[s], bias - 1, row_[s], e_[s]);
+        swing_on(swing_, body);
         CATENA_UNROLL
         for (int s = 0; s < 2; ++s) move_point(wrench_[s], body.across);
-        if (has_bias) add_body(wrench_[1], body.torque, body.force, body.centre);
+        Wrench const load = load_of(body, swing_);
+        if (own_ == bias % lanes_of_team) add_body(wrench_[1], load.torque, load.force, body.centre);
         move_point(all_, body.across);
         add_body(all_, body.mass, body.inertia, body.centre);
         return h;
@@ -253,6 +260,7 @@ class HingeTeam {
     __device__ dca::InertiaRun<double> whole() const {
         dca::InertiaRun<double> run;
         run.inertia = all_;
+        run.swing = swing_;
         run.bias = of_lane(wrench_[bias / lanes_of_team], bias % lanes_of_team);
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) {
@@ -272,6 +280,7 @@ class HingeTeam {
     int own_, leader_;  // lane of the team, and of the warp that is the team's first
     bool works_;
     dca::SpatialInertia<double> all_;
+    dca::BodyAcceleration<double> swing_{Vec3::zero(), Vec3::zero()};
     Wrench wrench_[2];
     double row_[2][bias], e_[2] = {};
 };
@@ -292,7 +301,7 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(dca::Run const* runs, 
     HingeTeam team(lane, wanted < count);
     dca::Run const run = runs[wanted < count ? wanted : count - 1];
     if (all_lanes(lane, run.count == dca::longest_run && sweep.takes(run))) {
-        dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run);
+        dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
         BodiesOfTeam<BodyAhead> const bodies(shared_numbers, lane);
         typename Sweep::Segment segment;
         if (sweep.follows()) {
@@ -317,7 +326,7 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(dca::Run const* runs
     dca::Run const run = runs[wanted < count ? wanted : count - 1];
     bool const whole = run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run);
     if (all_lanes(lane, whole)) {
-        dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run);
+        dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, sweep.goes_by_all());
         auto const frame = [&](int i) { return sweep.frame(run, kept, i); };
         team.descend(
             frame, BodiesOfTeam<HingeBehind>(shared_numbers, lane), kept, sweep.s.forces.load(run.body), sweep.s.forces.load(run.next),

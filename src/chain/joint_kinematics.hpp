@@ -113,6 +113,8 @@ class JointKinematics {
                 drive_.data(),
                 std::ssize(group_.drives)};
     }
+    /// Of bodies against their inboard ones, where a scan leaves them (JointScan::rotation).
+    ConstView<4> rotations() { return rotation_.view(); }
     JointScan scan(StateView const& state, MotionView const& motion) {
         return {joints(),         state,        motion,        rotation_.view(), omega_.view(),       translation_.view(),
                 velocity_.view(), slot_.data(), whole_.view(), before_.view(),   next_meeting_.view()};
@@ -137,22 +139,24 @@ class JointKinematics {
     /// `tree`: the group's, without runs that JointScan::follow was called of.
     template <bool positions>
     void sweep(JointScan const& s, typename Space::ScanTree const& tree) {
-        MotionScan<positions> const scan{s};
-        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
-        space_.climb(tree, scan);
-        sweep_shared(scan);
-        space_.descend(tree, scan);
-        if (group_.moving_meeting()) exchange_meeting(s);
+        sweep_with(MotionScan<positions>{s}, tree, [] {});
     }
 
-    /// By a scan that does more with runs than MotionScan; then last(run) for every one. `between`: before other ranks' part in it.
+    /// By a scan that may do more with runs than MotionScan. `tree`: as sweep(). `between`: before other ranks' part, where they have one.
+    template <class Scan, class Between>
+    void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, Between const& between) {
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
+        space_.climb(tree, scan);
+        between();
+        sweep_shared(scan.motions());
+        space_.descend(tree, scan);
+        if (group_.moving_meeting()) exchange_meeting(scan.motions().s);
+    }
+    /// By one over all runs; then last(run) for each.
     template <class Scan, class Between, class Last>
     void sweep_runs(Scan const& scan, Between const& between, Last const& last) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan, runs_, last);
-        space_.climb(tree_, scan);
-        between();
-        sweep_shared(scan.motions());
-        space_.descend(tree_, scan);
+        sweep_with(scan, tree_, between);
         space_.over(runs_, last);
     }
 

@@ -184,6 +184,7 @@ struct MotionScan {
     CATENA_HD void set_whole(std::int64_t slot, Value const& value) const { put_numbers<positions>(s.whole, slot, value); }
     CATENA_HD Value before(std::int64_t slot) const { return numbers_at<positions>(s.before, slot); }
     CATENA_HD void set_before(std::int64_t slot, Value const& value) const { put_numbers<positions>(s.before, slot, value); }
+    CATENA_HD MotionScan const& motions() const { return *this; }
 };
 
 }  // namespace catena

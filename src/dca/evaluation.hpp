@@ -100,8 +100,8 @@ struct Resting {
     }
 };
 
-/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end(), hinge()
-/// body() and omega() are asked for was put; axes(), omega() and orientation(): of a run of three bodies or more.
+/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end(), hinge(),
+/// body(), omega() and swing() are asked for was put; axes(), omega(), swing() and orientation(): of a run of three bodies or more.
 template <class Sweeps>
 class HingesInJoints {
     using Hinge = ReleasedHinge<double>;
@@ -112,18 +112,21 @@ class HingesInJoints {
     static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
     static constexpr int of_end = sizeof(End) / sizeof(double), most = sizeof(typename Sweeps::Node) / sizeof(double);
     static constexpr int at_axes = of_hinge + of_body, at_omega = at_axes + of_axes, at_last_omega = at_omega + of_omega,
-                         at_orientation = at_last_omega + of_omega;
-    static_assert(of_hinge + of_end <= most && at_orientation + of_axes <= most);
+                         at_orientation = at_last_omega + of_omega, at_swing = at_orientation + of_axes;
+    using Swing = BodyAcceleration<double>;
+    static_assert(of_hinge + of_end <= most && at_swing + sizeof(Swing) / sizeof(double) <= most);
 
   public:
-    CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run) : sweeps_(sweeps), run_(run) {}
+    /// `all`: the way back asks for every body's swing.
+    CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run, bool all) : sweeps_(sweeps), run_(run), all_(all) {}
     CATENA_HD void put(int i, Hinge const& hinge) {
         store(i, 0, hinge);
         watch(i, hinge.inverse);
     }
-    CATENA_HD void put(int i, Hinge const& hinge, Body const& body) {
+    CATENA_HD void put(int i, Hinge const& hinge, Body const& body, Swing const& swing) {
         put(i, hinge);
         store(i, of_hinge, body);
+        if (all_ || i == last() - 1) store(i, at_swing, swing);
     }
     CATENA_HD void put(End const& end) {
         store(last(), of_hinge, end);
@@ -146,6 +149,7 @@ class HingesInJoints {
     }
     CATENA_HD Hinge hinge(int i) const { return load<Hinge>(i, 0); }
     CATENA_HD Body body(int i) const { return load<Body>(i, of_hinge); }
+    CATENA_HD Swing swing(int i) const { return load<Swing>(i, at_swing); }
     CATENA_HD End end() const { return load<End>(last(), of_hinge); }
     CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, at_axes); }
     CATENA_HD Vec3 omega(int i) const { return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega); }
@@ -159,7 +163,7 @@ class HingesInJoints {
         constexpr int count = sizeof(T) / sizeof(double);
         auto const numbers = __builtin_bit_cast(Vector<double, count>, value);
         CATENA_UNROLL
-        for (int n = 0; n < count; ++n) number(i, at + n) = numbers[n];
+        for (int n = 0; n < count; ++n) leave_number(&number(i, at + n), numbers[n]);
     }
     template <class T>
     CATENA_HD T load(int i, int at) const {
@@ -175,6 +179,7 @@ class HingesInJoints {
     }
     Sweeps const& sweeps_;
     Run const& run_;
+    bool all_;
     Lost lost_;
 };
 
@@ -221,7 +226,7 @@ struct Evaluation {
         return hinges;
     }
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {
-        HingesInJoints<Sweeps> kept(s, run);
+        HingesInJoints<Sweeps> kept(s, run, goes_by_all());
         int const count = static_cast<int>(run.count);
         Segment segment;
         if (follows()) {
@@ -237,7 +242,7 @@ struct Evaluation {
         return segment;
     }
     CATENA_HD_IN_PLACE void descend(Run const& run, Directions const& first, Directions const& next) const {
-        HingesInJoints<Sweeps> const kept(s, run);
+        HingesInJoints<Sweeps> const kept(s, run, goes_by_all());
         typename RunWithLoads<Leaf>::PassedOn passed{next};
         Directions& outboard = passed.force;
         descend_hinges<double>(

@@ -7,7 +7,7 @@
 
 namespace catena::dca {
 
-/// What moves, in the run's axes, and what it is there: `linear` lacks the share of the handle inboard of it.
+/// What moves, in the run's axes, and what it is there: `difference.a` lacks the share of the handle inboard of it.
 template <class Real>
 struct FollowedBody {
     LoadedBodyInRun<Real> in_run;
@@ -24,7 +24,7 @@ CATENA_HD_IN_PLACE FollowedBody<Real> follow(BodyOnHinge<Real> const& body, Matr
     Real const square = dot(omega, omega);  // omega x (omega x r) in fewer operations
     auto const inward = [&](Vector3 const& r) { return plus_scaled(dot(omega, r) * omega, -square, r); };
     Symmetric<Real, 3> const inertia = turned(turn, body.inertia);
-    return {{{axis, angular, -inward(r1), r2 - r1}, -r2, body.mass, inertia, cross(inertia * omega, omega), Vector3::zero()},
+    return {{{axis, r2 - r1}, {angular, -inward(r1)}, -r2, body.mass, inertia, cross(inertia * omega, omega), Vector3::zero()},
             omega,
             inward(r2)};
 }
@@ -36,7 +36,7 @@ struct FollowedState {
 
     CATENA_HD_IN_PLACE LoadedBodyInRun<Real> go_on(FollowedBody<Real> const& body) {
         LoadedBodyInRun<Real> next = body.in_run;
-        next.linear = inward + next.linear;
+        next.difference.a = inward + next.difference.a;
         omega = body.omega;
         inward = body.inward2;
         return next;
@@ -59,7 +59,7 @@ class RunWithLoads {
         return cross(omega, cross(omega, leaf_.frame_at_rest(run_.body).r2));
     }
     CATENA_HD Mat3 axes2(int i) const { return axes_of(leaf_.axes2(run_.body + i)); }
-    CATENA_HD BodyOnHinge<Real> on_hinge(int i) const { return leaf_.on_hinge(loads_, run_.body + i); }
+    CATENA_HD BodyOnHinge<Real> on_hinge(int i) const { return leaf_.on_hinge(loads_, run_.body + i, ReadLast{}); }
     /// Of the hinge inboard of body i, within the run.
     CATENA_HD double torque_about(int i) const {
         return joint_torque().origin ? joint_torque().at(run_.body + i, HingeLoads::about_hinge) : 0.0;
@@ -77,7 +77,7 @@ class RunWithLoads {
     /// `axes` of its hinge and `omega` of the body before, in the run's axes. `kept`: put_omega(i, its own, in its axes), and
     /// put_orientation(what turns to its axes) where there are wrenches.
     template <class Kept>
-    CATENA_HD HingedBody<Real> last(Mat3 const& axes, Vec3 const& omega, Kept& kept) const {
+    CATENA_HD HingedBody<Real> last(Mat3 const& axes, Vec3 const& omega, Kept&& kept) const {
         int const i = count() - 1;
         HingedBody<Real> body = at_rest(i);
         Mat3 const turn = axes * transpose(body.e1);
@@ -132,7 +132,7 @@ class RunWithLoads {
     CATENA_HD HingedBody<Real> at_rest(int i) const { return leaf_.hinged_at_rest(LoadsView{}, run_.body + i); }
     CATENA_HD void set_moving(int i, Vec3 const& omega, HingedBody<Real>& body) const {
         leaf_.set_moving(loads_, run_.body + i, omega, body);
-        body.torque = -cross(omega, body.inertia * omega);
+        body.torque = body.torque - cross(omega, body.inertia * omega);
     }
     CATENA_HD Vec3 omega_beyond(Mat3 const& turn, Vec3 const& omega, HingedFrame<Real> const& last) const {
         return transposed_times(turn, omega) + loads_.hinge_rate.at(run_.body + count() - 1, 0) * last.e1.column(2);

@@ -122,5 +122,14 @@ CATENA_HD Real taken_number(Real const* place) {
 #endif
     return *place;
 }
+/// Leaves there what is not asked for soon: it may leave a GPU's caches first.
+template <class Real>
+CATENA_HD void leave_number(Real* place, Real const& value) {
+#if defined(__CUDA_ARCH__)
+    __stcs(place, value);
+#else
+    *place = value;
+#endif
+}
 
 }  // namespace catena

@@ -7,7 +7,9 @@
 // come to, of the last one (RunsEnd) about its joint and in that one's axes:
 //   {torque, force} = I {alpha, a} + bias - first f1,   a1 = z f1 + first^T {alpha, a} + e,
 // f1 the force at handle 1 along its K = 5 directions (make_handle), a1 the acceleration along them, {torque, force} on the body's
-// outboard side, {alpha, a} its accelerations at that point as if it turned at rest: without omega x (omega x r) of its handles.
+// outboard side, {alpha, a} its accelerations at that point as if it turned at rest: without omega x (omega x r) of its handles. Within
+// the run {alpha, a} are against what velocities alone make of the run whose first body does not accelerate (InertiaRun::swing): so no
+// hinge has terms of its own, as in Newton-Euler's way outwards (Featherstone 2008, section 5.3).
 #pragma once
 
 #include "dca/inertia.hpp"
@@ -37,17 +39,21 @@ struct HingedBody : HingedFrame<Real> {
     Vector<Real, 3> torque, force;
 };
 
+template <class Real>
+struct BodyAcceleration {
+    Vector<Real, 3> alpha, a;  // of the centre of mass, but where another point is named
+};
 /// A body within a run and the hinge that the run comes to it by, in the run's axes: what both ways need.
 template <class Real>
 struct BodyInRun {
-    Vector<Real, 3> axis;             // of the hinge
-    Vector<Real, 3> angular, linear;  // what the accelerations on the hinge's two sides differ by, its own apart
-    Vector<Real, 3> across;           // from handle 1 to handle 2
+    Vector<Real, 3> axis;    // of the hinge
+    Vector<Real, 3> across;  // from handle 1 to handle 2
 };
 /// And the way up.
 template <class Real>
 struct LoadedBodyInRun : BodyInRun<Real> {
-    Vector<Real, 3> centre;  // of mass, from handle 2
+    BodyAcceleration<Real> difference;  // of the hinge's two sides at the meeting point, by velocities alone
+    Vector<Real, 3> centre;             // of mass, from handle 2
     Real mass;
     Symmetric<Real, 3> inertia;
     Vector<Real, 3> torque, force;
@@ -66,6 +72,7 @@ struct InertiaRun {
     Wrench<Real> bias, first[5];
     Symmetric<Real, 5> z;
     Vector<Real, 5> e;
+    BodyAcceleration<Real> swing;  // by velocities alone, of the body come to at its handle 2
 };
 /// The end of a run, about its last joint's meeting point and in that joint's axes: the factor (factorize()) of I, first and bias. Rows
 /// force, then torque, that about the hinge last: light bodies on heavy ones have little more than their own inertia there, which then is
@@ -75,10 +82,6 @@ struct RunsEnd {
     Symmetric<Real, 6> factor;
     Matrix<Real, 6, 5> first;
     Vector<Real, 6> bias;
-};
-template <class Real>
-struct BodyAcceleration {
-    Vector<Real, 3> alpha, a;  // of the centre of mass, but where another point is named
 };
 
 /// What the run's accelerations at its first joint gain by a hinge: row j of z, up to its diagonal, and of e.
@@ -93,20 +96,31 @@ CATENA_HD void gain_row(ReleasedHinge<Real> const& h, Real const& first, int j, 
 
 /// By what accelerations on the hinge's two sides differ: the bias's share. `all`: released.
 template <class Real>
-CATENA_HD void take_difference(Wrench<Real>& bias, SpatialInertia<Real> const& all, BodyInRun<Real> const& body) {
-    bias.torque = bias.torque - (all.turning * body.angular + all.coupling * body.linear);
-    bias.force = bias.force - (transposed_times(all.coupling, body.angular) + all.moving * body.linear);
+CATENA_HD void take_difference(Wrench<Real>& bias, SpatialInertia<Real> const& all, BodyAcceleration<Real> const& d) {
+    bias.torque = bias.torque - (all.turning * d.alpha + all.coupling * d.a);
+    bias.force = bias.force - (transposed_times(all.coupling, d.alpha) + all.moving * d.a);
 }
 /// And that of e, by `first` of its row.
 template <class Real>
-CATENA_HD void take_difference(Real& e, Wrench<Real> const& first, BodyInRun<Real> const& body) {
-    e = e - (dot(first.torque, body.angular) + dot(first.force, body.linear));
+CATENA_HD void take_difference(Real& e, Wrench<Real> const& first, BodyAcceleration<Real> const& d) {
+    e = e - (dot(first.torque, d.alpha) + dot(first.force, d.a));
 }
-/// Past the hinge inboard of `body`.
+/// Of a body, from that of the one before it.
+template <class Real>
+CATENA_HD void swing_on(BodyAcceleration<Real>& swing, LoadedBodyInRun<Real> const& body) {
+    swing.alpha = swing.alpha + body.difference.alpha;
+    swing.a = (swing.a + body.difference.a) + cross(swing.alpha, body.across);
+}
+/// What acts on a body less what its swing takes.
+template <class Real>
+CATENA_HD Wrench<Real> load_of(LoadedBodyInRun<Real> const& body, BodyAcceleration<Real> const& swing) {
+    return {body.torque - body.inertia * swing.alpha, plus_scaled(body.force, -body.mass, swing.a + cross(swing.alpha, body.centre))};
+}
+/// Past a hinge about `axis`.
 template <class Real, class Torque>
-CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, BodyInRun<Real> const& body, Torque const& torque) {
+CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, Vector<Real, 3> const& axis, Torque const& torque) {
     ReleasedHinge<Real> h;
-    Release<Real> const r = release_hinge(run.inertia, body.axis, h);
+    Release<Real> const r = release_hinge(run.inertia, axis, h);
     h.bias = release_driven(run.bias, r, torque);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) h.first[j] = release_hinge(run.first[j], r);
@@ -122,10 +136,10 @@ CATENA_HD ReleasedHinge<Real> pass_hinge(InertiaRun<Real>& run, BodyInRun<Real> 
     return h;
 }
 template <class Real>
-CATENA_HD void take_difference(InertiaRun<Real>& run, BodyInRun<Real> const& body) {
-    take_difference(run.bias, run.inertia, body);
+CATENA_HD void take_difference(InertiaRun<Real>& run, BodyAcceleration<Real> const& d) {
+    take_difference(run.bias, run.inertia, d);
     CATENA_UNROLL
-    for (int j = 0; j < 5; ++j) take_difference(run.e[j], run.first[j], body);
+    for (int j = 0; j < 5; ++j) take_difference(run.e[j], run.first[j], d);
 }
 /// Of one body: its `first` along direction j, and e of that row.
 template <class Real>
@@ -153,7 +167,8 @@ CATENA_HD Wrench<Real> bias_of(HingedBody<Real> const& body) {
 }
 template <class Real>
 CATENA_HD InertiaRun<Real> begin_run(HingedBody<Real> const& body) {
-    InertiaRun<Real> run{inertia_of(body), bias_of(body), {}, Symmetric<Real, 5>::zero(), {}};
+    auto const none = Vector<Real, 3>::zero();
+    InertiaRun<Real> run{inertia_of(body), bias_of(body), {}, Symmetric<Real, 5>::zero(), {}, {none, none}};
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) {
         run.first[j] = first_of(body, j);
@@ -173,7 +188,8 @@ CATENA_HD LoadedBodyInRun<Real> in_run(HingedBody<Real> const& body, Matrix<Real
     using Vector3 = Vector<Real, 3>;
     Vector3 const angular = body.bias[3] * body.e1.column(0) + body.bias[4] * body.e1.column(1);
     Vector3 const linear = body.inward1 + body.e1 * Vector3{{body.bias[0], body.bias[1], body.bias[2]}};
-    return {{turn * body.e1.column(2), -(turn * angular), inward - turn * linear, turn * (body.r2 - body.r1)},
+    return {{turn * body.e1.column(2), turn * (body.r2 - body.r1)},
+            {-(turn * angular), inward - turn * linear},
             -(turn * body.r2),
             body.mass,
             turned(turn, body.inertia),
@@ -183,14 +199,15 @@ CATENA_HD LoadedBodyInRun<Real> in_run(HingedBody<Real> const& body, Matrix<Real
 /// Goes on to a body that is not the last of the run; what it returns is for the way back.
 template <class Real, class Torque>
 CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, LoadedBodyInRun<Real> const& body, Torque const& torque) {
-    ReleasedHinge<Real> const hinge = pass_hinge(run, body, torque);
-    take_difference(run, body);
+    ReleasedHinge<Real> const hinge = pass_hinge(run, body.axis, torque);
+    swing_on(run.swing, body);
     move_point(run.inertia, body.across);
     move_point(run.bias, body.across);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) move_point(run.first[j], body.across);
     add_body(run.inertia, body.mass, body.inertia, body.centre);
-    add_body(run.bias, body.torque, body.force, body.centre);
+    Wrench<Real> const load = load_of(body, run.swing);
+    add_body(run.bias, load.torque, load.force, body.centre);
     return hinge;
 }
 /// The outboard handle of the body before the last one, in the run's axes.
@@ -199,12 +216,16 @@ struct OutboardHandle {
     Matrix<Real, 3, 3> axes;
     Vector<Real, 3> inward;
 };
-/// The run's last hinge, in its own axes; `inward`: of the handle inboard of it, in these too.
+/// Of the two sides of the run's last hinge by velocities alone, in its own axes; `inward`: of the handle inboard of it, in these too.
 template <class Real>
-CATENA_HD BodyInRun<Real> last_in_run(HingedFrame<Real> const& last, Vector<Real, 3> const& inward) {
+CATENA_HD BodyAcceleration<Real> last_difference(HingedFrame<Real> const& last, Vector<Real, 3> const& inward) {
     using Vector3 = Vector<Real, 3>;
-    return {Vector3{{Real(0), Real(0), Real(1)}}, Vector3{{-last.bias[3], -last.bias[4], Real(0)}},
-            inward - (transposed_times(last.e1, last.inward1) + Vector3{{last.bias[0], last.bias[1], last.bias[2]}}), Vector3::zero()};
+    return {Vector3{{-last.bias[3], -last.bias[4], Real(0)}},
+            inward - (transposed_times(last.e1, last.inward1) + Vector3{{last.bias[0], last.bias[1], last.bias[2]}})};
+}
+template <class Real>
+CATENA_HD Vector<Real, 3> last_axis() {
+    return {{Real(0), Real(0), Real(1)}};
 }
 
 template <class Real>
@@ -216,19 +237,19 @@ template <class Real, class Torque>
 CATENA_HD RunsEnd<Real> end_run(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& last,
                                 ReleasedHinge<Real>& hinge, Torque const& torque) {
     using Vector3 = Vector<Real, 3>;
+    take_difference(run, run.swing);
     Matrix<Real, 3, 3> const turn = transpose(before.axes);
     turn_axes(run.inertia, turn);
     turn_axes(run.bias, turn);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) turn_axes(run.first[j], turn);
-    BodyInRun<Real> const joint = last_in_run(last, turn * before.inward);
-    hinge = pass_hinge(run, joint, torque);
+    hinge = pass_hinge(run, last_axis<Real>(), torque);
     CATENA_UNROLL
     for (int j = 0; j < 3; ++j) run.inertia.turning(2, j) = run.inertia.coupling(2, j) = Real(0);  // not what rounding left there
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) run.first[j].torque[2] = Real(0);
     run.bias.torque[2] = left_along_hinge<Real>(torque);
-    take_difference(run, joint);
+    take_difference(run, last_difference(last, turn * before.inward));
 
     Matrix<Real, 3, 3> const to_joint = transpose(last.e1);
     Vector3 const centre = -(to_joint * last.r1), force = to_joint * last.force;
@@ -302,15 +323,22 @@ CATENA_HD BodyAcceleration<Real> last_acceleration(RunsEnd<Real> const& end, Hin
     Vector<Real, 6> const y = solve_upper(end.factor, solve_lower(end.factor, wrench));
     return {{{y[3], y[4], y[5]}}, {{y[0], y[1], y[2]}}};
 }
-/// Back past a hinge: from `a` on its outboard side at the meeting point to its inboard side, by the force at the run's first joint.
-/// Returns the outboard body's acceleration against the other about the hinge.
 template <class Real>
-CATENA_HD Real pass_back(ReleasedHinge<Real> const& hinge, BodyInRun<Real> const& body, Vector<Real, 5> const& first,
+CATENA_HD BodyAcceleration<Real> operator+(BodyAcceleration<Real> const& a, BodyAcceleration<Real> const& b) {
+    return {a.alpha + b.alpha, a.a + b.a};
+}
+template <class Real>
+CATENA_HD BodyAcceleration<Real> operator-(BodyAcceleration<Real> const& a, BodyAcceleration<Real> const& b) {
+    return {a.alpha - b.alpha, a.a - b.a};
+}
+/// Back past a hinge: from `a` on its outboard side at the meeting point, without what velocities add there, to its inboard side, by the
+/// force at the run's first joint. Returns the outboard body's acceleration against the other about the hinge.
+template <class Real>
+CATENA_HD Real pass_back(ReleasedHinge<Real> const& hinge, Vector<Real, 3> const& axis, Vector<Real, 5> const& first,
                          BodyAcceleration<Real>& a) {
-    a = {a.alpha - body.angular, a.a - body.linear};
     Real const own = dot(hinge.turning, a.alpha) + (dot(hinge.moving, a.a) + (hinge.bias - dot(hinge.first, first)));
     Real const of_hinge = own * hinge.inverse;
-    a.alpha = plus_scaled(a.alpha, -of_hinge, body.axis);
+    a.alpha = plus_scaled(a.alpha, -of_hinge, axis);
     return of_hinge;
 }
 /// Of a body, in axes to which `turn` leads from its own, from its handle `r` to its centre of mass, in its own.
@@ -383,8 +411,9 @@ class BodiesOfRun {
 };
 
 /// A run of `count` bodies, two or more: `bodies` as BodiesOfRun; after all but the first torque(i), of the hinge inboard of it: a Real or
-/// Undriven. `kept`: for the way back put(i, ReleasedHinge, BodyInRun) of those between the first and the last, put(i, ReleasedHinge) of the
-/// last, put(RunsEnd), and put_axes() of the last hinge, in the run's axes. `begin(i, run, bodies)`: after body i, but not the last.
+/// Undriven. `kept`: for the way back put(i, ReleasedHinge, BodyInRun, its swing) of those between the first and the last, put(i,
+/// ReleasedHinge) of the last, put(RunsEnd), and put_axes() of the last hinge, in the run's axes. `begin(i, run, bodies)`: after body i, but
+/// not the last.
 template <class Real, class Bodies, class Torque, class Kept, class Begin = BeginsOnce>
 CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Bodies&& bodies, Torque const& torque, Kept&& kept, Begin&& begin = {}) {
     InertiaRun<Real> run = begin_run(bodies.first());
@@ -392,7 +421,8 @@ CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Bodies&& bodie
     CATENA_NO_UNROLL
     for (int i = 1; i < count - 1; ++i) {
         LoadedBodyInRun<Real> const body = bodies.next(i);
-        kept.put(i, go_on(run, body, torque(i)), body);
+        ReleasedHinge<Real> const hinge = go_on(run, body, torque(i));
+        kept.put(i, hinge, body, run.swing);
         begin(i, run, bodies);
     }
     OutboardHandle<Real> const before = bodies.before_last();
@@ -404,10 +434,11 @@ CATENA_HD_IN_PLACE BiasedSegment<Real, 5> climb_hinges(int count, Bodies&& bodie
     kept.put_axes(before.axes);
     return segment_of(run, end, last);
 }
-/// And back from the forces at the run's first joint and at the one after it. `kept`: hinge(i), body(i), end() and axes(). frame(i) is
-/// asked for of the last two bodies and the first, and with `all` of every body in turn, from the last to the first:
-/// accelerate(i, frame(i), BodyAcceleration) of these but the last but one follows it; at(i, acceleration), which it may change, of every
-/// body but the last at its handle 2 in the run's axes; turn(i, its relative acceleration) of every hinge.
+/// And back from the forces at the run's first joint and at the one after it. `kept`: hinge(i), body(i), end(), axes(), and swing(i) of the
+/// last body but one, if it is not the first, and with `all` of all between. frame(i) is asked for of the last two bodies and the first,
+/// and with `all` of every body in turn, from the last to the first: accelerate(i, frame(i), BodyAcceleration) of these but the last but
+/// one follows it; at(i, acceleration), which it may change, of every body but the last at its handle 2 in the run's axes, against its
+/// swing; turn(i, its relative acceleration) of every hinge.
 template <class Real, class Frame, class Kept, class Accelerate, class At, class Turn>
 CATENA_HD_IN_PLACE void descend_hinges(int count, bool all, Frame const& frame, Kept const& kept, Vector<Real, 5> const& first,
                                        Vector<Real, 5> const& next, Accelerate&& accelerate, At&& at, Turn&& turn) {
@@ -418,10 +449,12 @@ CATENA_HD_IN_PLACE void descend_hinges(int count, bool all, Frame const& frame, 
         a = last_acceleration(kept.end(), last, first, next);
         accelerate(count - 1, last, own_acceleration(transpose(last.e1), last.r1, a));
         HingedFrame<Real> const before = frame(count - 2);
-        Real const of_hinge = pass_back(kept.hinge(count - 1), last_in_run(last, transposed_times(before.e2, before.inward2)), first, a);
+        a = a - last_difference(last, transposed_times(before.e2, before.inward2));
+        Real const of_hinge = pass_back(kept.hinge(count - 1), last_axis<Real>(), first, a);
         turn(count - 1, of_hinge);
         axes = count > 2 ? kept.axes() : before.e2;
         a = {axes * a.alpha, axes * a.a};
+        if (count > 2) a = a - kept.swing(count - 2);
     }
     CATENA_NO_UNROLL
     for (int i = count - 2; i > 0; --i) {
@@ -429,12 +462,12 @@ CATENA_HD_IN_PLACE void descend_hinges(int count, bool all, Frame const& frame, 
         if (all) {
             HingedFrame<Real> const body = frame(i);
             Matrix<Real, 3, 3> const to_run = axes * transpose(body.e2);
-            accelerate(i, body, own_acceleration(to_run, body.r2, a));
+            accelerate(i, body, own_acceleration(to_run, body.r2, a + kept.swing(i)));
             axes = to_run * body.e1;
         }
         BodyInRun<Real> const body = kept.body(i);
         a.a = a.a - cross(a.alpha, body.across);
-        turn(i, pass_back(kept.hinge(i), body, first, a));
+        turn(i, pass_back(kept.hinge(i), body.axis, first, a));
     }
     at(0, a);
     HingedFrame<Real> const begins = frame(0);

@@ -135,6 +135,14 @@ class MeetingFrames {
     CATENA_HD State<RealAt<Place>> state(Place k, Reader&& by = {}) const {
         return {by(group_.r1, k), by(r2_, k), by(rotation_, k), by(group_.axes1, k), by(axes2_, k)};
     }
+    template <class Place, class Reader>
+    CATENA_HD Vector<RealAt<Place>, 4> rotation(Place k, Reader&& by) const {
+        return by(rotation_, k);
+    }
+    template <class Place, class Reader>
+    CATENA_HD Vector<RealAt<Place>, 3> r2(Place k, Reader&& by) const {
+        return by(r2_, k);
+    }
     /// In B.
     template <class Real>
     CATENA_HD static Matrix<Real, 3, 3> inboard_axes(State<Real> const& state, Matrix<Real, 3, 3> const& turn) {
@@ -356,18 +364,16 @@ class BodyLeaf {
         add_gyroscopic(loads, omega, b);
         return b;
     }
-    /// `loads.hinges.frame` and `loads.hinge_rate` are given.
-    template <class Place>
-    CATENA_HD BodyOnHinge<RealAt<Place>> on_hinge(LoadsView const& loads, Place k) const {
-        auto const state = frames_.state(k);
-        auto const& axes = state.axes1;
-        return {as_quaternion(read(loads.hinges.frame, k)) * as_quaternion(state.rotation),
-                {{axes[3], axes[4], axes[5]}},
-                state.r1,
-                state.r2,
-                read(loads.hinge_rate, k)[0],
-                read(group_.mass, k)[0],
-                as_symmetric(read(group_.inertia, k))};
+    /// `loads.hinges` and `loads.hinge_rate` are given.
+    template <class Place, class Reader = ReadHere>
+    CATENA_HD BodyOnHinge<RealAt<Place>> on_hinge(LoadsView const& loads, Place k, Reader&& by = {}) const {
+        return {rotation_on_hinge(loads, k, by),
+                by(group_.axes1.template components<3>(3), k),
+                by(group_.r1, k),
+                frames_.r2(k, by),
+                by(loads.hinge_rate, k)[0],
+                by(group_.mass, k)[0],
+                as_symmetric(by(group_.inertia, k))};
     }
     template <class Place>
     CATENA_HD Vector<RealAt<Place>, 6> axes2(Place k) const {
@@ -434,6 +440,15 @@ class BodyLeaf {
         if (!loads.gyroscopic) return body.torque;
         if constexpr (by_inertia) return body.torque - cross(body.omega, as_symmetric(read(group_.inertia, body.k)) * body.omega);
         return body.torque - cross(body.omega, times_inverse_of(body.inverse_inertia, body.omega, inverse));
+    }
+
+    template <class Reader>
+    CATENA_HD static Quat rotation_on_hinge(LoadsView const& loads, std::int64_t k, Reader&& by) {
+        return as_quaternion(by(loads.hinges.rotation, k));
+    }
+    template <SeveralBodies Place, class Reader>
+    CATENA_HD QuatAt<Place> rotation_on_hinge(LoadsView const& loads, Place const& several, Reader&& by) const {
+        return as_quaternion(by(loads.hinges.frame, several)) * as_quaternion(frames_.rotation(several, by));
     }
 
     GroupView group_;

@@ -88,11 +88,12 @@ struct ConfigurationView {
     std::int64_t pieces = 0;
 };
 
-/// For one that goes_by_hinges(): of runs of two bodies or more - of those side by side alone, where there are any - omega is known of
-/// first bodies alone, and this stands in the place of torque and force. A view without origin means zero.
+/// For one that goes_by_hinges(): of runs of two bodies or more omega is known of first bodies alone, and this stands in the place of torque
+/// and force. A view without origin means zero.
 struct HingeLoads {
     bool given = false;
-    ConstView<4> frame;  // of hinges: quaternion of their meeting frame in the inboard body; host: those side by side have their own
+    ConstView<4> rotation;  // of bodies on hinges: quaternion of B in the body before; those side by side have `frame` instead
+    ConstView<4> frame;     // of the meeting frame there
     /// What joints do along their free directions, on body k along the axes of its inboard joint, of hinges about the last one; [0, size].
     ConstView<3> joint_torque;
     static constexpr int about_hinge = 2;  // component

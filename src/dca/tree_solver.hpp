@@ -192,17 +192,12 @@ class TreeSolver final : public ChainSolver {
                 Evaluation<Leaf, typename Leaf::Moving>{{sweeps_}, {model_.view(), model_.restricted(), configuration, loads}, out},
                 configuration, loads, out);
         else
-            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{{sweeps_}, {sweeps_.leaf, model_.restricted(), of_others(loads)}, out},
-                          configuration, loads, out);
+            sweep_at_once(Evaluation<Leaf, Resting<Leaf>>{{sweeps_}, {sweeps_.leaf, model_.restricted(), loads}, out}, configuration, loads,
+                          out);
         ++report_.evaluations;
         if (Space::answers_at_once) check();
     }
 
-    /// Of runs that do not go side by side: where some do, all that moves in the others is known.
-    LoadsView of_others(LoadsView loads) const {
-        if (has_runs_side_by_side()) loads.hinges = {};
-        return loads;
-    }
     /// With runs and merges that go side by side where there are any, and the others of each level after them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {

@@ -11,6 +11,7 @@ struct HingeScan {
     using Value = MotionNumbers<false>;
     JointLoads loads;
     bool joint_by_joint = false;  // set_relative() of every body came before
+    bool all_turns = false;       // are asked for, not those of runs' first bodies and last two alone
 
     /// With the turns and torques of its hinges, where these are not known.
     CATENA_HD Value of_run(dca::Run const& run) const {
@@ -22,11 +23,11 @@ struct HingeScan {
         for (; k + few <= end; k += few) {
             Motion next[few];
         CATENA_UNROLL
-            for (int i = 0; i < few; ++i) next[i] = of_hinge(k + i);
+            for (int i = 0; i < few; ++i) next[i] = of_hinge(k + i, k + i >= end - 2);
             CATENA_UNROLL
             for (int i = 0; i < few; ++i) m = compose<false>(m, next[i]);
         }
-        for (; k < end; ++k) m = compose<false>(m, of_hinge(k));
+        for (; k < end; ++k) m = compose<false>(m, of_hinge(k, k >= end - 2));
         m.rotation = normalized(m.rotation);
         return packed<false>(m);
     }
@@ -45,15 +46,16 @@ struct HingeScan {
     }
 
   private:
-    /// As JointLoads::set_relative, of what is not kept.
-    CATENA_HD Motion of_hinge(std::int64_t k) const {
+    /// As JointLoads::set_relative, of what the solver asks for.
+    CATENA_HD Motion of_hinge(std::int64_t k, bool at_end) const {
         JointScan const& s = loads.scan;
         if (joint_by_joint) return s.load<false>(k);
         Vec3 const axis = s.joints.axis(k);
-        Quat const turn = from_axis_angle(axis, s.state.q.at(k, 0));
-        write(s.motion.joint_turn, k, as_vector(turn));
+        Quat const turn = from_axis_angle(axis, s.state.q.at(k, 0)), rotation = as_quaternion(read(s.joints.joint_rotation, k)) * turn;
+        if (at_end || all_turns) write(s.motion.joint_turn, k, as_vector(turn));
+        write(s.rotation, k, as_vector(rotation));
         if (loads.given.joint_loads) loads.joint_load.at(k, HingeLoads::about_hinge) = loads.torque_about_hinge(k);
-        return {as_quaternion(read(s.joints.joint_rotation, k)) * turn, s.state.qd.at(k, 0) * axis, Vec3::zero(), Vec3::zero()};
+        return {rotation, s.state.qd.at(k, 0) * axis, Vec3::zero(), Vec3::zero()};
     }
 };
 

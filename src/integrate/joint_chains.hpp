@@ -58,6 +58,19 @@ struct JointChains : JointLoads {
                 return {{(s[0] * relative_alpha[2] + s[1] * relative_slide) / s[2], none, none}};
         }
     }
+    template <class Place>
+    CATENA_HD bool goes_by_hinge(Place k) const {
+        return hinge_acceleration.origin && in_run.has(k);
+    }
+    /// Precondition: goes_by_hinge().
+    template <class Place>
+    CATENA_HD RealAt<Place> rate_of_hinge(Place k) const {
+        auto const own = read(hinge_acceleration, k, 0);
+        if (!in_run.begins_run(k)) return own;
+        if constexpr (is_one_body<Place>)
+            if (k == 0) return own - outboard_end.at(-1, 2);
+        return own - read(hinge_acceleration, k, 1);
+    }
     /// Second derivatives of body k's coordinates.
     template <class Place>
     CATENA_HD Vec3At<Place> rate(Place k) const {
@@ -66,12 +79,7 @@ struct JointChains : JointLoads {
             if (LocalDrive const* const d = drive_of(k))
                 return {{scene::acceleration_at(d->first, time),
                          joints().joint[k] == JointType::universal ? scene::acceleration_at(d->second, time) : 0.0, 0}};
-        if (hinge_acceleration.origin && in_run.has(k)) {
-            auto inboard = read(hinge_acceleration, k, 1);
-            if constexpr (is_one_body<Place>)
-                if (k == 0) inboard = outboard_end.at(-1, 2);
-            return {{read(hinge_acceleration, k, 0) - inboard, RealAt<Place>(0), RealAt<Place>(0)}};
-        }
+        if (goes_by_hinge(k)) return {{rate_of_hinge(k), RealAt<Place>(0), RealAt<Place>(0)}};
         Vector3 const turning = read(alpha, k);
         if (joints().type(k) == JointType::free) return turning;
         auto const axes1 = joints().axes(k), to_meeting = turn(k);
@@ -96,6 +104,11 @@ struct JointChains : JointLoads {
     CATENA_HD bool on_free_base(std::int64_t k) const { return joints().joint[k] == JointType::free; }
     template <class Place>
     CATENA_HD void set_rates(Place k, RatesView const& out) const {
+        if constexpr (is_one_body<Place>)
+            if (joints().drives == 0 && goes_by_hinge(k)) {  // whose other components are 0 and stay so
+                out.qdd.at(k, 0) = rate_of_hinge(k);
+                return;
+            }
         write(out.qdd, k, rate(k));
         if constexpr (is_one_body<Place>)
             if (on_free_base(k)) out.base_acceleration.store(joints().piece_of(k), base_rate(k));

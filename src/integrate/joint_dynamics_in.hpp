@@ -131,6 +131,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     void solve_once() override {
         set_carried_loads();
+        find_rotations();
         solver_->assemble_and_solve(configuration(), loads(), found(leaves_loads_));
         has_matrices_ = false;
         exchange_ends();
@@ -257,7 +258,7 @@ class JointDynamicsIn final : public JointDynamics {
         if (!std::exchange(relative_, false))
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
                                  [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
-        if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
+        show_joint_loads();
         auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); };
         if constexpr (has_lanes) {
             if (lanes_) {
@@ -278,7 +279,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     /// update() where motions within runs are the solver's to find.
     void follow_hinges() {
-        leaves_motions_ = true;
+        leaves_motions_ = has_rotations_ = true;
         JointChains c = chains();
         c.scan.motion.orients_first_alone = !needs_orientations_;
         bool const relative = std::exchange(relative_, false);
@@ -286,29 +287,32 @@ class JointDynamicsIn final : public JointDynamics {
             if (solver_->has_runs_side_by_side()) return follow_by_lanes(c);
         follow_by_runs(c, relative);
     }
+    void set_relative() {
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<false>(k); });
+    }
+    /// Of hinges, where the solver asks for them and another scan has been there.
+    void find_rotations() {
+        if (leaves_motions_ && !has_rotations_) set_relative();
+        has_rotations_ = leaves_motions_;
+    }
     void follow_by_runs(JointChains const& c, bool relative) {
-        HingeScan const scan{c, joint_by_joint()};
-        if (scan.joint_by_joint && !relative)
-            space_.for_each(group_.size, [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<false>(k); });
-        kinematics_.sweep_runs(
-            scan,
-            [&] {
-                if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
-            },
-            [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
+        HingeScan const scan{c, joint_by_joint(), refinement_.has_value()};
+        if (scan.joint_by_joint && !relative) set_relative();
+        kinematics_.sweep_runs(scan, [this] { show_joint_loads(); }, [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
     }
     void follow_by_lanes(JointChains const& c) {
-        // Where bodies meet is as fixed as it was at first: on hinges. Of first bodies, on whatever joint, set_relative() finds it.
-        lanes_->each_outside(
-            space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
-            [c](std::int64_t k) { c.template set_relative<false>(k); });
+        HingeScan const scan{c, false, refinement_.has_value()};
+        // Of bodies that begin a chain, on whatever joint; where others meet is as fixed as it was at first.
+        space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_relative<false>(k); });
         lanes_->follow_hinges(space_, c);
-        if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
-        kinematics_.template sweep<false>(c.scan, lanes_->tree());
+        kinematics_.sweep_with(scan, lanes_->tree(), [this] { show_joint_loads(); });
         lanes_->begin_runs(space_, c.scan);
-        lanes_->each_outside(
-            space_, [&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); },
-            [c](std::int64_t k) { c.template set_motion<false>(k, false); });
+        space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_motion<false>(k, false); });
+        space_.over(lanes_->other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
+    }
+    /// Of first bodies, to the rank before.
+    void show_joint_loads() {
+        if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
     }
     template <bool positions>
     void runge_kutta(RungeKuttaStage const& stage) {
@@ -343,7 +347,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     /// The kinematics alone, positions included.
     void move() {
-        relative_ = false;
+        relative_ = has_rotations_ = false;
         has_orientations_ = true;
         kinematics_.evaluate(state_.view(), true, motion_.view());
         if (group_.has_tips()) set_ends();
@@ -381,7 +385,7 @@ class JointDynamicsIn final : public JointDynamics {
         return all;
     }
     HingeLoads loads_of_hinges() {
-        HingeLoads all{true, kinematics_.joints().joint_rotation, {}, {}, {}, {}};
+        HingeLoads all{true, kinematics_.rotations(), {}, {}, {}, {}, {}};
         View<4> const joint = joint_load_.view();
         if (given_.joint_loads) all.joint_torque = {joint.origin, joint.pitch, joint.size};
         if (given_.wrenches) {
@@ -400,6 +404,8 @@ class JointDynamicsIn final : public JointDynamics {
     /// those of the solver's.
     bool may_follow_hinges() const { return leaves_loads_ && !needs_positions_; }
     bool follows_hinges() const {
+        if constexpr (has_lanes)
+            if (space_.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
         return goes_by_hinges_ && group_.drives.empty() && !has_implicit() && (lanes_ || !solver_->has_runs_side_by_side());
     }
     /// Whether motions joint by joint, which steps may leave, are found before those of runs.
@@ -418,7 +424,8 @@ class JointDynamicsIn final : public JointDynamics {
         std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
         for (dca::Run const& run : group.schedule.runs)
             for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
-                in_run[static_cast<std::size_t>(k)] = group.is_first[static_cast<std::size_t>(k)] == 0 ? 1 : 0;
+                if (group.is_first[static_cast<std::size_t>(k)] == 0)
+                    in_run[static_cast<std::size_t>(k)] = k == run.body ? HingesInRuns::first : HingesInRuns::within;
         return in_run;
     }
     std::int64_t pieces() const { return std::ssize(group_.pieces); }
@@ -480,8 +487,9 @@ class JointDynamicsIn final : public JointDynamics {
     std::vector<std::uint8_t> in_run_;  // as HingesInRuns
     List<std::uint8_t> in_run_list_;
     bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
+    bool has_rotations_ = false;    // of hinges, joint by joint (HingeLoads)
     bool leaves_loads_ = false;     // some of those of the configuration updated last are the solver's to find
-    bool leaves_motions_ = false;   // and angular velocities of bodies in lanes
+    bool leaves_motions_ = false;   // and angular velocities within runs
     bool has_matrices_ = false;     // of the configuration updated last
     bool has_all_ = true;           // bodies' accelerations and joints' forces of the solution found last
     bool has_hinges_ = false;       // hinge_acceleration_ of that

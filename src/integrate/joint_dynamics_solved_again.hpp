@@ -112,9 +112,11 @@ void JointDynamicsIn<Space>::find_all() {
     if (!std::exchange(has_orientations_, true)) {
         relative_ = false;
         kinematics_.evaluate(state_.view(), false, motion_.view());
+        has_rotations_ = false;
     }
     bool const has_all = std::exchange(has_all_, true);
     if (has_matrices_) leave_nothing();
+    find_rotations();
     if (!has_all) has_matrices_ ? solver_->solve(loads(), all()) : solver_->assemble_and_solve(configuration(), loads(), all());
     leave_nothing();
 }

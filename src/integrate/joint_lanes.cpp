@@ -59,11 +59,10 @@ JointLanes::JointLanes(ChainGroup const& group, bool springs, bool hinges, SimdL
     }
     tree_.emplace(runs_.others, group.schedule.levels, group.schedule.roots, group.schedule.slots);
     if (!hinges) return;
-    for (dca::Run const& run : runs_.others) deal_out(group, springs, run.body, run.body + run.count, lanes, outside_);
     for (dca::RunsInLanes const& item : runs_.items)
         for (int lane = 0; lane < lanes; ++lane)
             if (group.is_first[static_cast<std::size_t>(item.body[lane])] && (lane == 0 || item.body[lane] != item.body[0]))
-                outside_.others.push_back(item.body[lane]);
+                chains_begin_.push_back(item.body[lane]);
     constants_ = dca::constants_in_lanes(runs_.items, lanes, hinge_constants, [&group](std::int64_t k, double* place) {
         auto const axes = group.axes1[k];
         auto const rotation = group.joint_rotation[k];

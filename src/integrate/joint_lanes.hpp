@@ -69,12 +69,10 @@ class JointLanes {
 
     // Chains whose solver goes_by_hinges(), none of whose positions is asked for. Precondition: `hinges`.
 
-    /// As each(): of bodies whose runs do not go side by side, and of those that begin a chain.
-    template <class Space, class Some, class One>
-    void each_outside(Space const& space, Some const& some, One const& one) const {
-        each_of(outside_, space, false, some, one);
-    }
-    /// After set_relative() of those outside.
+    /// Runs that do not go side by side; bodies of the others that begin a chain.
+    std::span<dca::Run const> other_runs() const { return runs_.others; }
+    std::span<std::int64_t const> chains_begin() const { return chains_begin_; }
+    /// After set_relative() of those.
     template <class Space>
     void follow_hinges(Space const& space, JointLoads const& loads) const {
         over_runs(space, [&](RunsAbreast const& runs, std::int64_t begin, std::int64_t end) {
@@ -108,7 +106,8 @@ class JointLanes {
     bool asks_ahead_ = false;
     dca::RunsDealtOut runs_;
     std::optional<HostSpace::ScanTree> tree_;
-    Bodies bodies_, outside_;
+    Bodies bodies_;
+    std::vector<std::int64_t> chains_begin_;
     dca::AlignedNumbers constants_;
 };
 

@@ -29,15 +29,22 @@ struct ImplicitJoints {
 /// Hinges that a solver which goes_by_hinges() knows by itself: of runs of several bodies, but of no body that begins a chain. Those of
 /// bodies side by side are such (joint_lanes.cpp).
 struct HingesInRuns {
+    static constexpr std::uint8_t within = 1, first = 2;  // of a run's first body; 0: no such hinge
     std::uint8_t const* joint = nullptr;
     CATENA_HD bool has(std::int64_t k) const { return joint[k] != 0; }
+    CATENA_HD bool begins_run(std::int64_t k) const { return joint[k] == first; }
     template <dca::SeveralBodies Place>
     CATENA_HD bool has(Place const&) const {
         return true;
     }
+    /// Or may.
+    template <dca::SeveralBodies Place>
+    CATENA_HD bool begins_run(Place const&) const {
+        return true;
+    }
 };
 /// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, hinge_rate; and HingeLoads,
-/// where an update finds bodies' motions as it needs them (JointLanes::follow_hinges).
+/// where an update finds bodies' motions as it needs them (JointDynamicsIn::follow_hinges).
 struct LeftToSolver {
     bool gyroscopic = false, biases = false, motions = false;
 };

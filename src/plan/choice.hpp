@@ -22,7 +22,7 @@ inline constexpr std::int64_t largest_at_start = 16384;
 bool leaves_open(Scene const&);
 
 /// For the scene's evaluations, by this rank's planner. `auto` is only ever one of the arrangements that give the same bits, so that it
-/// never changes a result; chains on hinges in vectors differ in their last ones.
+/// never changes a result.
 Choice choose(Scene const&, Axes, Planner&, int ranks);
 /// The same with this machine's planner, which knows what is in the cache and keeps there what it learns; nothing is measured where there
 /// is nothing to choose from. `no_gpu`: why the GPU is none to choose; empty: it may be. The same on every rank; collective.

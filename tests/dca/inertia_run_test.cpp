@@ -17,19 +17,22 @@ using Body = HingedBody<double>;
 struct KeptHinges {
     std::vector<ReleasedHinge<double>> hinges;
     std::vector<BodyInRun<double>> bodies;
+    std::vector<BodyAcceleration<double>> swings;
     RunsEnd<double> at_end;
     Mat3 last_axes;
 
-    explicit KeptHinges(std::size_t n) : hinges(n), bodies(n) {}
+    explicit KeptHinges(std::size_t n) : hinges(n), bodies(n), swings(n) {}
     void put(int i, ReleasedHinge<double> const& hinge) { hinges[static_cast<std::size_t>(i)] = hinge; }
-    void put(int i, ReleasedHinge<double> const& hinge, BodyInRun<double> const& body) {
+    void put(int i, ReleasedHinge<double> const& hinge, BodyInRun<double> const& body, BodyAcceleration<double> const& swing) {
         put(i, hinge);
         bodies[static_cast<std::size_t>(i)] = body;
+        swings[static_cast<std::size_t>(i)] = swing;
     }
     void put(RunsEnd<double> const& end) { at_end = end; }
     void put_axes(Mat3 const& axes) { last_axes = axes; }
     ReleasedHinge<double> const& hinge(int i) const { return hinges[static_cast<std::size_t>(i)]; }
     BodyInRun<double> const& body(int i) const { return bodies[static_cast<std::size_t>(i)]; }
+    BodyAcceleration<double> const& swing(int i) const { return swings[static_cast<std::size_t>(i)]; }
     RunsEnd<double> const& end() const { return at_end; }
     Mat3 const& axes() const { return last_axes; }
 };

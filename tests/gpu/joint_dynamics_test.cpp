@@ -11,13 +11,11 @@
 namespace catena::test {
 namespace {
 
-constexpr int steps = 100;
-
 class GpuJoints : public ::testing::Test {
   protected:
     void SetUp() override { need_gpu(); }
     /// State after some steps, and what carries to the next.
-    std::map<std::string, std::vector<double>> after_steps(Scene scene, Backend backend, Integrator integrator) const {
+    std::map<std::string, std::vector<double>> after_steps(Scene scene, Backend backend, Integrator integrator, int steps) const {
         scene.solver.backend = backend;
         ChainSystem system(scene, Axes::joint, *communicator_);
         EXPECT_EQ(system.backend(), backend);
@@ -41,9 +39,10 @@ class GpuJoints : public ::testing::Test {
         for (Vec3 const& x : system.snapshot().position) arrays["position"].insert(arrays["position"].end(), x.data, x.data + 3);
         return arrays;
     }
-    void expect_same(Scene const& scene) const {
+    void expect_same(Scene const& scene, int steps = 100) const {
         for (Integrator const integrator : {Integrator::rk4, Integrator::dormand_prince, Integrator::velocity_verlet}) {
-            auto const device = after_steps(scene, Backend::cuda, integrator), host = after_steps(scene, Backend::segments, integrator);
+            auto const device = after_steps(scene, Backend::cuda, integrator, steps),
+                       host = after_steps(scene, Backend::segments, integrator, steps);
             for (auto const& [name, values] : host) {
                 EXPECT_EQ(device.at(name), values) << name << ", " << name_of(integrator);
                 for (double const v : values) ASSERT_TRUE(std::isfinite(v)) << name;
@@ -78,7 +77,30 @@ TEST_F(GpuJoints, AVeryLongPendulum) {
                     "scene.yaml"));
 }
 
+/// So many runs that a GPU finds what moves joint by joint while it goes along them.
+TEST_F(GpuJoints, AVeryLongChainOnHinges) {
+    expect_same(parse_scene("units: si\nchains: [{name: h, base: free, generator: {random: {bodies: 300001, joint: revolute, seed: 2}}}]\n"
+                            "forces: {gravity: [1, 2, -9.81]}",
+                            "scene.yaml"),
+                2);
+}
 /// Wrenches, joint torques, springs, dampers, drag, prescribed motions, and every joint at the tip.
+/// What hinges and the ground's axes do along runs is the solver's to find; refined, it finds joints' forces too.
+TEST_F(GpuJoints, LoadsOnHinges) {
+    for (int const refine : {0, 1})
+        for (Base const base : {Base::fixed, Base::free}) {
+            SCOPED_TRACE(std::string(base == Base::free ? "free" : "fixed") + ", refined " + std::to_string(refine));
+            std::vector<ChainSpec> chains;
+            for (std::size_t const bodies : {300U, 34U, 18U, 3U}) {
+                chains.push_back(random_chain(bodies, {.bodies = bodies, .joints = RandomJoints::revolute, .base = base, .springs = true}));
+                chains.back().name = std::to_string(bodies);
+            }
+            Scene scene = scene_of(chains);
+            scene.solver.refine = refine;
+            expect_same(scene, 10);
+            if (HasFailure()) return;
+        }
+}
 TEST_F(GpuJoints, LoadsDrivesAndTips) {
     using enum JointType;
     std::optional<JointType> const tips[] = {std::nullopt, spherical, revolute, universal, weld, prismatic, helical};

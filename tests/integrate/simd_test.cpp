@@ -51,7 +51,7 @@ double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
 }
 
 /// The same operations in the same order, on hinges in vectors of any width. Where the rest of the program rounds products before it adds,
-/// or goes another way, a chain of n bodies lets the last digits of that grow like n.
+/// a chain of n bodies lets the last digits of that grow like n.
 void expect_found(Scene const& scene, Axes axes, std::string const& what) {
     auto const alone = serial_communicator();
     Communicator const& world = testing::world();
@@ -88,7 +88,7 @@ TEST_P(Simd, IsUsedWhereAChainHasRunsForIt) {
 }
 
 TEST_P(Simd, FindsTheSame) {
-    for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 256, 257, 2047, 2048, 2049})
+    for (int const bodies : {1, 2, 3, 31, 32, 33, 34, 50, 51, 133, 255, 256, 257, 2047, 2048, 2049})
         expect_found(scene_of(chain(GetParam(), bodies)), Axes::joint, std::string(GetParam()) + " " + std::to_string(bodies));
 }
 TEST_P(Simd, FindsTheSameInSeveralChains) {

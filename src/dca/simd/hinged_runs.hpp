@@ -105,9 +105,10 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
             store_vectors<Real>(kept, hinge);
             watch(i, hinge.inverse.not_positive());
         }
-        void put(int i, ReleasedHinge<Real> const& hinge, BodyInRun<Real> const& body) {
+        void put(int i, ReleasedHinge<Real> const& hinge, BodyInRun<Real> const& body, BodyAcceleration<Real> const& swing) {
             put(i, hinge);
             store_vectors<Real>(of_hinge(i) + released_numbers * lanes, body);
+            if (i == count - 2 || all.out_.by_all_bodies()) store_vectors<Real>(of_hinge(i) + at_swing, swing);
         }
         /// Outboard of joint i, in the body's axes.
         void put_omega(int i, Vector3 const& omega) { store_vectors<Real>(of_hinge(i) + at_omega, omega); }
@@ -115,6 +116,7 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
         /// What turns to the last body's axes.
         void put_orientation(Matrix3 const& from_ground) { store_vectors<Real>(place + at_orientation, from_ground); }
         Vector3 omega(int i) const { return load<Vector3>(of_hinge(i) + at_omega); }
+        BodyAcceleration<Real> swing(int i) const { return load<BodyAcceleration<Real>>(of_hinge(i) + at_swing); }
         Matrix3 axes() const { return load<Matrix3>(place + met_numbers * lanes); }
         Matrix3 orientation() const { return load<Matrix3>(place + at_orientation); }
         void put(RunsEnd<Real> const& end) {
@@ -135,7 +137,8 @@ class HingedRunsSideBySide : RunsInTile<Real, Leaf> {
       private:
         // What is asked for is so many hinges further, in the order of items: the next one's end lies between.
         static constexpr int ahead = 4, numbers_of_end = end_numbers * lanes;
-        static constexpr int at_omega = (released_numbers + passed_body_numbers) * lanes, at_orientation = (met_numbers + 9) * lanes;
+        static constexpr int at_omega = (released_numbers + passed_body_numbers) * lanes, at_swing = at_omega + 3 * lanes,
+                             at_orientation = (met_numbers + 9) * lanes;
         template <class Record>
         static Record load(double const* from) {
             Record record;

@@ -100,7 +100,7 @@ constexpr int kept_of_run(bool keeps_all) {
 /// and its end, with the last hinge's axes and the last body's orientation.
 inline constexpr int released_numbers = static_cast<int>(sizeof(ReleasedHinge<double>) / sizeof(double));
 inline constexpr int passed_body_numbers = static_cast<int>(sizeof(BodyInRun<double>) / sizeof(double));
-inline constexpr int hinge_numbers = released_numbers + passed_body_numbers + 3;
+inline constexpr int hinge_numbers = released_numbers + passed_body_numbers + 3 + 6;
 inline constexpr int met_numbers = static_cast<int>(sizeof(RunsEnd<double>) / sizeof(double));
 inline constexpr int end_numbers = met_numbers + 9 + 9;
 inline constexpr int kept_of_hinged_run = (static_cast<int>(longest_run) - 1) * hinge_numbers + end_numbers;
