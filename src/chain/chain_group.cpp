@@ -132,7 +132,9 @@ void fill_body(ChainGroup& group, ChainSpec const& spec, std::int64_t body, std:
     // Of the last body, whose tip nobody holds, as of the one before: alike bodies then are alike.
     std::int64_t const inboard = body + 1 < static_cast<std::int64_t>(b.size()) ? body : body - 1;
     group.r2.set(k, inboard < 0 ? Vec3::zero() : b.translation[inboard + 1] - b.com[inboard]);
-    group.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : b.rotation[inboard + 1] * axes(inboard + 1)));
+    // As JointsView::meeting() finds them where it looks again: the same bits where they do not move.
+    auto const meeting = [&](std::int64_t joint) { return to_matrix(to_quaternion(b.rotation[joint])) * axes_of(kept_axes(axes(joint))); };
+    group.axes2.set(k, kept_axes(inboard < 0 ? Mat3::identity() : meeting(inboard + 1)));
     if (group.has_universal && b.joint[body] == JointType::universal) group.first_axis.set(k, b.first_axis[body]);
     if (!group.has_screws) return;
     bool const closing = body == 0 && spec.is_ring();  // a ring's first body has no other joint

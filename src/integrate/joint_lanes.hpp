@@ -56,7 +56,11 @@ class JointLanes {
     /// some(loops, bodies, begin, end) for those, one(k) for the others.
     template <class Space, class Some, class One>
     void each(Space const& space, bool positions, Some const& some, One const& one) const {
-        each_of(bodies_, space, positions, some, one);
+        JointLoops const& loops = loops_[positions ? 1 : 0];
+        space.over_ranges(std::ssize(bodies_.first), 2, [&](std::int64_t begin, std::int64_t end) {
+            some(loops, BodiesAbreast{bodies_.first.data(), asks_ahead_}, begin, end);
+        });
+        space.over(std::span(bodies_.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
     }
 
     /// JointScan::follow of the runs that go side by side; tree() has the others, and what is above all of them.
@@ -89,14 +93,6 @@ class JointLanes {
     struct Bodies {
         std::vector<std::int64_t> first, others;  // of those that fill a vector; all that do not
     };
-    template <class Space, class Some, class One>
-    void each_of(Bodies const& bodies, Space const& space, bool positions, Some const& some, One const& one) const {
-        JointLoops const& loops = loops_[positions ? 1 : 0];
-        space.over_ranges(std::ssize(bodies.first), 2, [&](std::int64_t begin, std::int64_t end) {
-            some(loops, BodiesAbreast{bodies.first.data(), asks_ahead_}, begin, end);
-        });
-        space.over(std::span(bodies.others), [&one](std::int64_t k) CATENA_WHOLE { one(k); });
-    }
     template <class Space, class Action>
     void over_runs(Space const& space, Action const& action) const {
         space.over_ranges(std::ssize(runs_.items), 2 * static_cast<int>(dca::longest_run),

@@ -43,8 +43,8 @@ struct HingesInRuns {
         return true;
     }
 };
-/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, hinge_rate; and HingeLoads,
-/// where an update finds bodies' motions as it needs them (JointDynamicsIn::follow_hinges).
+/// What it makes by itself of velocities: LoadsView::gyroscopic, where nothing else is in the torques, hinge_rate; and HingeLoads, where
+/// the update that needs motions joint by joint finds them, and no step before (JointDynamicsIn::follow_hinges).
 struct LeftToSolver {
     bool gyroscopic = false, biases = false, motions = false;
 };

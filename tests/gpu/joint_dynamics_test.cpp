@@ -84,8 +84,7 @@ TEST_F(GpuJoints, AVeryLongChainOnHinges) {
                             "scene.yaml"),
                 2);
 }
-/// Wrenches, joint torques, springs, dampers, drag, prescribed motions, and every joint at the tip.
-/// What hinges and the ground's axes do along runs is the solver's to find; refined, it finds joints' forces too.
+/// What hinges and the ground's axes do along runs is the solver's to find, but where solutions are refined.
 TEST_F(GpuJoints, LoadsOnHinges) {
     for (int const refine : {0, 1})
         for (Base const base : {Base::fixed, Base::free}) {
@@ -101,6 +100,7 @@ TEST_F(GpuJoints, LoadsOnHinges) {
             if (HasFailure()) return;
         }
 }
+/// Wrenches, joint torques, springs, dampers, drag, prescribed motions, and every joint at the tip.
 TEST_F(GpuJoints, LoadsDrivesAndTips) {
     using enum JointType;
     std::optional<JointType> const tips[] = {std::nullopt, spherical, revolute, universal, weld, prismatic, helical};

@@ -135,9 +135,8 @@ TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
                                 b.wrench.clear(), b.torque.clear();
                                 b.stiffness.assign(b.joint.size(), ones), b.damping.assign(b.joint.size(), ones);
                             }}};
-    bool on_universal = false;
-    for (char const* const base : {"base: free, ", "base: fixed, ", "base: fixed, joint: universal, "}) {
-        on_universal = std::string(base).find("universal") != std::string::npos;
+    for (char const* const base : {"base: free, ", "base: fixed, ", "universal"}) {
+        bool const on_universal = base == std::string("universal");
         for (auto const& [bodies, next] :
              std::vector<std::pair<int, int>>{{1, 16}, {2, 17}, {4, 5}, {9, 15}, {16, 33}, {17, 1}, {35, 35}, {70, 2}, {333, 129}})
             for (Loads const& of : loads) {
@@ -183,36 +182,46 @@ TEST(HingedChains, MayLeaveTheirLoadsToTheSolver) {
                 EXPECT_TRUE(same_bits(alone.joint_acceleration, left.joint_acceleration));
                 EXPECT_TRUE(same_bits(alone.base_acceleration, left.base_acceleration));
                 EXPECT_TRUE(same_bits(alone.joint_force, left.joint_force));
+                if (!rounds_as_vectors()) continue;
+                s.solver.simd = SimdLevel::off;
+                auto const one_by_one = accelerations(*serial_communicator(), true);
+                EXPECT_TRUE(same_bits(one_by_one.joint_acceleration, left.joint_acceleration));
+                EXPECT_TRUE(same_bits(one_by_one.joint_force, left.joint_force));
             }
     }
 }
 /// Whatever is asked for after a step, and how often.
 TEST(HingedChains, AreFoundAsOftenAsTheyAreAskedFor) {
-    Scene s = parse_scene("chains: [{base: free, generator: {random: {seed: 3, joint: revolute, bodies: 49}}}]", "scene.yaml");
-    s.solver.backend = Backend::segments;
-    ChainSystem system(s, Axes::joint, testing::world());
-    JointDynamics& group = *system.joint().front();
-    group.update_to_solve_once();
-    group.motion();
-    group.solve_once();
-    group.set_rates();
-    ChainSystem::Accelerations const after_motion = system.accelerations();
-    system.evaluate(false);
-    ChainSystem::Accelerations const once = system.accelerations();
-    EXPECT_TRUE(same_bits(after_motion.joint_acceleration, once.joint_acceleration));
-    EXPECT_LE(system.residual(), system.residual_bound());
-    EXPECT_LE(system.residual(), system.residual_bound());
-    group.motion();
-    EXPECT_TRUE(same_bits(system.accelerations().joint_acceleration, once.joint_acceleration));
-    EXPECT_TRUE(same_bits(system.accelerations().joint_force, once.joint_force));
-    system.evaluate();
-    EXPECT_LE(system.residual(), system.residual_bound());
-    system.evaluate(false);
-    EXPECT_TRUE(same_bits(system.accelerations().joint_acceleration, once.joint_acceleration));
-    system.refine();
-    EXPECT_LE(system.residual(), system.residual_bound());
-    system.evaluate(false);
-    EXPECT_LE(system.residual(), system.residual_bound());
+    for (SimdLevel const level : simd_levels()) {
+        SCOPED_TRACE(name_of(level));
+        Scene s = parse_scene("chains: [{base: fixed, generator: {random: {seed: 3, joint: revolute, bodies: 51}}}]", "scene.yaml");
+        s.solver.backend = Backend::segments;
+        s.solver.simd = level;
+        begin_on_universal(s.chains.front().bodies);
+        ChainSystem system(s, Axes::joint, testing::world());
+        JointDynamics& group = *system.joint().front();
+        group.update_to_solve_once();
+        group.motion();
+        group.solve_once();
+        group.set_rates();
+        ChainSystem::Accelerations const after_motion = system.accelerations();
+        system.evaluate(false);
+        ChainSystem::Accelerations const once = system.accelerations();
+        EXPECT_TRUE(same_bits(after_motion.joint_acceleration, once.joint_acceleration));
+        EXPECT_LE(system.residual(), system.residual_bound());
+        EXPECT_LE(system.residual(), system.residual_bound());
+        group.motion();
+        EXPECT_TRUE(same_bits(system.accelerations().joint_acceleration, once.joint_acceleration));
+        EXPECT_TRUE(same_bits(system.accelerations().joint_force, once.joint_force));
+        system.evaluate();
+        EXPECT_LE(system.residual(), system.residual_bound());
+        system.evaluate(false);
+        EXPECT_TRUE(same_bits(system.accelerations().joint_acceleration, once.joint_acceleration));
+        system.refine();
+        EXPECT_LE(system.residual(), system.residual_bound());
+        system.evaluate(false);
+        EXPECT_LE(system.residual(), system.residual_bound());
+    }
 }
 
 /// A drift that goes on by single sweeps is the drift with as many of them.

@@ -50,7 +50,7 @@ double difference(std::vector<Vec3> const& a, std::vector<Vec3> const& b) {
     return worst == 0 ? 0 : worst / most;
 }
 
-/// The same operations in the same order, on hinges in vectors of any width. Where the rest of the program rounds products before it adds,
+/// The same operations in the same order, in vectors of any width. Where the rest of the program rounds products before it adds,
 /// a chain of n bodies lets the last digits of that grow like n.
 void expect_found(Scene const& scene, Axes axes, std::string const& what) {
     auto const alone = serial_communicator();
