@@ -116,8 +116,10 @@ void JointDynamicsIn<Space>::find_all() {
     }
     bool const has_all = std::exchange(has_all_, true);
     if (has_matrices_) leave_nothing();
-    if (!has_all) find_rotations();
-    if (!has_all) has_matrices_ ? solver_->solve(loads(), all()) : solver_->assemble_and_solve(configuration(), loads(), all());
+    if (!has_all) {
+        find_rotations();
+        has_matrices_ ? solver_->solve(loads(), all()) : solver_->assemble_and_solve(configuration(), loads(), all());
+    }
     leave_nothing();
 }
 
