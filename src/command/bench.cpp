@@ -21,8 +21,10 @@ Outcome list() {
         "solve       matrix sweep, bias sweep and a whole evaluation of random chains, a body, for every backend of the processor "
         "(--backend "
         "cuda: the GPU's)\n"
-        "evaluation  the solver alone, with everything it reads and writes in place: many evaluations of random chains in absolute\n"
-        "            coordinates one after the other (cuda: as one graph), their memory traffic and the floor that it sets\n"
+        "evaluation  with everything read and written in place: many evaluations of random chains one after the other (cuda, one\n"
+        "            rank: as one graph); of links and spherical joints the solver alone in absolute coordinates, its memory traffic and "
+        "the floor\n"
+        "            that it sets, of other joints kinematics, loads and rates as well\n"
         "peers       forward dynamics of random chains beside Pinocchio, Simbody and MuJoCo, and where each of them stops\n"
         "openmm      a step of proteins at 330 mg/ml beside OpenMM's own, with harmonic bonds and with constraints\n"
         "sampling    what alpha-synuclein, or a scene's chain, samples on rigid links, harmonic bonds and constraints at several steps: "
@@ -171,9 +173,11 @@ struct AtOnce {
     SimdLevel simd = SimdLevel::off;
     bool direct_exchange = false;
 };
-AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communicator, int repeat) {
+/// Whether the solver is measured alone, in absolute coordinates; else kinematics, loads and the joints' rates count as well.
+bool is_absolute(std::string const& joint) { return joint == "link" || joint == "spherical"; }
+AtOnce time_at_once(Scene& scene, std::string const& joint, Backend backend, Communicator const& communicator, int repeat) {
     scene.solver.backend = backend;
-    ChainSystem system(scene, Axes::world, communicator);
+    ChainSystem system(scene, is_absolute(joint) ? Axes::world : Axes::joint, communicator);
     system.evaluate();
     system.evaluate(false);
     AtOnce found;
@@ -182,15 +186,14 @@ AtOnce time_at_once(Scene& scene, Backend backend, Communicator const& communica
     found.threads = system.executor().threads();
     found.simd = system.executor().simd();
     found.direct_exchange = system.solver_reports().front().direct_exchange;
-    found.seconds = spread_of(system.absolute().front()->time_at_once(chained_for(scene.bodies()), repeat));
+    int const chained = chained_for(scene.bodies());
+    found.seconds = spread_of(is_absolute(joint) ? system.absolute().front()->time_at_once(chained, repeat)
+                                                 : system.joint().front()->time_at_once(chained, repeat));
     return found;
 }
 
 /// Those that find matrices and biases in one sweep.
 std::vector<Backend> backends_at_once(BenchRequest const& request) {
-    for (std::string const& joint : request.joints)
-        if (joint != "link" && joint != "spherical")
-            throw InputError("`" + joint + "` has no absolute coordinates", "--joints", "use link or spherical");
     if (!request.handles.empty() && request.handles != name_of(Handles::projected))
         throw InputError(request.handles + " handles need a sweep after the other", "--handles", "use projected ones");
     std::vector<Backend> chosen = request.backends;
@@ -210,13 +213,14 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
     std::vector<Backend> const backends = backends_at_once(request);
     Table table({"joint", "bodies", "backend", "threads", "us", "ns a body", "GB/s", "of the floor", "residual", "bound", ""}, {0, 2, 10});
     Outcome outcome = begun("evaluation", communicator);
+    outcome.json["loads"] = request.loads;
     outcome.json["alike"] = request.alike;
     for (std::string const& joint : request.joints)
         for (std::int64_t const bodies : request.sizes) {
-            Scene scene = random_scene(joint, bodies, overrides_of(request));
+            Scene scene = random_scene(joint, bodies, overrides_of(request), request.loads);
             if (request.alike) make_alike(scene);
             for (Backend const backend : backends) {
-                AtOnce const found = time_at_once(scene, backend, communicator, request.repeat);
+                AtOnce const found = time_at_once(scene, joint, backend, communicator, request.repeat);
                 bool const valid = found.residual <= found.bound;
                 outcome.valid = outcome.valid && valid;
                 auto const n = static_cast<double>(scene.bodies());
@@ -227,8 +231,8 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                 bool const gpu = backend == Backend::cuda;
                 table.add({joint, std::to_string(bodies), name_of(backend), std::to_string(found.threads),
                            fmt::format("{:.4g}", 1e6 * found.seconds.median), fmt::format("{:.3g}", 1e9 * found.seconds.median / n),
-                           fmt::format("{:.0f}", rate), gpu ? fmt::format("{:.2f}", floor) : "-", fmt::format("{:.1e}", found.residual),
-                           fmt::format("{:.1e}", found.bound), valid ? "VALID" : "INVALID"});
+                           rate > 0 ? fmt::format("{:.0f}", rate) : "-", gpu && rate > 0 ? fmt::format("{:.2f}", floor) : "-",
+                           fmt::format("{:.1e}", found.residual), fmt::format("{:.1e}", found.bound), valid ? "VALID" : "INVALID"});
                 outcome.json["results"].push_back(
                     {{"joint", joint},
                      {"bodies", bodies},
@@ -240,17 +244,17 @@ Outcome evaluation(Communicator const& communicator, BenchRequest const& request
                      {"repeat", found.seconds.count},
                      {"microseconds",
                       {{"median", 1e6 * found.seconds.median}, {"min", 1e6 * found.seconds.min}, {"max", 1e6 * found.seconds.max}}},
-                     {"gigabytes_per_second", rate},
-                     {"floor_over_time", gpu ? Json(floor) : Json(nullptr)},
+                     {"gigabytes_per_second", rate > 0 ? Json(rate) : Json(nullptr)},
+                     {"floor_over_time", gpu && rate > 0 ? Json(floor) : Json(nullptr)},
                      {"residual", found.residual},
                      {"residual_bound", found.bound},
                      {"valid", valid}});
             }
         }
     std::string const what = fmt::format(
-        "an evaluation, inputs and outputs in place, median of {}; GB/s counts what must be read and written once; floor: two sweeps over "
-        "what is read at 4.2 TB/s",
-        request.repeat);
+        "an evaluation, inputs and outputs in place, median of {}; links and spherical joints the solver alone, others with kinematics, "
+        "loads and rates{}; GB/s counts what must be read and written once; floor: two sweeps over what is read at 4.2 TB/s",
+        request.repeat, words_of(request.loads));
     return ended(std::move(outcome), what, table, communicator);
 }
 

@@ -165,11 +165,12 @@ void add_commands(CLI::App& app, Words& words) {
     command
         ->add_option("--joints", words.joints,
                      "link, planar, spherical, universal, revolute, prismatic, helical, weld, mixed (default: link,spherical,revolute; "
-                     "evaluation takes the first two, peers these and planar)")
+                     "evaluation: link,spherical; peers takes these and planar)")
         ->type_name("J,...");
     command
         ->add_option("--loads", words.loads,
-                     "of solve and peers, beside gravity: none | torques of joints | wrenches (default), in ground axes on every body, too")
+                     "of solve, evaluation and peers, beside gravity: none | torques of joints | wrenches (default), in ground axes on "
+                     "every body, too")
         ->type_name("LOADS");
     command->add_flag("--alike", words.alike,
                       "of solve and evaluation: bodies that have the same mass, inertia and joints (default: random ones)");

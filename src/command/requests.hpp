@@ -64,7 +64,7 @@ struct BenchRequest : CommonOptions {
     std::string name;
     std::vector<std::int64_t> sizes;  // empty: the benchmark's own
     std::vector<std::string> joints{"link", "spherical", "revolute"};
-    std::string loads = "wrenches";  // of solve and peers, as random_scene()
+    std::string loads = "wrenches";  // of solve, evaluation and peers, as random_scene()
     bool alike = false;              // of solve and evaluation: make_alike()
     std::vector<Backend> backends;   // empty: all of this build
     std::vector<std::string> figures;

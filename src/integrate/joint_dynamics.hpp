@@ -54,6 +54,9 @@ class JointDynamics : public BeadHost {
     virtual void solve_again() = 0;
     /// Those of coordinates, after solve(); and as they were set last, on the host.
     virtual void set_rates() = 0;
+    /// Seconds of update_to_solve_once(), solve_once() and set_rates() together, `repeat` times the mean of `chained` of them one after the
+    /// other. Precondition: they were called before. Collective.
+    virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
     /// One step of iterative refinement of what solve() found last: what the equations of bodies and joints lack is solved for with the
     /// same matrices and added. Digits come back that were lost where a body's forces are far larger than what they leave of them:
     /// accelerations are carried apart from the forces they came from. `executor`: of the host, which looks for what is lacking.

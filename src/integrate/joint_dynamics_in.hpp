@@ -142,6 +142,13 @@ class JointDynamicsIn final : public JointDynamics {
         solver_->solve(loads(), found(false));
         exchange_ends();
     }
+    std::vector<double> time_at_once(int chained, int repeat) override {
+        return space_.time_chained(chained, repeat, communicator_.size() > 1, [this] {
+            update_to_solve_once();
+            solve_once();
+            set_rates();
+        });
+    }
     /// What is lacking is looked for on the host.
     void refine(Executor const& executor) override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }

@@ -107,7 +107,15 @@ TEST(Bench, EvaluationsAreValidAndAsked) {
     expect_refused(catena({"bench", "peers", "--alike"}), 2, "--alike is nothing to catena bench peers");
     expect_refused(catena({"bench", "solve", "--joints", "link,mixed", "--alike"}), 2,
                    "mixed joints are not alike (--alike): leave it out");
-    for (auto const& [option, value] : {std::pair{"--joints", "revolute"}, {"--backend", "serial"}, {"--handles", "full"}})
+    Ended const joints = catena({"bench", "evaluation", "--sizes", "300", "--joints", "planar,revolute,mixed", "--loads", "torques",
+                                 "--repeat", "1", "--backend", "segments", "--json", "-"});
+    expect_good(joints);
+    for (Json const& row : joints.json().at("results")) {
+        EXPECT_GT(row.at("microseconds").at("median").get<double>(), 0);
+        EXPECT_TRUE(row.at("gigabytes_per_second").is_null());
+        EXPECT_EQ(row.at("valid"), true);
+    }
+    for (auto const& [option, value] : {std::pair{"--backend", "serial"}, {"--handles", "full"}})
         EXPECT_EQ(catena({"bench", "evaluation", "--sizes", "20", option, value}).status, 2) << option;
 }
 

@@ -19,7 +19,7 @@ TEST(Errors, TheCommandLine) {
     expect_refused(catena({"bench", "peers", "--sizes", "2e6"}), 2, "take 1e6 at most");
     expect_refused(catena({"bench", "solve", "--figure", "2.5"}), 2, "--figure is nothing to catena bench solve");
     expect_refused(catena({"bench", "openmm", "--joints", "link"}), 2, "--joints is nothing to catena bench openmm");
-    expect_refused(catena({"bench", "evaluation", "--loads", "none"}), 2, "--loads is nothing to catena bench evaluation");
+    expect_refused(catena({"bench", "network", "--loads", "none"}), 2, "--loads is nothing to catena bench network");
     expect_refused(catena({"run", input("arm.yaml"), "--output", ""}), 2, "--output is empty");
     expect_refused(catena({"run", input("arm.yaml"), "--steps", "1e30"}), 2, "1e30 is above 9000000000000000");
 }
