@@ -160,6 +160,17 @@ struct TurnLetters {
     __device__ void close() const { launches[blockIdx.x] = up.launch; }
 };
 
+/// What a kernel is given lies in no cache of the processor at first: so it does when it is wanted.
+template <class T>
+__device__ void touch([[maybe_unused]] T const& parameter) {
+#if defined(__CUDA_ARCH__)
+    constexpr int line = 64;
+    CATENA_UNROLL
+    for (std::size_t i = 0; i < sizeof(T); i += line)
+        asm volatile("" ::"r"(*reinterpret_cast<int const*>(reinterpret_cast<char const*>(&parameter) + i)));
+#endif
+}
+
 /// All blocks of a cluster have come here, and see what the others wrote before.
 __device__ inline void meet_cluster() {
     __syncthreads();

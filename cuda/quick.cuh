@@ -73,6 +73,21 @@ struct QuickInverseLength {
     }
 };
 
+/// As factorize() of one direction, where it is not restricted or its pivot is positive and the inverse is known quickly; else anything,
+/// and it is not `sure`.
+struct SureFactors {
+    static constexpr bool may_fail = true;
+    bool& sure;
+    __device__ Symmetric<double, 1> operator()(Symmetric<double, 1> const& z, int restricted) const {
+        bool known = true;
+        double const inverse = QuickInverse{known}(z(0, 0));
+        sure = sure && (restricted <= 0 || (known && z(0, 0) > 0));
+        Symmetric<double, 1> factor;
+        factor(0, 0) = restricted > 0 ? inverse : 0;
+        return factor;
+    }
+};
+
 /// As factorize(), quick where all directions are restricted. `gives_up`: NaN where that does not do, else it looks again.
 template <bool gives_up>
 struct QuickFactors {

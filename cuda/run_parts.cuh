@@ -21,7 +21,8 @@ struct PackedRecords {
         return static_cast<std::size_t>(dca::packed_numbers(stride, count));
     }
     double* origin;
-    __device__ double& number(int i, int n) const { return origin[stride * i + i / 16 + n]; }
+    __device__ double* record(int i) const { return origin + stride * i + i / 16; }
+    __device__ double& number(int i, int n) const { return record(i)[n]; }
     __device__ void store(int i, T const& record) const {
         auto const values = __builtin_bit_cast(Numbers, record);
         CATENA_UNROLL

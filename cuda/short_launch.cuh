@@ -20,17 +20,26 @@ class ShortLaunch {
     bool operator()(Sweep const& sweep, cudaStream_t stream) const {
         if (chain_.warps == 0) return false;
         void (*const kernel)(kernels::ShortChain, Sweep) = kernels::turn_short<Sweep>;
-        kernels::ShortGrid const grid = kernels::grid_of_short<Sweep>(chain_);
-        EarlyLaunch const launch({grid.blocks, grid.threads, grid.shared_bytes, grid.blocks}, stream);
-        auto const [known, is_new] = fits_.try_emplace(reinterpret_cast<void const*>(kernel));
-        if (is_new) known->second = fits(kernel, launch.config());
-        if (!known->second) return false;
-        launch(kernel, chain_, sweep);
+        auto const [known, is_new] = fitting_.try_emplace(reinterpret_cast<void const*>(kernel));
+        if (is_new) known->second = fitting<Sweep>(kernel, stream);
+        if (known->second.blocks == 0) return false;
+        EarlyLaunch(known->second, stream)(kernel, chain_, sweep);
         ++short_launches;
         return true;
     }
 
   private:
+    /// Large clusters at first; none: there is no such grid.
+    template <class Sweep, class Kernel>
+    Grid fitting(Kernel* kernel, cudaStream_t stream) const {
+        for (int const most : {kernels::most_blocks_of_short, kernels::most_in_cluster}) {
+            if (chain_.warps > most * kernels::most_joining_warps) continue;
+            kernels::ShortGrid const of = kernels::grid_of_short<Sweep>(chain_, most);
+            Grid const grid{of.blocks, of.threads, of.shared_bytes, of.blocks};
+            if (fits(kernel, EarlyLaunch(grid, stream).config())) return grid;
+        }
+        return {};
+    }
     template <class Kernel>
     bool fits(Kernel* kernel, cudaLaunchConfig_t const& config) const {
         if (config.dynamicSmemBytes > static_cast<std::size_t>(most_bytes_)) return false;
@@ -47,7 +56,7 @@ class ShortLaunch {
 
     kernels::ShortChain chain_;
     int most_bytes_ = 0;
-    mutable std::map<void const*, bool> fits_;  // of each kind of sweep
+    mutable std::map<void const*, Grid> fitting_;  // of each kind of sweep
 };
 
 }  // namespace catena::cuda

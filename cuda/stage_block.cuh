@@ -139,8 +139,10 @@ class BlockOfStage {
         for (int l = 0; l < stage_.layout.levels; ++l) {
             __syncthreads();
             if constexpr (by_teams)
-                each_merge_of_team(
-                    l, [&](auto const& team, dca::BlockMerge const& m, bool works) { team.join(sweep_, m, works, segments_, nodes_); });
+                each_merge_of_team(l, [&](auto const& team, dca::BlockMerge const& m, bool works) {
+                    double *const inboard = segments_.record(m.inboard), *const outboard = segments_.record(m.outboard);
+                    team.join(sweep_, {m.joint, m.restricted}, works, {inboard, outboard, inboard, outboard});
+                });
             else
                 each_merge(l, [&](dca::BlockMerge const& m) { join(m); });
         }
@@ -281,7 +283,7 @@ class BlockOfStage {
     __device__ void each_merge_of_team(int level, Action const& action) const {
         MergeTeam<Sweep> const team;
         team.each(words_.end_of_level(level - 1), words_.end_of_level(level),
-                  [&](int i, bool works) { action(team, works ? words_.merge(i) : dca::BlockMerge{}, works); });
+                  [&](int i, bool works) { action(team, words_.merge(i), works); });
     }
     /// A number a warp, an item a lane.
     __device__ void take_segments() const {

@@ -28,6 +28,10 @@ struct Resting {
                                  Reader const& /*by*/) const {
         return {begin};
     }
+    template <class InverseLength>
+    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k, InverseLength const& /*inverse_length*/) const {
+        return body(Part{k}, 0);
+    }
     template <class Reader = ReadHere>
     CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i, Reader const& by = {}) const {
         return {leaf.body(loads, part.begin + i, by), restricted[part.begin + i]};
@@ -209,36 +213,48 @@ struct Evaluation {
                                  Reader const& by = {}) const {
         return bodies.part(begin, end, inverse_length, by);
     }
+    /// `factors`: as factorize(), if not always.
     template <class AnyPart, class Factors = dca::Factors>
     CATENA_HD_IN_PLACE Segment part(Run const& run, int p, AnyPart const& part, Factors const& factors = {}) const {
         std::int64_t const begin = begin_of(run, p);
-        return this->part(begin, static_cast<int>(end_of(run, p) - begin), part, Forgotten{}, factors);
-    }
-    /// `kept`: put(i, OneSided) of each of its joints, for the way down; of the first body's, which is not passed, z12 and its biases.
-    /// `factors`: as factorize(), if not always.
-    template <class AnyPart, class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment part(std::int64_t begin, int count, AnyPart const& part, Kept&& kept, Factors const& factors) const {
+        int const count = static_cast<int>(end_of(run, p) - begin);
         Lost found;
-        Segment segment = first_of(bodies.segment(bodies.body(part, 0), factors), kept);
+        Segment segment = bodies.segment(bodies.body(part, 0), factors);
         each_body<unrolled<K>>(1, count, [&](int i) {
             Body const body = bodies.body(part, i);
-            pass_up(segment, i, bodies.segment(body, factors), {begin + i, body.restricted}, kept, found, factors);
+            pass_up(segment, i, bodies.segment(body, factors), {begin + i, body.restricted}, Forgotten{}, found, factors);
         });
         if constexpr (Factors::may_fail)
-            if (!found.none()) return this->part(begin, count, part, kept, dca::Factors{});
+            if (!found.none()) return this->part(run, p, part);
         s.note(found);
         return segment;
     }
-    /// The same of `count` bodies whose segments `kept` has. `restricted(i)`: of their joints.
-    template <class Restricted, class Kept, class Factors>
-    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept,
-                                           Factors const& factors) const {
-        static_assert(!Factors::may_fail);
-        Lost found;
+    /// Of `count` bodies whose segments `kept` has: get<Segment>(i). It takes what the way down wants of their joints, put(i, OneSided): of
+    /// the first body's, which is not passed, z12 and its biases. `restricted(i)`: of their joints, 0 from `count` on.
+    template <class Restricted, class Kept>
+    CATENA_HD_IN_PLACE Segment join_bodies(std::int64_t begin, int count, Restricted const& restricted, Kept&& kept) const {
         Segment segment = first_of(kept.template get<Segment>(0), kept);
-        each_body<unrolled<K>>(
-            1, count, [&](int i) { pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, factors); });
+        Lost found;
+        each_body<unrolled<K>>(1, count, [&](int i) {
+            pass_up(segment, i, kept.template get<Segment>(i), {begin + i, restricted(i)}, kept, found, Factors{});
+        });
         s.note(found);
+        return segment;
+    }
+    /// The same without branches: missing bodies have zero() there and joints that are free. `factors` look after what is lost.
+    template <class Restricted, class Kept, class Factors>
+    CATENA_HD_IN_PLACE Segment join_bodies_at_once(int count, Restricted const& restricted, Kept&& kept, Factors const& factors) const {
+        Segment own[part_length];
+        CATENA_UNROLL
+        for (int i = 0; i < part_length; ++i) own[i] = kept.template get<Segment>(i);
+        Segment segment = first_of(own[0], kept);
+        CATENA_UNROLL
+        for (int i = 1; i < part_length; ++i) {
+            Directions const b1 = segment.bias.b1;
+            Lost found;
+            pass_up(segment, i, own[i], {0, restricted(i)}, kept, found, factors);
+            if (i >= count) segment.bias.b1 = b1;
+        }
         return segment;
     }
     CATENA_HD Segment joined(Segment const& inboard, Segment const& outboard, JointAt const& at) const {
@@ -258,6 +274,16 @@ struct Evaluation {
         s.note(found);
         return segment;
     }
+    /// The same by factors that look after what is lost. Beyond a free tip `outboard` may be zero() at a free joint: of the segment what
+    /// counts there, its inboard handle, stays as it was, but that the bias may be another zero.
+    template <class Factors>
+    CATENA_HD Segment joined_at_once(Segment const& inboard, Segment const& outboard, int restricted, Node& node,
+                                     Factors const& factors) const {
+        Lost found;
+        Segment segment = inboard;
+        append(segment, outboard, {0, restricted}, node.joint, node.offset, found, factors);
+        return segment;
+    }
     CATENA_HD void keep(std::int64_t k, Node const& node) const {
         s.joints.store(k, node.joint);
         s.offsets.store(k, node.offset);
@@ -272,10 +298,13 @@ struct Evaluation {
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
     }
     /// Of a whole chain whose tip is free, at its first joint: as close().
-    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating) const {
+    template <class Factors = dca::Factors>
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factors const& factors = {}) const {
         Lost found;
-        auto const factor = factorize(floating.matrix.z11, at.restricted);
+        auto const factor = factors(floating.matrix.z11, at.restricted);
         s.watch(at, factor, found);
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return first_force(at, floating);
         s.note(found);
         return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
     }
@@ -347,6 +376,25 @@ struct Evaluation {
             action(i, at_i, next);
             next = at_i;
         });
+    }
+    /// The same where `kept` has gain(i) of every joint but the first and takes offset(i), put_offset(i).
+    template <class Kept, class Action>
+    CATENA_HD_IN_PLACE void forces_by_gains(int count, Kept&& kept, Directions const& first, Directions next, Action const& action) const {
+        Passed const begins = kept.template get<Passed>(0);
+        Directions b2 = begins.bias.b2 + transposed_times(begins.outboard, first);
+        each_body<unrolled<K>>(1, count, [&](int i) { kept.put_offset(i, pass_bias(b2, kept.template get<Passed>(i))); });
+        each_body_back<unrolled<K>>(0, count, [&](int i) {
+            Directions const at_i = i > 0 ? force(Passage{kept.gain(i), kept.offset(i)}, next) : first;
+            action(i, at_i, next);
+            next = at_i;
+        });
+    }
+    /// What the forces at its joints do to body k, with what its segment needed as well.
+    template <class Turning>
+    CATENA_HD_IN_PLACE void accelerate_turned(std::int64_t k, Body const& body, Turning const& turning, Directions const& inboard,
+                                              Directions const& outboard) const {
+        bodies.accelerate(body, turning, inboard, outboard, out);
+        store_forces(s.leaf.group(), out, k, inboard, outboard);
     }
     /// What the forces at its joints do to body k.
     template <class Factors>

@@ -50,27 +50,39 @@ struct MovingBeads {
     LoadsView loads;
 
     /// Bodies from `begin` on, and the links between them and to their neighbours.
-    struct Part {
+    template <int most>
+    struct Neighbours {
         std::int64_t begin;
-        Link<double> link[part_length + 1];
-        Vec3 force[part_length];
-        double inverse_mass[part_length];
-        std::uint8_t restricted[part_length];
+        Link<double> link[most + 1];
+        Vec3 force[most];
+        double inverse_mass[most];
+        std::uint8_t restricted[most];
     };
-    /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
+    using Part = Neighbours<part_length>;
     template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
     CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {},
                                  Reader const& by = {}) const {
-        Part read;
+        return neighbours<part_length>(begin, end, inverse_length, by);
+    }
+    /// One alone.
+    template <class InverseLength>
+    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k, InverseLength const& inverse_length) const {
+        return body(neighbours<1>(k, k + 1, inverse_length, ReadHere{}), 0);
+    }
+    /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
+    template <int most, class InverseLength, class Reader>
+    CATENA_HD_IN_PLACE Neighbours<most> neighbours(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length,
+                                                   Reader const& by) const {
+        Neighbours<most> read;
         read.begin = begin;
         bool const starts = group.is_first[begin] != 0, goes_on = group.is_last[end - 1] == 0;
-        Vec3 position[part_length + 2], velocity[part_length + 2];
+        Vec3 position[most + 2], velocity[most + 2];
         CATENA_UNROLL
-        for (int i = 0; i < part_length + 2; ++i) {
+        for (int i = 0; i < most + 2; ++i) {
             std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;  // fields have a halo, and `restricted` more
             position[i] = by(configuration.position, k);
             velocity[i] = by(loads.velocity, k);
-            if (i == 0 || i > part_length) continue;
+            if (i == 0 || i > most) continue;
             read.inverse_mass[i - 1] = by(group.inverse_mass, k)[0];
             read.restricted[i - 1] = restricted[k];
             read.force[i - 1] = by.if_any(loads.force, k);
@@ -90,19 +102,20 @@ struct MovingBeads {
                                   : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
         }
         CATENA_UNROLL
-        for (int i = 1; i <= part_length; ++i) {
+        for (int i = 1; i <= most; ++i) {
             read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i], inverse_length);
             if (begin + i >= end && !goes_on) read.link[i] = Link<double>::none();
         }
         if constexpr (InverseLength::may_fail) {
             double sum = read.link[0].swing;
             CATENA_UNROLL
-            for (int i = 1; i <= part_length; ++i) sum = sum + read.link[i].swing;
-            if (sum != sum) return part(begin, end);
+            for (int i = 1; i <= most; ++i) sum = sum + read.link[i].swing;
+            if (sum != sum) return neighbours<most>(begin, end, dca::InverseLength{}, by);
         }
         return read;
     }
-    CATENA_HD_IN_PLACE Body<std::int64_t> body(Part const& part, int i) const {
+    template <int most>
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(Neighbours<most> const& part, int i) const {
         return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
     }
     template <class Factors>

@@ -6,6 +6,17 @@
 
 namespace catena::dca {
 
+/// One of two records of numbers, number by number: no branch.
+template <class T>
+CATENA_HD T either(bool first, T const& a, T const& b) {
+    constexpr int numbers = static_cast<int>(sizeof(T) / sizeof(double));
+    auto chosen = __builtin_bit_cast(Vector<double, numbers>, a);
+    auto const other = __builtin_bit_cast(Vector<double, numbers>, b);
+    CATENA_UNROLL
+    for (int n = 0; n < numbers; ++n) chosen[n] = first ? chosen[n] : other[n];
+    return __builtin_bit_cast(T, chosen);
+}
+
 enum class Order { by_body, plain };  // by_body: as fields; plain: these in turn
 
 /// So many records does a GPU have memory for that is to hold `count`: whole rows.

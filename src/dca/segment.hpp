@@ -202,22 +202,32 @@ struct OneSided {
     Matrix<Real, K, K> outboard;
     SegmentBias<Real, K> bias;
 };
-/// The rest of the elimination, once the force on the first body is known: `b2` of the segment so far becomes the joined segment's.
+/// How a joint's force follows from the next one's.
 template <class Real, int K>
-CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const& joint) {
-    Elimination<Real, K> e;
-    e.offset = solve_lower(joint.factor, b2 - joint.bias.b1);
+CATENA_HD Matrix<Real, K, K> gain(OneSided<Real, K> const& joint) {
+    Matrix<Real, K, K> g;
+    CATENA_UNROLL
+    for (int j = 0; j < K; ++j) g.set_column(j, solve_upper(joint.factor, joint.outboard.column(j)));
+    return g;
+}
+/// And its offset, once the force on the first body is known: `b2` of the segment so far becomes the joined segment's.
+template <class Real, int K>
+CATENA_HD Vector<Real, K> pass_bias(Vector<Real, K>& b2, OneSided<Real, K> const& joint) {
+    Vector<Real, K> const offset = solve_lower(joint.factor, b2 - joint.bias.b1);
     CATENA_UNROLL
     for (int i = 0; i < K; ++i) {
         Real b = joint.bias.b2[i];
         CATENA_UNROLL
-        for (int k = 0; k < K; ++k) b = fused(joint.factor(k, k) * e.offset[k], joint.outboard(k, i), b);
+        for (int k = 0; k < K; ++k) b = fused(joint.factor(k, k) * offset[k], joint.outboard(k, i), b);
         b2[i] = b;
     }
-    e.offset = solve_upper(joint.factor, e.offset);
-    CATENA_UNROLL
-    for (int j = 0; j < K; ++j) e.gain.set_column(j, solve_upper(joint.factor, joint.outboard.column(j)));
-    return e;
+    return solve_upper(joint.factor, offset);
+}
+/// Both.
+template <class Real, int K>
+CATENA_HD Elimination<Real, K> pass(Vector<Real, K>& b2, OneSided<Real, K> const& joint) {
+    Vector<Real, K> const offset = pass_bias(b2, joint);
+    return {gain(joint), offset};
 }
 /// One side of `append`: of the segment so far, on whose first body the force is known, only handle 2 counts (z22, and b2 with
 /// that force's part in it); they become the joined segment's.

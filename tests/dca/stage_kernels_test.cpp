@@ -220,9 +220,15 @@ TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
         expect_same(scene_of({chain}));
         EXPECT_FALSE(StageSpace::seen.blocks_of_short_chains.empty());
     };
-    ChainSpec light = random_bead_chain(1, 300, Base::fixed);
-    light.beads.mass[100] = -1e-3;  // no positive definite matrices there
-    expect_short(light);
+    for (std::size_t const beads : {300, 6000})
+        for (std::size_t const bead : {100, 127, 128, 256}) {  // in a part, and where warps meet
+            ChainSpec light = random_bead_chain(1, beads, Base::fixed);
+            light.beads.mass[bead] = -1e-3;  // no positive definite matrices there
+            expect_short(light);
+        }
+    ChainSpec falling = random_bead_chain(3, 301, Base::free);  // biases are zero, some of them less than that
+    falling.beads.velocity.assign(falling.beads.size(), {{-1, 0, 0}});
+    expect_short(falling);
     ChainSpec tiny = random_bead_chain(2, 300, Base::fixed);
     BeadArrays& b = tiny.beads;
     Vec3 const origin = b.position[100];

@@ -362,6 +362,15 @@ template <class T>
 T __shfl_sync(unsigned, T value, int lane, int line = __builtin_LINE()) {
     return static_cast<T>(catena::cuda_on_host::Block::of_lane(static_cast<double>(value), lane, line));
 }
+inline int __all_sync(unsigned, int says, int line = __builtin_LINE()) {
+    for (int apart = 16; apart > 0; apart /= 2) says &= __shfl_sync(0xffffffffu, says, static_cast<int>(threadIdx.x) ^ apart, line);
+    return says;
+}
+inline unsigned __ballot_sync(unsigned, int says, int line = __builtin_LINE()) {
+    unsigned ballot = (says ? 1U : 0U) << threadIdx.x % 32;
+    for (int apart = 1; apart < 32; apart *= 2) ballot |= __shfl_sync(0xffffffffu, ballot, static_cast<int>(threadIdx.x) ^ apart, line);
+    return ballot;
+}
 inline double __longlong_as_double(long long bits) { return std::bit_cast<double>(bits); }
 inline long long __double_as_longlong(double value) { return std::bit_cast<long long>(value); }
 namespace catena::cuda::kernels {

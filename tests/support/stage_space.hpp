@@ -112,7 +112,7 @@ class StageSpace : public HostSpace {
     }
     template <class Sweep>
     static bool turn_short(kernels::ShortChain const& chain, Sweep const& sweep) {
-        kernels::ShortGrid const grid = kernels::grid_of_short<Sweep>(chain);
+        kernels::ShortGrid const grid = kernels::grid_of_short<Sweep>(chain, kernels::most_blocks_of_short);
         if (grid.shared_bytes > cuda_on_host::most_shared_bytes) return false;
         seen.blocks_of_short_chains.insert(grid.blocks);
         cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks}, kernels::turn_short<Sweep>,
