@@ -53,8 +53,8 @@ class MergeTeam {
         double *inboard, *outboard, *joined, *node;
     };
     /// All lanes of a warp come to these. One whose team does not work is given places as well, where it reads and nothing more: those of
-    /// a team of the warp that works, or others that nobody writes meanwhile.
-    __device__ void join(Sweep const& sweep, dca::JointAt const& at, bool works, Places const& places) const {
+    /// a team of the warp that works, or others that nobody writes meanwhile. The lane of the biases is told the outboard segment's.
+    __device__ dca::SegmentBias<double, K> join(Sweep const& sweep, dca::JointAt const& at, bool works, Places const& places) const {
         bool sure = at.restricted == K;
         Triangle factor = dca::factorize(sum(places), K, QuickInverse{sure});
         Directions of_inboard, of_outboard, first, last;  // of the two and of what is joined: the lane's columns, or its biases
@@ -87,6 +87,7 @@ class MergeTeam {
         CATENA_UNROLL
         for (int n = 0; n < Triangle::size; ++n)
             if (works && own_ == lanes - 1) places.node[n] = factor.data[n];
+        return {beyond, last};
     }
     /// The force at the joint, to its place.
     __device__ void go_down(dca::BlockMerge const& m, bool works, Nodes const& nodes, Forces const& forces) const {

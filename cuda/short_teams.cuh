@@ -20,6 +20,7 @@ class ShortTeams {
     static constexpr int teams_of_warp = lanes_of_warp / Team::lanes;
     /// Places of what a lane joins: its i-th body's, and after all bodies' what it holds.
     static constexpr int of_parts = dca::part_length * lanes_of_warp, places = of_parts + lanes_of_warp;
+    static constexpr int idle = 0;  // one that nobody writes while warps join
     struct Ends {
         State first, next;
     };
@@ -155,6 +156,12 @@ class ShortTeams {
             for (int n = 0; n < numbers_of<T>; ++n) record[n] = values[n];
         }
     };
+    /// Two segments that a team joins, unless there is no second one: the joined one takes the place of the first, the node that of the other.
+    struct Pair {
+        double *inboard, *outboard;
+        dca::JointAt at;
+        bool works;
+    };
     /// Every part's bodies, by the teams of all warps that have bodies.
     __device__ void join_bodies() const {
         Team const team;
@@ -163,39 +170,38 @@ class ShortTeams {
             int const count = is_.bodies_of(part);
             double *const first = records_.record(part), *const joined = records_.record(place_of_part(part));
             if (count == 1) team.copy(first, joined);
+            auto const pair = [&](int i) {
+                int const place = place_of(part, i);
+                bool const works = i < count;
+                return Pair{i == 1 ? first : joined, records_.record(place), {is_.first_of(part) + i, works ? restricted_[place] : 0}, works};
+            };
+            Pair next = pair(1);
             CATENA_NO_UNROLL
             for (int i = 1; i < dca::part_length; ++i) {
-                int const place = place_of(part, i);
-                double* const own = records_.record(place);
-                bool const works = i < count;
-                auto const bias = Team::template record<Biases>(own + Team::at_b1);
-                team.join(sweep_, {is_.first_of(part) + i, works ? restricted_[place] : 0}, works, {i == 1 ? first : joined, own, joined, own});
+                Pair const now = next;
+                if (i + 1 < dca::part_length) next = pair(i + 1);
+                Biases const bias = team.join(sweep_, now.at, now.works, {now.inboard, now.outboard, joined, now.outboard});
                 __syncwarp();
-                if (works) team.put_bias(own + Kept::at_bias, bias);
+                if (now.works) team.put_bias(now.outboard + Kept::at_bias, bias);
             }
         }
     }
-    /// Two segments that a team joins, unless there is no second one: the joined one takes the place of the first, the node that of the other.
-    struct Pair {
-        double *inboard, *outboard;
-        dca::JointAt at;
-        bool works;
-    };
     /// In step `step` of the warp's, the i-th: parts of runs one after the other, then pairs.
     __device__ Pair of_lanes(int step, int i) const {
         int const level = step - steps_of_parts, apart = level < 0 ? step + 1 : dca::parts_of_run << level;
         int const inboard = level < 0 ? dca::parts_of_run * i : 2 * apart * i, outboard = inboard + apart;
-        if (outboard >= lanes_of_warp || is_.first_of(outboard) >= chain_.bodies) return no_pair();
-        return {records_.record(place_of_part(inboard)), records_.record(place_of_part(outboard)),
-                {is_.first_of(outboard), restricted_[place_of(outboard, 0)]}, true};
+        bool const works = outboard < lanes_of_warp && is_.first_of(outboard) < chain_.bodies;
+        int const there = works ? outboard : 0;
+        return {records_.record(works ? place_of_part(inboard) : idle), records_.record(works ? place_of_part(outboard) : idle),
+                {is_.first_of(there), restricted_[place_of(there, 0)]}, works};
     }
-    /// Where nobody writes while warps join.
-    __device__ Pair no_pair() const { return {records_.record(0), records_.record(0), {}, false}; }
     /// Of all warps, pairs.
     __device__ Pair of_warps(int level, int i) const {
         int const inboard = i << (level + 1), outboard = inboard + (1 << level);
-        if (outboard >= chain_.warps) return no_pair();
-        return {top_.record(inboard), top_.record(outboard), {outboard * bodies_of_warp, at_top_[outboard]}, true};
+        bool const works = outboard < chain_.warps;
+        int const there = works ? outboard : 0;
+        double* const nowhere = records_.record(idle);
+        return {works ? top_.record(inboard) : nowhere, works ? top_.record(outboard) : nowhere, {there * bodies_of_warp, at_top_[there]}, works};
     }
     /// pair(step, i) for i of [0, count(step)) by the warp's teams, step by step: each is looked for while the last ones join.
     template <class Count, class Of>

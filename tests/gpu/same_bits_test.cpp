@@ -35,7 +35,9 @@ class Gpu : public ::testing::Test {
         EXPECT_EQ(system.backend(), backend);
         system.evaluate();
         for (int i = 0; i < at_once; ++i) system.evaluate(false);
-        if (at_once > 1 && !system.absolute().empty()) system.absolute().front()->time_at_once(at_once, 1);
+        if (at_once > 1)
+            system.absolute().empty() ? system.joint().front()->time_at_once(at_once, 1)
+                                      : system.absolute().front()->time_at_once(at_once, 1);
         EXPECT_LE(system.residual(), system.residual_bound());
         return system.accelerations();
     }
