@@ -54,7 +54,7 @@ class ShortLanes {
           segments_(memory + 2),
           own_(segments_ + numbers_of<Segment> * chain.warps + is_.group * of_warp) {}
 
-    /// Of what no launch writes.
+    /// While the launch before may still go on: nothing is read here that a launch writes.
     __device__ void open() {
         if (threadIdx.x == 0) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();

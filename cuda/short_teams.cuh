@@ -46,7 +46,7 @@ class ShortTeams {
           ends_{gains_.origin + Gains::size(of_parts)},
           restricted_(reinterpret_cast<int*>(ends_.origin + PackedRecords<Ends>::size(lanes_of_warp))) {}
 
-    /// Of what no launch writes.
+    /// While the launch before may still go on: nothing is read here that a launch writes.
     __device__ void open() {
         if (threadIdx.x == 0) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
