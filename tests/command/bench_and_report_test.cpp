@@ -110,7 +110,9 @@ TEST(Bench, EvaluationsAreValidAndAsked) {
     Ended const joints = catena({"bench", "evaluation", "--sizes", "300", "--joints", "planar,revolute,mixed", "--loads", "torques",
                                  "--repeat", "1", "--backend", "segments", "--json", "-"});
     expect_good(joints);
-    for (Json const& row : joints.json().at("results")) {
+    Json const of_joints = joints.json();  // kept: a temporary would be gone before its first row is read
+    EXPECT_EQ(of_joints.at("results").size(), 3U);
+    for (Json const& row : of_joints.at("results")) {
         EXPECT_GT(row.at("microseconds").at("median").get<double>(), 0);
         EXPECT_TRUE(row.at("gigabytes_per_second").is_null());
         EXPECT_EQ(row.at("valid"), true);
