@@ -145,7 +145,9 @@ if build asan-ubsan; then
     # What takes half of the tests' time under them. Vectors' kernels have none, and shared chains run on 2 ranks.
     slow='stage_kernels|^(simd|dca_levels|command_same_bits|trajectory|force_ranks_mpi|openmm_runs).(ranks_[13-6]|two_stages|together)|force_ranks.Steps'
     slow+='|^(dca_levels|force_ranks_mpi|openmm_runs).ranks_2|^balance.ranks_[36]'
-    slow+='|force_ranks.Halo.Forces|Staggered.(Samples|IsStable)|Report.(Quick|TheStability)|AThousandRandom|ChainsOf2000|OnLinks.*/(openmp|serial)'
+    slow+='|force_ranks.Halo.Forces|Report.(Quick|TheStability)|AThousandRandom|ChainsOf2000|OnLinks.*/(openmp|serial|segments_full)'
+    slow+='|RandomChainsAgree.*/(serial_full|openmp_projected|segments_projected)'
+    slow+='|Staggered.(Samples|IsStable|IsOfSecondOrder)|HaveTheirOrder|ErrorsAreInProportion|Sampling.TheTemperatures'  # many steps of the same
     if [ $long = yes ]; then slow='ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
