@@ -1,4 +1,4 @@
-// What rank 0 does for all, and how its failure becomes everybody's.
+// What rank 0 or every rank does, and how a failure becomes everybody's.
 #pragma once
 
 #include <cstdint>
@@ -38,6 +38,34 @@ void on_first_rank(Communicator const& communicator, Action const& action) {
     text.resize(static_cast<std::size_t>(message[1]));
     communicator.broadcast(std::as_writable_bytes(std::span(text)));
     if (message[0] == 2) throw InputError(text);
+    throw SharedError(text);
+}
+
+/// Runs `action` on every rank. What it throws on one of them is thrown on all as SharedError, of several the last one's words.
+/// Precondition: where it throws on one, no other waits for that one within it. Collective.
+template <class Action>
+void on_every_rank(Communicator const& communicator, Action const& action) {
+    std::string text;
+    bool failed = false;
+    try {
+        action();
+    } catch (std::exception const& error) {
+        failed = true;
+        text = error.what();
+    }
+    int const rank = static_cast<int>(communicator.max(failed ? communicator.rank() : -1));
+    if (rank < 0) return;
+    auto const to_first = [&](std::span<std::byte> bytes) {
+        if (rank == 0 || bytes.empty()) return;
+        if (communicator.rank() == rank) communicator.exchange(bytes, 0, {}, -1);
+        if (communicator.rank() == 0) communicator.exchange({}, -1, bytes, rank);
+    };
+    auto length = static_cast<std::int64_t>(text.size());
+    to_first(std::as_writable_bytes(std::span(&length, 1)));
+    communicator.broadcast(std::as_writable_bytes(std::span(&length, 1)));
+    text.resize(static_cast<std::size_t>(length));
+    to_first(std::as_writable_bytes(std::span(text)));
+    communicator.broadcast(std::as_writable_bytes(std::span(text)));
     throw SharedError(text);
 }
 

@@ -70,7 +70,10 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
                                      counted(parallel.at("threads").get<std::int64_t>(), "thread", "threads")));
     text.entry("", reason);
     if (auto const shares = parallel.find("shares"); shares != parallel.end()) text.entry("shares", shares_text(parallel));
-    if (parallel.at("ranks").get<std::int64_t>() > 1) text.entry("frames written", parallel.at("frames_written").get<std::string>());
+    if (parallel.at("ranks").get<std::int64_t>() > 1) {
+        text.entry("frames written", parallel.at("frames_written").get<std::string>());
+        text.entry("checkpoints", parallel.at("checkpoints_written").get<std::string>());
+    }
     if (auto const forces = s.find("forces"); forces != s.end()) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));

@@ -13,6 +13,7 @@
 #include "integrate/absolute_dynamics.hpp"
 #include "integrate/joint_dynamics.hpp"
 #include "integrate/timeline.hpp"
+#include "io/array_part.hpp"
 
 namespace catena {
 
@@ -139,7 +140,9 @@ class ChainSystem {
     /// Accelerations of a joint group that an integrator carries from step to step belong to it.
     void add_rates(ChainGroup const&, JointRates const&, OwnState&) const;
     /// One of these to rank 0, in scene order, part by part as they come. Collective.
-    void pass_array(OwnArray const&, std::function<void(std::span<double const>)> const& take) const;
+    void pass_array(OwnArray const&, std::function<void(ArrayPart const&)> const& take) const;
+    /// The same without a message: every rank its own, in ascending order, in rounds, as many on every rank. Collective.
+    void pass_own_array(OwnArray const&, std::function<void(std::vector<ArrayPart> const&)> const& take) const;
     /// All of them at once, in scene order on rank 0; and back, on every rank.
     std::map<std::string, std::vector<double>> gathered(OwnState const&) const;
     std::map<std::string, std::vector<double>> state() const { return gathered(own_state()); }

@@ -297,9 +297,17 @@ void ChainSystem::add_rates(ChainGroup const& group, JointRates const& rates, Ow
     add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", own);
 }
 
-void ChainSystem::pass_array(OwnArray const& array, std::function<void(std::span<double const>)> const& take) const {
-    SceneWindows(communicator_, groups_).pass(array.width, array.of_group, [&](std::int64_t, std::span<double const> values) {
-        take(values);
+void ChainSystem::pass_array(OwnArray const& array, std::function<void(ArrayPart const&)> const& take) const {
+    SceneWindows(communicator_, groups_).pass(array.width, array.of_group, [&](std::int64_t first, std::span<double const> values) {
+        take({first * array.width, values});
+    });
+}
+
+void ChainSystem::pass_own_array(OwnArray const& array, std::function<void(std::vector<ArrayPart> const&)> const& take) const {
+    SceneWindows(communicator_, groups_).pass_own(array.width, array.of_group, [&](std::vector<SceneWindows::Own> const& round) {
+        std::vector<ArrayPart> parts;
+        for (SceneWindows::Own const& run : round) parts.push_back({run.first * array.width, run.values});
+        take(parts);
     });
 }
 
@@ -307,7 +315,7 @@ std::map<std::string, std::vector<double>> ChainSystem::gathered(OwnState const&
     std::map<std::string, std::vector<double>> arrays;
     for (auto const& [name, array] : own) {
         std::vector<double>& whole = arrays[name];
-        pass_array(array, [&](std::span<double const> values) { whole.insert(whole.end(), values.begin(), values.end()); });
+        pass_array(array, [&](ArrayPart const& part) { whole.insert(whole.end(), part.values.begin(), part.values.end()); });
     }
     return arrays;
 }

@@ -1,7 +1,6 @@
 #include "integrate/run_folder.hpp"
 
 #include <filesystem>
-#include <set>
 #include <utility>
 
 #include "error.hpp"
@@ -42,6 +41,7 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         if (!empty && !appends_ && !options.overwrite)
             throw InputError("the output folder exists", folder_,
                              "name another with --output" + go_on + ", or replace it with --overwrite");
+        for (char const* name : {"checkpoint.h5.writing", "checkpoint.previous.h5.writing"}) fs::remove(fs::path(folder_) / name, ignored);
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name, ignored);
         make_output_folder(folder_);
@@ -79,22 +79,7 @@ std::string RunFolder::way_back() const {
 }
 
 template <class Action>
-void RunFolder::on_disk(Action const& action) {
-    on_first_rank(communicator_, [&] {
-        try {
-            action();
-        } catch (ComputationError const& error) {
-            throw ComputationError(error.what() + way_back());
-        }
-    });
-}
-
-template <class Action>
-void RunFolder::with_frames(Action const& action) {
-    if (!frames_way_.collective) {
-        if (communicator_.rank() == 0) keeping_failure(action);
-        return;
-    }
+void RunFolder::telling_way_back(Action const& action) {
     try {
         action();
     } catch (SharedError const& error) {
@@ -102,6 +87,19 @@ void RunFolder::with_frames(Action const& action) {
     } catch (ComputationError const& error) {
         throw ComputationError(error.what() + way_back());
     }
+}
+
+template <class Action>
+void RunFolder::on_disk(Action const& action) {
+    on_first_rank(communicator_, [&] { telling_way_back(action); });
+}
+
+template <class Action>
+void RunFolder::with_frames(Action const& action) {
+    if (frames_way_.collective)
+        telling_way_back(action);
+    else if (communicator_.rank() == 0)
+        keeping_failure(action);
 }
 
 template <class Action>
@@ -150,32 +148,22 @@ void RunFolder::check() {
 }
 
 void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const& system, ChainSystem::OwnState const& own) {
-    std::unique_ptr<CheckpointWriter> writer;
-    auto const on_root = [&](auto const& action) {
-        if (communicator_.rank() == 0) keeping_failure(action);
-    };
     with_frames([&] { trajectory_->flush(); });  // a restart finds every frame up to the checkpoint's step
-    on_root([&] {
-        observables_->flush();
-        writer = std::make_unique<CheckpointWriter>(path("checkpoint.h5"), checkpoint);
-    });
-    std::set<std::string> names;
-    for (auto const& [name, values] : checkpoint.arrays) names.insert(name);
-    for (auto const& [name, array] : own) names.insert(name);
-    for (std::string const& name : names) {
-        auto const small = checkpoint.arrays.find(name);
-        if (small != checkpoint.arrays.end()) {
-            on_root([&] { writer->begin_array(name, std::ssize(small->second)); });
-            on_root([&] { writer->put(small->second); });
-            continue;
-        }
-        ChainSystem::OwnArray const& array = own.at(name);
-        on_root([&] { writer->begin_array(name, scene_.bodies() * array.width); });
-        system.pass_array(array, [&](std::span<double const> values) { keeping_failure([&] { writer->put(values); }); });
-    }
     on_disk([&] {
         throw_kept();
-        writer->finish();
+        observables_->flush();
+    });
+    std::map<std::string, std::int64_t> sizes;
+    for (auto const& [name, array] : own) sizes[name] = scene_.bodies() * array.width;
+    telling_way_back([&] {
+        CheckpointWriter writer(communicator_, path("checkpoint.h5"), checkpoint, sizes);
+        checkpoints_way_ = writer.way();
+        for (auto const& [name, array] : own)
+            if (checkpoints_way_.collective)
+                system.pass_own_array(array, [&](std::vector<ArrayPart> const& parts) { writer.put(name, parts); });
+            else
+                system.pass_array(array, [&](ArrayPart const& part) { writer.put(name, std::span(&part, 1)); });
+        writer.finish();
     });
 }
 

@@ -1,5 +1,5 @@
-// The folder a run writes, on rank 0; frames may be all ranks' together. What fails there (a full disk) ends all ranks in good order: every
-// call is collective.
+// The folder a run writes, on rank 0; frames and checkpoints may be all ranks' together. What fails there (a full disk) ends all ranks in
+// good order: every call is collective.
 #pragma once
 
 #include <exception>
@@ -38,6 +38,8 @@ class RunFolder {
     void check();
     /// With the arrays of bodies that ranks have of the system.
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
+    /// How the last one was written.
+    FileWay const& checkpoints_way() const { return checkpoints_way_; }
     /// Closes the tables, writes summary, timeline and report.
     void finish(std::string const& summary, std::string const& timeline);
 
@@ -47,7 +49,10 @@ class RunFolder {
   private:
     /// What a restart can begin with; empty: nothing.
     std::string newest_checkpoint() const;
-    /// By rank 0; a ComputationError of its tells the way back as well.
+    /// A ComputationError of the action's tells the way back as well.
+    template <class Action>
+    void telling_way_back(Action const& action);
+    /// The same by rank 0, for all.
     template <class Action>
     void on_disk(Action const& action);
     /// By whoever writes frames.
@@ -65,7 +70,7 @@ class RunFolder {
     std::int64_t first_step_;
     std::string folder_;
     std::unique_ptr<TopologyWriter> topology_;
-    FileWay frames_way_;
+    FileWay frames_way_, checkpoints_way_;
     std::unique_ptr<TrajectoryWriter> trajectory_;
     std::unique_ptr<ObservablesWriter> observables_;
     std::vector<std::string> topology_files_;

@@ -348,7 +348,7 @@ class Run {
                          {"gathers", communicator_.gather_way().text()},
                          {"frames_written", folder_->frames_way().text},
                          {"frames_beside_steps", frames_beside_},
-                         {"checkpoints_written", "by the root"},
+                         {"checkpoints_written", folder_->checkpoints_way().text},
                          {"message_rounds_per_step", steps > 0 ? static_cast<double>(rounds_) / steps : 0.0}};
         if (!shares_.empty()) s["parallel"].update(json_of_shares());
         std::int64_t const differ = communicator_.sum(counted_ == predicted_ ? 0 : 1);

@@ -1,6 +1,6 @@
 // All ranks by parallel HDF5. A write that fails on one rank leaves the others waiting within HDF5, and at times that rank as well: MPI
 // tells of it before HDF5 does, and there the program ends. So the failure to be expected, a full disk, is looked for before: rank 0 takes
-// the room for a frame from the system before anybody writes, and all ranks end in good order.
+// the room for a frame or a checkpoint from the system before anybody writes, and all ranks end in good order.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -12,6 +12,7 @@
 #include <cstring>
 #include <string_view>
 #include <thread>
+#include <vector>
 
 #include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
@@ -28,24 +29,30 @@ bool is_quiet_about_failures() {
     return !word.starts_with("romio") && !(word.starts_with("^") && word.find("ompio") != word.npos);
 }
 
-/// Whose failure ends the program: the one file that is open.
+/// Files whose failure ends the program, while they are open.
 struct Watched {
-    Communicator const* communicator = nullptr;
+    MPI_File file;
+    Communicator const* communicator;
     std::string what;
 };
-Watched& watched() {
-    static Watched one;
-    return one;
+std::vector<Watched>& watched() {
+    static std::vector<Watched> all;
+    return all;
 }
 
 /// Rank 0 has the first word, and the others are ended before they would have theirs, on a busy machine too.
-void end_all(MPI_File*, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's signature
+void end_all(MPI_File* file, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's signature
     char text[MPI_MAX_ERROR_STRING] = "";
     int length = 0;
     MPI_Error_string(*code, text, &length);
-    if (watched().communicator->rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(10));
-    std::fprintf(stderr, "catena: %s: %s\n", watched().what.c_str(), text);
-    watched().communicator->abort(1);
+    auto const failed = std::find_if(watched().rbegin(), watched().rend(), [&](Watched const& one) { return one.file == *file; });
+    if (failed == watched().rend()) {
+        std::fprintf(stderr, "catena: cannot write a file: %s\n", text);
+        MPI_Abort(MPI_COMM_WORLD, 1);
+    }
+    if (failed->communicator->rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(10));
+    std::fprintf(stderr, "catena: %s: %s\n", failed->what.c_str(), text);
+    failed->communicator->abort(1);
 }
 
 class AllWriters final : public Writers {
@@ -53,6 +60,11 @@ class AllWriters final : public Writers {
     explicit AllWriters(Communicator const& communicator) : communicator_(communicator), transfer_(H5Pcreate(H5P_DATASET_XFER)) {
         if (!transfer_ || H5Pset_dxpl_mpio(transfer_.get(), H5FD_MPIO_COLLECTIVE) < 0)
             throw ComputationError("cannot write together: " + cause());
+    }
+    AllWriters(AllWriters const&) = delete;
+    AllWriters& operator=(AllWriters const&) = delete;
+    ~AllWriters() override {
+        if (opened_ != MPI_FILE_NULL) std::erase_if(watched(), [&](Watched const& one) { return one.file == opened_; });
     }
     bool are_several() const override { return true; }
     bool is_first() const override { return communicator_.rank() == 0; }
@@ -63,10 +75,11 @@ class AllWriters final : public Writers {
     void watch(File const& handle, std::string const& file, std::string const& doing) override {
         void* opened = nullptr;
         check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &opened), file, doing);
-        watched() = {&communicator_, "cannot " + doing + " (" + file + ")"};
+        opened_ = *static_cast<MPI_File const*>(opened);
+        watched().push_back({opened_, &communicator_, "cannot " + doing + " (" + file + ")"});
         MPI_Errhandler handler = MPI_ERRHANDLER_NULL;
         check_mpi(MPI_File_create_errhandler(end_all, &handler), "MPI_File_create_errhandler");
-        check_mpi(MPI_File_set_errhandler(*static_cast<MPI_File const*>(opened), handler), "MPI_File_set_errhandler");
+        check_mpi(MPI_File_set_errhandler(opened_, handler), "MPI_File_set_errhandler");
         check_mpi(MPI_Errhandler_free(&handler), "MPI_Errhandler_free");
     }
     hid_t transfer() const override { return transfer_.get(); }
@@ -84,22 +97,22 @@ class AllWriters final : public Writers {
 
   private:
     void reserve(std::string const& file, std::string const& doing) {
-        int const descriptor = ::open(file.c_str(), O_RDWR | O_CLOEXEC);
-        if (descriptor < 0) throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(errno));
+        struct Open {
+            int descriptor;
+            ~Open() { ::close(descriptor); }
+        } const opened{::open(file.c_str(), O_RDWR | O_CLOEXEC)};
+        if (opened.descriptor < 0) throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(errno));
         // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left it.
-        if (reserved_ == 0) reserved_ = first_ = ::lseek(descriptor, 0, SEEK_END);
+        if (reserved_ == 0) reserved_ = first_ = ::lseek(opened.descriptor, 0, SEEK_END);
         off_t const wanted = first_ + grown_ + grown_ / 64 + (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
-        int error = 0;
-        do error = wanted <= reserved_ || fallocate(descriptor, FALLOC_FL_KEEP_SIZE, reserved_, wanted - reserved_) == 0 ? 0 : errno;
-        while (error == EINTR);
-        ::close(descriptor);
-        if (error == ENOSPC || error == EDQUOT || error == EFBIG)
-            throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(error));
-        reserved_ = std::max(reserved_, wanted);  // or a file system that cannot: there the writes tell
+        if (wanted <= reserved_) return;
+        take_from_system(opened.descriptor, reserved_, wanted - reserved_, file, doing);
+        reserved_ = wanted;
     }
 
     Communicator const& communicator_;
     Properties transfer_;
+    MPI_File opened_ = MPI_FILE_NULL;
     off_t first_ = 0, grown_ = 0, reserved_ = 0;  // bytes: at first, of frames since, taken from the system
 };
 

@@ -60,16 +60,30 @@ std::string why_by_the_root(Communicator const& communicator, std::string const&
 
 }  // namespace
 
-FileWay choose_file_way(Communicator const& communicator, FileWish wish, std::string const& file, std::int64_t bytes) {
+FileWay by_the_root(std::string const& why) { return {false, "by the root: " + why, why}; }
+
+FileWay choose_file_way(Communicator const& communicator, FileWish wish, std::string const& file, std::int64_t bytes,
+                        std::string const& what) {
     if (communicator.size() == 1) return {};
-    if (wish == FileWish::root) return {false, "by the root: CATENA_HDF5 says so"};
+    if (wish == FileWish::root) return by_the_root("CATENA_HDF5 says so");
     communicator.broadcast(std::as_writable_bytes(std::span(&bytes, 1)));
-    if (wish == FileWish::best && bytes < worth_it) return {false, "by the root: frames are small"};
+    if (wish == FileWish::best && bytes < worth_it) return by_the_root(what + " are small");
     std::string const why = why_by_the_root(communicator, file);
-    if (why.empty()) return {true, "collective, " + std::to_string(communicator.size()) + " ranks"};
-    if (wish == FileWish::collective)
-        throw InputError("ranks cannot write together, " + why, file, "leave CATENA_HDF5=collective out: the root writes");
-    return {false, "by the root: " + why};
+    return why.empty() ? FileWay{true, "collective, " + std::to_string(communicator.size()) + " ranks"} : by_the_root(why);
+}
+
+std::string why_not_together(Communicator const& communicator, std::initializer_list<std::function<void()>> steps) {
+    try {
+        for (auto const& step : steps) on_every_rank(communicator, step);
+    } catch (SharedError const& error) {
+        return error.what();
+    }
+    return "";
+}
+
+void require_wished(FileWish wish, FileWay const& way, std::string const& file) {
+    if (wish == FileWish::collective && !way.why_not.empty())
+        throw InputError("ranks cannot write together, " + way.why_not, file, "leave CATENA_HDF5=collective out: the root writes");
 }
 
 }  // namespace catena

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <string>
 
 #include "mpi/communicator.hpp"
@@ -18,9 +20,15 @@ FileWish file_wish_of_run(Communicator const&);
 struct FileWay {
     bool collective = false;
     std::string text = "by the root";  // with the reason where several ranks might have; else "collective, 3 ranks"
+    std::string why_not = {};
 };
-/// For `file`, which the root has made, and frames of so many bytes (the root knows): small ones are sooner written by one. InputError
-/// where what is wished for cannot be. Collective.
-FileWay choose_file_way(Communicator const&, FileWish, std::string const& file, std::int64_t bytes);
+FileWay by_the_root(std::string const& why);
+/// For `file`, which the root has made, and so many bytes of `what` at once (the root knows): few are sooner written by one. Collective.
+FileWay choose_file_way(Communicator const&, FileWish, std::string const& file, std::int64_t bytes, std::string const& what);
+/// Has every rank do what brings it to a collective way, in steps: none begins before the one before has succeeded on all. Empty; or why
+/// some rank cannot. Collective.
+std::string why_not_together(Communicator const&, std::initializer_list<std::function<void()>> steps);
+/// InputError where collective writing was wished for and is not what became of it.
+void require_wished(FileWish, FileWay const&, std::string const& file);
 
 }  // namespace catena

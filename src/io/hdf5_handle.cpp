@@ -50,22 +50,35 @@ std::string cause() {
 
 void fail(std::string const& file, std::string const& doing) { throw ComputationError("cannot " + doing + " (" + file + "): " + cause()); }
 
+void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes, std::string const& file, std::string const& doing) {
+    int error = 0;
+    do error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;
+    while (error == EINTR);
+    if (error == ENOSPC || error == EDQUOT || error == EFBIG)
+        throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(error));
+}
+
 namespace {
 int descriptor_of(File const& handle, std::string const& file, std::string const& doing) {
     void* descriptor = nullptr;
     check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &descriptor), file, doing);
     return *static_cast<int const*>(descriptor);
 }
+std::int64_t size_of(File const& handle, std::string const& file, std::string const& doing) {
+    hsize_t size = 0;
+    check(H5Fget_filesize(handle.get(), &size), file, doing);
+    return static_cast<std::int64_t>(size);
+}
 }  // namespace
 
 void make_room(File const& handle, hsize_t more, std::string const& file, std::string const& doing) {
-    hsize_t size = 0;
-    check(H5Fget_filesize(handle.get(), &size), file, doing);
-    auto const written = static_cast<off_t>(size + more);
-    off_t const not_placed_yet = std::min<off_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
-    int const descriptor = descriptor_of(handle, file, doing);
-    if (fallocate(descriptor, FALLOC_FL_KEEP_SIZE, 0, written + not_placed_yet) != 0 && errno == ENOSPC)
-        throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(ENOSPC));
+    std::int64_t const written = size_of(handle, file, doing) + static_cast<std::int64_t>(more);
+    std::int64_t const not_placed_yet = std::min<std::int64_t>(8 << 20, written / 4 + (16 << 10));  // chunks in HDF5's caches
+    take_from_system(descriptor_of(handle, file, doing), 0, written + not_placed_yet, file, doing);
+}
+
+void take_room(File const& handle, std::string const& file, std::string const& doing) {
+    take_from_system(descriptor_of(handle, file, doing), 0, size_of(handle, file, doing), file, doing);
 }
 
 void flush_to_disk(File const& handle, std::string const& file, std::string const& doing) {

@@ -72,8 +72,12 @@ Status check(Status status, std::string const& file, std::string const& doing) {
     return status;
 }
 
+/// Takes these bytes of a file from the system before anybody writes them. Where the file system cannot, a full disk shows at the writes.
+void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes, std::string const& file, std::string const& doing);
 /// On the disk for all that a flush writes and `more` bytes: a full one is found before anything in the file is overwritten.
 void make_room(File const&, hsize_t more, std::string const& file, std::string const& doing);
+/// On the disk for all that has its place in the file.
+void take_room(File const&, std::string const& file, std::string const& doing);
 /// Everything written so far reaches the disk: H5Fflush, then fsync.
 void flush_to_disk(File const&, std::string const& file, std::string const& doing);
 /// For a file in which something could not be written: as its last flush left it, whatever HDF5 still does to it.

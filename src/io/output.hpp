@@ -1,6 +1,6 @@
-// The files of a run. Rank 0 writes them, handed what belongs to bodies in parts as they come from the ranks; a trajectory can be all
-// ranks' together. Every writer checks each write, flush
-// and close and throws ComputationError naming file and cause (a full disk included); bad existing files give InputError.
+// The files of a run. Rank 0 writes them, handed what belongs to bodies in parts as they come from the ranks; trajectories and checkpoints
+// can be all ranks' together. Every writer checks each write, flush and close and throws ComputationError naming file and cause (a full
+// disk included); bad existing files give InputError.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "dca/executor.hpp"
 #include "dca/linear.hpp"
 #include "dca/rotation.hpp"
+#include "io/array_part.hpp"
 #include "io/file_way.hpp"
 
 namespace catena {
@@ -110,16 +111,18 @@ struct Checkpoint {
     std::map<std::string, std::vector<double>> arrays;
 };
 /// Writes to a temporary name, fsyncs, reopens and verifies a checksum, then renames; the checkpoint before is kept as
-/// `<name>.previous.h5`.
+/// `<name>.previous.h5`. Large arrays are written and verified by all ranks together where that can be (CATENA_HDF5), else by rank 0.
 class CheckpointWriter {
   public:
-    /// Writes all but the arrays.
-    CheckpointWriter(std::string const& file, Checkpoint const&);
+    /// Writes all but the arrays `later`, of so many numbers. The checkpoint is rank 0's. Collective.
+    CheckpointWriter(Communicator const&, std::string const& file, Checkpoint const&, std::map<std::string, std::int64_t> const& later);
+    /// Not finished, it leaves the checkpoint before and nothing else.
     ~CheckpointWriter();
-    /// The next array, in the order of their names, and its numbers as they come.
-    void begin_array(std::string const& name, std::int64_t size);
-    void put(std::span<double const> values);
-    /// Without it nothing is left.
+    FileWay const& way() const;
+    /// Of one of `later`, parts in ascending order: of every rank its own, at the same time, where the way is collective; else by rank 0
+    /// alone, which keeps what fails there for finish().
+    void put(std::string const& array, std::span<ArrayPart const> parts);
+    /// Collective.
     void finish();
 
   private:

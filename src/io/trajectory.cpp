@@ -280,12 +280,9 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
         bytes = writer->standing().contents.bytes_of_frame();
     });
     FileWish const wish = file_wish_of_run(communicator);
-    FileWay way = choose_file_way(communicator, wish, file, bytes);
-    if (way.collective && communicator.sum(fits ? 1 : 0) == 0) {
-        if (wish == FileWish::collective)
-            throw InputError("ranks cannot write together, an earlier version began the file", file, "leave CATENA_HDF5=collective out");
-        way = {false, "by the root: an earlier version began the file"};
-    }
+    FileWay way = choose_file_way(communicator, wish, file, bytes, "frames");
+    if (way.collective && communicator.sum(fits ? 1 : 0) == 0) way = by_the_root("an earlier version began the file");
+    require_wished(wish, way, file);
     if (!way.collective) return {std::move(writer), way};
     Standing standing;
     on_first_rank(communicator, [&] {
@@ -293,20 +290,16 @@ TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string 
         writer->close();
     });
     communicator.broadcast(std::as_writable_bytes(std::span(&standing, 1)));
-    std::string why;
-    try {
-        writer = std::make_unique<H5mdWriter>(file, standing, all_writers(communicator));
-    } catch (std::exception const& error) {  // whatever it is, the others wait for this rank's word
-        why = error.what();
-    }
-    if (communicator.sum(why.empty() ? 0 : 1) == 0) return {std::move(writer), way};
+    std::unique_ptr<Writers> all;
+    std::string const why = why_not_together(
+        communicator,
+        {[&] { all = all_writers(communicator); }, [&] { writer = std::make_unique<H5mdWriter>(file, standing, std::move(all)); }});
+    if (why.empty()) return {std::move(writer), way};
     writer.reset();
-    on_first_rank(communicator, [&] {
-        if (why.empty()) why = "some ranks cannot";
-        if (wish == FileWish::collective) throw InputError("ranks cannot write together, " + why, file, "leave CATENA_HDF5=collective out");
-        writer = std::make_unique<H5mdWriter>(file, standing, one_writer());
-    });
-    return {std::move(writer), {false, "by the root: " + why}};
+    way = by_the_root(why);
+    require_wished(wish, way, file);
+    on_first_rank(communicator, [&] { writer = std::make_unique<H5mdWriter>(file, standing, one_writer()); });
+    return {std::move(writer), way};
 }
 
 }  // namespace catena

@@ -7,28 +7,15 @@
 
 #include "dataset_bits.hpp"
 #include "error.hpp"
-#include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
+#include "ranks_that_write.hpp"
 #include "sample_frames.hpp"
 #include "small_disk.hpp"
-#include "tests/mpi/world.hpp"
 
 namespace catena::test {
 namespace {
 
 using catena::testing::world;
-
-/// Rank 0's word on all ranks.
-std::string of_root(std::string text) {
-    text.resize(300, ' ');
-    world().broadcast(std::as_writable_bytes(std::span(text)));
-    return text.substr(0, text.find(' '));
-}
-
-bool can_write_together() { return world().size() > 1 && world().sum(hdf5::why_not_by_all(world()).empty() ? 1 : 0) == world().size(); }
-
-#define NEEDS_PARALLEL_HDF5 \
-    if (!can_write_together()) GTEST_SKIP() << "NOT RUN: one rank, or " << hdf5::why_not_by_all(world())
 
 std::size_t frames_in(std::string const& file) { return bits_of(file).at("catena/joint_force/step").size() / 8; }
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "mpi/cores.hpp"
+#include "mpi/first_rank.hpp"
 #include "mpi/launcher.hpp"
 #include "tests/mpi/connection.hpp"
 #include "tests/mpi/world.hpp"
@@ -283,6 +284,28 @@ TEST(FirstRank, ItsVariablesAreEverybodys) {
     EXPECT_EQ(variable_of_first_rank(world(), "CATENA_TEST_VARIABLE"), "first");
     ASSERT_EQ(unsetenv("CATENA_TEST_VARIABLE"), 0);
     EXPECT_EQ(variable_of_first_rank(world(), "CATENA_TEST_VARIABLE"), "");
+}
+
+/// Each set of ranks that fail; words of any length come from the last of them.
+TEST(EveryRank, AFailureOfAnyIsEverybodysWithItsWords) {
+    auto const words = [](int rank) { return std::string(static_cast<std::size_t>(7 * rank % 3 * 100), static_cast<char>('a' + rank)); };
+    int const ranks = std::min(world().size(), 4);
+    for (int failing = 0; failing < 1 << ranks; ++failing) {
+        int calls = 0;
+        std::string thrown = "nothing";
+        try {
+            on_every_rank(world(), [&] {
+                ++calls;
+                if ((failing >> world().rank() & 1) != 0) throw std::runtime_error(words(world().rank()));
+            });
+        } catch (SharedError const& error) {
+            thrown = error.what();
+        }
+        int last = ranks - 1;
+        while (last >= 0 && (failing >> last & 1) == 0) --last;
+        EXPECT_EQ(thrown, last < 0 ? "nothing" : words(last)) << failing;
+        EXPECT_EQ(calls, 1);
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Connections, CommunicatorTest,

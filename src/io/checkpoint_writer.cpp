@@ -1,0 +1,226 @@
+#include <unistd.h>
+
+#include <exception>
+#include <filesystem>
+#include <utility>
+
+#include "error.hpp"
+#include "io/checkpoint_file.hpp"
+#include "io/checksum.hpp"
+#include "io/output_file.hpp"
+#include "io/seal.hpp"
+#include "io/writers.hpp"
+#include "mpi/first_rank.hpp"
+
+namespace catena {
+namespace {
+
+using namespace hdf5;
+
+std::string const& writing = writing_checkpoint;
+
+/// The file of this name stays; `previous` becomes another name of it, so that no moment is without a checkpoint.
+void keep_previous(std::string const& file) {
+    std::string const previous = previous_checkpoint(file), spare = previous + ".writing";
+    ::unlink(spare.c_str());
+    if (!std::filesystem::exists(file)) return;
+    // A run that ended between the two renames left both names to one file.
+    if (std::filesystem::exists(previous) && std::filesystem::equivalent(file, previous)) return;
+    if (::link(file.c_str(), spare.c_str()) == 0) return rename_file(spare, previous);
+    rename_file(file, previous);  // a file system without hard links
+}
+
+/// Over all ranks, whole: in halves, which do not run over.
+std::uint64_t sum_over(Communicator const& communicator, std::uint64_t value) {
+    auto const low = static_cast<std::uint64_t>(communicator.sum(static_cast<std::int64_t>(value & 0xffffffffU)));
+    auto const high = static_cast<std::uint64_t>(communicator.sum(static_cast<std::int64_t>(value >> 32)));
+    return low + (high << 32);
+}
+
+std::int64_t bytes_of(ArraySizes const& sizes) {
+    std::int64_t bytes = 0;
+    for (auto const& [name, size] : sizes) bytes += size * static_cast<std::int64_t>(sizeof(double));
+    return bytes;
+}
+
+}  // namespace
+
+/// `name` is written; messages name `file`.
+struct CheckpointWriter::Draft {
+    Communicator const& communicator;
+    std::string file, name;
+    Checkpoint head;          // without arrays
+    ArraySizes later, sizes;  // of arrays that put() brings, and of all
+    std::uint64_t of_values;  // of those that are this rank's
+    FileWay way{};
+    std::unique_ptr<Writers> writers{};  // null on ranks that leave it to the root
+    File handle{};
+    std::map<std::string, Dataset> data{};
+    std::exception_ptr failure{};  // of the root's, which writes alone
+    bool is_finished = false;
+
+    ~Draft() {
+        if (way.collective) leave_open();
+        if (!is_finished && is_first()) ::unlink(name.c_str());
+    }
+    bool is_first() const { return communicator.rank() == 0; }
+
+    void open(std::unique_ptr<Writers> by) {
+        writers = std::move(by);
+        Properties const access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
+        writers->prepare(access, file, writing);
+        handle = File(check(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.get()), file, writing));
+        writers->watch(handle, file, writing);
+    }
+    void open_arrays() {
+        for (auto const& [array, size] : later) data[array] = open_array({handle.get(), file, writing}, array);
+    }
+    /// Others may not know that this rank ends here: then nothing is closed together.
+    void leave_open() {
+        for (auto& [array, dataset] : data) dataset.release();
+        data.clear();
+        handle.release();
+    }
+    void put(std::string const& array, std::span<ArrayPart const> parts) {
+        Dataset const& dataset = data.at(array);
+        Space const in_file(check(H5Dget_space(dataset.get()), file, writing));
+        check(H5Sselect_none(in_file.get()), file, writing);
+        std::vector<double> joined;
+        hsize_t numbers = 0;
+        for (ArrayPart const& part : parts) {
+            if (part.values.empty()) continue;
+            hsize_t const first = static_cast<hsize_t>(part.first), count = part.values.size();
+            check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_OR, &first, nullptr, &count, nullptr), file, writing);
+            if (parts.size() > 1) joined.insert(joined.end(), part.values.begin(), part.values.end());
+            of_values += checksum_of_values(array, part.first, part.values);
+            numbers += count;
+        }
+        Space const in_memory(check(H5Screate_simple(1, &numbers, nullptr), file, writing));
+        double const* const values = parts.size() == 1 ? parts[0].values.data() : joined.data();
+        check(H5Dwrite(dataset.get(), H5T_NATIVE_DOUBLE, in_memory.get(), in_file.get(), writers->transfer(), values), file, writing);
+    }
+    void close() {
+        for (auto& [array, dataset] : data) check(dataset.close(), file, writing);
+        if (way.collective)
+            writers->flush_to_disk(handle, file, writing);
+        else
+            check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, writing);  // it reaches the disk with the checksum
+        check(handle.close(), file, writing);
+    }
+    /// look(reader) on ranks that have the file, of their shares; `apart`: not of what they had at 0.
+    template <class Look>
+    void share(int apart, Look const& look) const {
+        on_every_rank(communicator, [&] {
+            if (way.collective)
+                look(Reader{(communicator.rank() + apart) % communicator.size(), communicator.size()});
+            else if (is_first())
+                look(Reader{});
+        });
+    }
+    Sealed sum_of_pieces(int apart) const {
+        Sealed own;
+        share(apart, [&](Reader reader) { own = sum_pieces(name, reader.number, reader.of, file, writing); });
+        return {communicator.sum(own.bytes), sum_over(communicator, own.checksum)};
+    }
+    void seal() const {
+        Sealed const sealed = sum_of_pieces(0);
+        on_first_rank(communicator, [&] { put_seal(name, sealed, file, writing); });
+        if (!way.collective) return;
+        Sealed const again = sum_of_pieces(1);  // a host that saw what another one had not written yet
+        on_first_rank(communicator, [&] {
+            if (again != sealed) refuse("ranks do not see the same file");
+        });
+    }
+    void require_that_it_reads_back() const {
+        CheckpointRead read;
+        share(1, [&](Reader reader) {
+            try {
+                File const back(check(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name, reading_checkpoint));
+                read = read_checkpoint_file({back.get(), name, reading_checkpoint}, Arrays::only_check, reader);
+            } catch (std::exception const& error) {
+                refuse(error.what());
+            }
+        });
+        std::uint64_t const all = sum_over(communicator, read.of_values);
+        on_first_rank(communicator, [&] {
+            if (read.checksum != checksum_of(read.contents, read.sizes, all)) refuse("its checksum does not fit its contents");
+        });
+    }
+    [[noreturn]] void refuse(std::string const& why) const {
+        throw ComputationError("cannot write the checkpoint (" + file + "): it does not read back, " + why);
+    }
+};
+
+CheckpointWriter::CheckpointWriter(Communicator const& communicator, std::string const& file, Checkpoint const& checkpoint,
+                                   std::map<std::string, std::int64_t> const& later) {
+    Quiet const quiet;
+    Checkpoint head{checkpoint.step, checkpoint.time, checkpoint.scene_hash, checkpoint.notes, checkpoint.integers, {}};
+    ArraySizes sizes = later;
+    std::uint64_t of_values = 0;
+    for (auto const& [name, values] : checkpoint.arrays) {
+        sizes[name] = std::ssize(values);
+        if (communicator.rank() == 0) of_values += checksum_of_values(name, 0, values);
+    }
+    draft_.reset(new Draft{communicator, file, file + ".writing", std::move(head), later, std::move(sizes), of_values});
+    Draft& draft = *draft_;
+    on_first_rank(communicator, [&] { make_checkpoint_file(draft.name, file, checkpoint, later); });
+    draft.way = choose_file_way(communicator, file_wish_of_run(communicator), draft.name, bytes_of(later), "arrays");
+    if (draft.way.collective) {
+        std::unique_ptr<Writers> all;
+        std::string const why = why_not_together(
+            communicator, {[&] { all = all_writers(communicator); }, [&] { draft.open(std::move(all)); }, [&] { draft.open_arrays(); }});
+        if (why.empty()) return;
+        draft.leave_open();
+        draft.writers.reset();
+        draft.way = by_the_root(why);
+    }
+    on_first_rank(communicator, [&] {
+        draft.open(one_writer());
+        draft.open_arrays();
+    });
+}
+
+CheckpointWriter::~CheckpointWriter() {
+    Quiet const quiet;
+    draft_.reset();
+}
+
+FileWay const& CheckpointWriter::way() const { return draft_->way; }
+
+void CheckpointWriter::put(std::string const& array, std::span<ArrayPart const> parts) {
+    if (draft_->failure) return;
+    Quiet const quiet;
+    try {
+        draft_->put(array, parts);
+    } catch (...) {
+        if (draft_->way.collective) throw;
+        draft_->failure = std::current_exception();
+    }
+}
+
+void CheckpointWriter::finish() {
+    Quiet const quiet;
+    Draft& draft = *draft_;
+    Communicator const& communicator = draft.communicator;
+    on_first_rank(communicator, [&] {
+        if (draft.failure) std::rethrow_exception(std::exchange(draft.failure, nullptr));
+        if (!draft.way.collective) draft.close();
+    });
+    if (draft.way.collective) draft.close();
+    std::uint64_t const all = sum_over(communicator, draft.of_values);
+    on_first_rank(communicator, [&] { put_checksum(draft.name, draft.file, checksum_of(draft.head, draft.sizes, all)); });
+    draft.seal();
+    draft.require_that_it_reads_back();
+    on_first_rank(communicator, [&] {
+        keep_previous(draft.file);
+        rename_file(draft.name, draft.file);
+    });
+    draft.is_finished = true;
+}
+
+void write_checkpoint(std::string const& file, Checkpoint const& checkpoint) {
+    std::unique_ptr<Communicator> const alone = serial_communicator();
+    CheckpointWriter(*alone, file, checkpoint, {}).finish();
+}
+
+}  // namespace catena
