@@ -49,16 +49,30 @@ std::int64_t bytes_of(ArraySizes const& sizes) {
 struct CheckpointWriter::Draft {
     Communicator const& communicator;
     std::string file, name;
-    Checkpoint head;          // without arrays
-    ArraySizes later, sizes;  // of arrays that put() brings, and of all
-    std::uint64_t of_values;  // of those that are this rank's
-    FileWay way{};
-    std::unique_ptr<Writers> writers{};  // null on ranks that leave it to the root
-    File handle{};
-    std::map<std::string, Dataset> data{};
-    std::exception_ptr failure{};  // of the root's, which writes alone
+    Checkpoint head;              // without arrays
+    ArraySizes later, sizes;      // of arrays that put() brings, and of all
+    std::uint64_t of_values = 0;  // of those that are this rank's
+    FileWay way;
+    std::unique_ptr<Writers> writers;  // null on ranks that leave it to the root
+    File handle;
+    std::map<std::string, Dataset> data;
+    std::exception_ptr failure;  // of the root's, which writes alone
     bool is_finished = false;
 
+    Draft(Communicator const& of, std::string const& written, Checkpoint const& checkpoint, ArraySizes const& by_put)
+        : communicator(of),
+          file(written),
+          name(written + ".writing"),
+          head{checkpoint.step, checkpoint.time, checkpoint.scene_hash, checkpoint.notes, checkpoint.integers, {}},
+          later(by_put),
+          sizes(by_put) {
+        for (auto const& [array, values] : checkpoint.arrays) {
+            sizes[array] = std::ssize(values);
+            if (is_first()) of_values += checksum_of_values(array, 0, values);
+        }
+    }
+    Draft(Draft const&) = delete;
+    Draft& operator=(Draft const&) = delete;
     ~Draft() {
         if (way.collective) leave_open();
         if (!is_finished && is_first()) ::unlink(name.c_str());
@@ -154,14 +168,7 @@ struct CheckpointWriter::Draft {
 CheckpointWriter::CheckpointWriter(Communicator const& communicator, std::string const& file, Checkpoint const& checkpoint,
                                    std::map<std::string, std::int64_t> const& later) {
     Quiet const quiet;
-    Checkpoint head{checkpoint.step, checkpoint.time, checkpoint.scene_hash, checkpoint.notes, checkpoint.integers, {}};
-    ArraySizes sizes = later;
-    std::uint64_t of_values = 0;
-    for (auto const& [name, values] : checkpoint.arrays) {
-        sizes[name] = std::ssize(values);
-        if (communicator.rank() == 0) of_values += checksum_of_values(name, 0, values);
-    }
-    draft_.reset(new Draft{communicator, file, file + ".writing", std::move(head), later, std::move(sizes), of_values});
+    draft_ = std::make_unique<Draft>(communicator, file, checkpoint, later);
     Draft& draft = *draft_;
     on_first_rank(communicator, [&] { make_checkpoint_file(draft.name, file, checkpoint, later); });
     draft.way = choose_file_way(communicator, file_wish_of_run(communicator), draft.name, bytes_of(later), "arrays");

@@ -59,9 +59,12 @@ JobAcctGatherType=jobacct_gather/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 ReturnToService=2
-NodeName=$name NodeAddr=127.0.0.1 CPUs=2 State=UNKNOWN
+GresTypes=gpu
+NodeName=$name NodeAddr=127.0.0.1 CPUs=2 Gres=gpu:2 State=UNKNOWN
 PartitionName=all Nodes=$name Default=YES State=UP MaxTime=INFINITE
 TEXT
+    # Slurm counts these as GPUs; what Catena finds is what there is.
+    printf 'Name=gpu File=%s\n' /dev/null /dev/zero >"$work/gres.conf"
     slurmctld -D >"$work/slurmctld.out.log" 2>&1 &
     daemons+=($!)
     slurmd -D >"$work/slurmd.out.log" 2>&1 &
@@ -109,6 +112,18 @@ sbatch --wait --quiet --nodes=1 --ntasks-per-node=1 --cpus-per-task=2 --time=10 
     scene.yaml threads --steps 500
 "$CATENA_PROGRAM" run scene.yaml --output threads-alone --steps 500 --backend openmp --threads 2 --quiet
 "$python" "$root/tests/cluster/compare_runs.py" threads-alone threads
+
+echo "-- a rank a GPU: Slurm gives the job two, and Catena takes those there are"
+status=0
+sbatch --wait --quiet --nodes=1 --ntasks-per-node=2 --gpus-per-node=2 --cpus-per-task=1 --time=10 --output="$work/gpu.out" \
+    "$root/jobs/slurm-gpu.sh" scene.yaml gpu --steps 500 || status=$?
+if [ "$status" -eq 0 ]; then
+    "$CATENA_PROGRAM" run scene.yaml --output gpu-alone --steps 500 --backend cuda --quiet
+    "$python" "$root/tests/cluster/compare_runs.py" gpu-alone gpu
+else
+    grep -h '^catena: .*cuda' gpu.out
+    [ "$status" -eq 2 ] || { echo "FAILED: status $status where there is no GPU"; exit 1; }
+fi
 
 echo "-- an array of two"
 array=$(sbatch --parsable --array=1-2 --ntasks=1 --time=10 --output="$work/array-%a.out" "$root/jobs/slurm-array.sh" scene.yaml each --steps 500)
