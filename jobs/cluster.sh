@@ -13,13 +13,22 @@ mpirun=(mpirun --map-by "slot:PE=$threads")
 
 stopped=3  # how catena says that a signal stopped it and that its checkpoint is good
 
+# has_option NAME WORD...: whether it is among the words, as NAME or NAME=...
+has_option() {
+    local name=$1 word
+    shift
+    for word in "$@"; do [[ $word == "$name" || $word == "$name="* ]] && return 0; done
+    return 1
+}
+
 # run_catena SCENE FOLDER OPTION...: `catena run` over the job's ranks, from the folder's checkpoint where there is one. SIGUSR1 and SIGTERM
 # are handed on as SIGUSR1, at which catena writes a checkpoint. Returns catena's exit status.
 run_catena() {
     local scene=$1 folder=$2 words launcher='' status=0
     shift 2
     trap '[ -z "$launcher" ] || kill -USR1 "$launcher" 2>/dev/null' USR1 TERM
-    words=(run "$scene" --output "$folder" --threads "$threads")
+    words=(run "$scene" --output "$folder")
+    has_option --threads "$@" || words+=(--threads "$threads")
     if [ -e "$folder/checkpoint.h5" ]; then
         words+=(--restart "$folder/checkpoint.h5")
     elif [ -e "$folder/checkpoint.previous.h5" ]; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One rank a GPU: catena gives the ranks of a node its GPUs in turn, each rank has cores of its own beside them.
-# Submit from Catena's folder: sbatch jobs/slurm-gpu.sh SCENE FOLDER [options of catena run]
+# Submit from Catena's folder: sbatch jobs/slurm-gpu.sh SCENE FOLDER [options of catena run but --output and --restart]
 #SBATCH --job-name=catena-gpu
 #SBATCH --nodes=2
 #SBATCH --ntasks-per-node=4
@@ -13,4 +13,5 @@
 set -euo pipefail
 # shellcheck source=jobs/cluster.sh
 source "${CATENA_ROOT:-$SLURM_SUBMIT_DIR}/jobs/cluster.sh"
-run_to_the_end "$@" --backend cuda
+has_option --backend "$@" || set -- "$@" --backend cuda
+run_to_the_end "$@"

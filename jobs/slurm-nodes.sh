@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One run over several nodes, a few ranks with many threads on each; goes back to the queue before its time is up and goes on.
-# Submit from Catena's folder: sbatch jobs/slurm-nodes.sh SCENE FOLDER [options of catena run]
+# Submit from Catena's folder: sbatch jobs/slurm-nodes.sh SCENE FOLDER [options of catena run but --output and --restart]
 #SBATCH --job-name=catena
 #SBATCH --nodes=4
 #SBATCH --ntasks-per-node=2
@@ -12,4 +12,5 @@
 set -euo pipefail
 # shellcheck source=jobs/cluster.sh
 source "${CATENA_ROOT:-$SLURM_SUBMIT_DIR}/jobs/cluster.sh"
-run_to_the_end "$@" --backend openmp
+has_option --backend "$@" || set -- "$@" --backend openmp
+run_to_the_end "$@"

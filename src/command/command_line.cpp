@@ -90,7 +90,7 @@ void add_commands(CLI::App& app, Words& words) {
     command->footer(
         "Examples:\n  catena check inputs/arm.yaml\n  catena check inputs/several-chains.yaml --set chains[0].count=10 --json -");
 
-    command = app.add_subcommand("plan", "print what will run, how long it takes, what is left out, and why");
+    command = app.add_subcommand("plan", "print what will run, what an evaluation takes, what is left out, and why");
     add_scene(*command, words);
     command->add_flag("--explain", words.explain, "also measure what is saved by what is left out");
     command->add_flag("--measure", words.measure, "also measure an evaluation, beside what was predicted");
@@ -104,7 +104,7 @@ void add_commands(CLI::App& app, Words& words) {
     command->footer(
         "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n"
         "  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
-        "  catena plan inputs/random-revolute.yaml --ranks 4096 --hosts 512 --network network.json");
+        "  catena plan inputs/spherical-chain.yaml --ranks 4096 --hosts 512 --network network.json");
 
     command = app.add_subcommand("solve", "compute accelerations and joint forces once, timed, with their residual");
     add_scene(*command, words);
@@ -160,7 +160,7 @@ void add_commands(CLI::App& app, Words& words) {
         ->add_option("--sizes", words.sizes,
                      "bodies (default of solve and evaluation 1e3,1e4,1e5, its oracle left out above 1e6; peers: 100,200,500,1e3,1e4,1e5; "
                      "openmm: 140,9940,99960,1000020, "
-                     "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to 2048)")
+                     "overlap: the last three, in whole chains of 140 beads; figures: 2,4,8 to 2048; plan: 16,32 to 1048576)")
         ->type_name("N,...");
     command
         ->add_option("--joints", words.joints,

@@ -148,7 +148,9 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median),
                                    timing.evaluation.count, duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                                    1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
-    for (auto const& [name, seconds] : timing.phases) text.entry("  " + name, duration_text(seconds));
+    // An evaluation finds matrices and biases at once where it can: apart they take longer.
+    for (auto const& [name, seconds] : timing.phases)
+        text.entry("  " + name, duration_text(seconds) + (name.ends_with("sweep") ? ", by itself" : ""));
     std::vector<double> const refinement = json["refinement"]["seconds_of_each"];
     if (!refinement.empty())
         text.entry("refinement", fmt::format("{}, {} each", counted(std::ssize(refinement), "step", "steps"),
