@@ -24,8 +24,11 @@ has_option() {
 # run_catena SCENE FOLDER OPTION...: `catena run` over the job's ranks, from the folder's checkpoint where there is one. SIGUSR1 and SIGTERM
 # are handed on as SIGUSR1, at which catena writes a checkpoint. Returns catena's exit status.
 run_catena() {
-    local scene=$1 folder=$2 words launcher='' status=0
+    local scene=$1 folder=$2 word words launcher='' status=0
     shift 2
+    for word in --output --restart --overwrite; do
+        if has_option "$word" "$@"; then fail "$word is the script's own: leave it out"; fi
+    done
     trap '[ -z "$launcher" ] || kill -USR1 "$launcher" 2>/dev/null' USR1 TERM
     words=(run "$scene" --output "$folder")
     has_option --threads "$@" || words+=(--threads "$threads")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The same scene many times, each with a seed and a folder of its own: FOLDER-1, FOLDER-2, ...
-# Submit from Catena's folder: sbatch jobs/slurm-array.sh SCENE FOLDER [options of catena run but --output and --restart]
+# Submit from Catena's folder: sbatch jobs/slurm-array.sh SCENE FOLDER [options of catena run but --output, --restart and --overwrite]
 #SBATCH --job-name=catena-array
 #SBATCH --array=1-10
 #SBATCH --nodes=1

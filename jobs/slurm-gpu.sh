@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One rank a GPU: catena gives the ranks of a node its GPUs in turn, each rank has cores of its own beside them.
-# Submit from Catena's folder: sbatch jobs/slurm-gpu.sh SCENE FOLDER [options of catena run but --output and --restart]
+# Submit from Catena's folder: sbatch jobs/slurm-gpu.sh SCENE FOLDER [options of catena run but --output, --restart and --overwrite]
 #SBATCH --job-name=catena-gpu
 #SBATCH --nodes=2
 #SBATCH --ntasks-per-node=4

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One run over several nodes, a few ranks with many threads on each; goes back to the queue before its time is up and goes on.
-# Submit from Catena's folder: sbatch jobs/slurm-nodes.sh SCENE FOLDER [options of catena run but --output and --restart]
+# Submit from Catena's folder: sbatch jobs/slurm-nodes.sh SCENE FOLDER [options of catena run but --output, --restart and --overwrite]
 #SBATCH --job-name=catena
 #SBATCH --nodes=4
 #SBATCH --ntasks-per-node=2

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # One run on the cores of one node; goes back to the queue before its time is up and goes on from its checkpoint.
-# Submit from Catena's folder: sbatch jobs/slurm-one-node.sh SCENE FOLDER [options of catena run but --output and --restart]
+# Submit from Catena's folder: sbatch jobs/slurm-one-node.sh SCENE FOLDER [options of catena run but --output, --restart and --overwrite]
 #SBATCH --job-name=catena
 #SBATCH --nodes=1
 #SBATCH --ntasks=8

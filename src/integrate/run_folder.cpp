@@ -1,6 +1,7 @@
 #include "integrate/run_folder.hpp"
 
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "error.hpp"

@@ -29,8 +29,9 @@ bool is_quiet_about_failures() {
     return !word.starts_with("romio") && !(word.starts_with("^") && word.find("ompio") != word.npos);
 }
 
-/// Files whose failure ends the program, while they are open.
+/// Files whose failure ends the program, while their writers live.
 struct Watched {
+    void const* owner;
     MPI_File file;
     Communicator const* communicator;
     std::string what;
@@ -49,6 +50,7 @@ void end_all(MPI_File* file, int* code, ...) {  // NOLINT(cert-dcl50-cpp): MPI's
     if (failed == watched().rend()) {
         std::fprintf(stderr, "catena: cannot write a file: %s\n", text);
         MPI_Abort(MPI_COMM_WORLD, 1);
+        std::_Exit(1);
     }
     if (failed->communicator->rank() != 0) std::this_thread::sleep_for(std::chrono::seconds(10));
     std::fprintf(stderr, "catena: %s: %s\n", failed->what.c_str(), text);
@@ -64,7 +66,7 @@ class AllWriters final : public Writers {
     AllWriters(AllWriters const&) = delete;
     AllWriters& operator=(AllWriters const&) = delete;
     ~AllWriters() override {
-        if (opened_ != MPI_FILE_NULL) std::erase_if(watched(), [&](Watched const& one) { return one.file == opened_; });
+        std::erase_if(watched(), [&](Watched const& one) { return one.owner == this; });
     }
     bool are_several() const override { return true; }
     bool is_first() const override { return communicator_.rank() == 0; }
@@ -75,11 +77,11 @@ class AllWriters final : public Writers {
     void watch(File const& handle, std::string const& file, std::string const& doing) override {
         void* opened = nullptr;
         check(H5Fget_vfd_handle(handle.get(), H5P_DEFAULT, &opened), file, doing);
-        opened_ = *static_cast<MPI_File const*>(opened);
-        watched().push_back({opened_, &communicator_, "cannot " + doing + " (" + file + ")"});
+        MPI_File const file_of_mpi = *static_cast<MPI_File const*>(opened);
+        watched().push_back({this, file_of_mpi, &communicator_, "cannot " + doing + " (" + file + ")"});
         MPI_Errhandler handler = MPI_ERRHANDLER_NULL;
         check_mpi(MPI_File_create_errhandler(end_all, &handler), "MPI_File_create_errhandler");
-        check_mpi(MPI_File_set_errhandler(opened_, handler), "MPI_File_set_errhandler");
+        check_mpi(MPI_File_set_errhandler(file_of_mpi, handler), "MPI_File_set_errhandler");
         check_mpi(MPI_Errhandler_free(&handler), "MPI_Errhandler_free");
     }
     hid_t transfer() const override { return transfer_.get(); }
@@ -112,7 +114,6 @@ class AllWriters final : public Writers {
 
     Communicator const& communicator_;
     Properties transfer_;
-    MPI_File opened_ = MPI_FILE_NULL;
     off_t first_ = 0, grown_ = 0, reserved_ = 0;  // bytes: at first, of frames since, taken from the system
 };
 

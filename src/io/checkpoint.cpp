@@ -1,6 +1,7 @@
 // Reads a checkpoint, as far as its seal and its checksums hold; what lies where in the file: checkpoint_file.hpp.
 #include <filesystem>
 #include <fstream>
+#include <utility>
 
 #include "error.hpp"
 #include "io/checkpoint_file.hpp"

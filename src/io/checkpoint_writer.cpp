@@ -6,7 +6,6 @@
 
 #include "error.hpp"
 #include "io/checkpoint_file.hpp"
-#include "io/checksum.hpp"
 #include "io/output_file.hpp"
 #include "io/seal.hpp"
 #include "io/writers.hpp"
@@ -58,6 +57,7 @@ struct CheckpointWriter::Draft {
     std::map<std::string, Dataset> data;
     std::exception_ptr failure;  // of the root's, which writes alone
     bool is_finished = false;
+    int to_other_host = 0;  // ranks from one to the next that looks at its share: on another host where ranks lie host by host
 
     Draft(Communicator const& of, std::string const& written, Checkpoint const& checkpoint, ArraySizes const& by_put)
         : communicator(of),
@@ -79,14 +79,13 @@ struct CheckpointWriter::Draft {
     }
     bool is_first() const { return communicator.rank() == 0; }
 
+    /// The arrays' datasets with it.
     void open(std::unique_ptr<Writers> by) {
         writers = std::move(by);
         Properties const access(check(H5Pcreate(H5P_FILE_ACCESS), file, writing));
         writers->prepare(access, file, writing);
         handle = File(check(H5Fopen(name.c_str(), H5F_ACC_RDWR, access.get()), file, writing));
         writers->watch(handle, file, writing);
-    }
-    void open_arrays() {
         for (auto const& [array, size] : later) data[array] = open_array({handle.get(), file, writing}, array);
     }
     /// Others may not know that this rank ends here: then nothing is closed together.
@@ -115,13 +114,10 @@ struct CheckpointWriter::Draft {
     }
     void close() {
         for (auto& [array, dataset] : data) check(dataset.close(), file, writing);
-        if (way.collective)
-            writers->flush_to_disk(handle, file, writing);
-        else
-            check(H5Fflush(handle.get(), H5F_SCOPE_LOCAL), file, writing);  // it reaches the disk with the checksum
+        writers->flush_to_disk(handle, file, writing);
         check(handle.close(), file, writing);
     }
-    /// look(reader) on ranks that have the file, of their shares; `apart`: not of what they had at 0.
+    /// look(reader) on ranks that have the file, of the shares of the ranks so many further on.
     template <class Look>
     void share(int apart, Look const& look) const {
         on_every_rank(communicator, [&] {
@@ -140,14 +136,14 @@ struct CheckpointWriter::Draft {
         Sealed const sealed = sum_of_pieces(0);
         on_first_rank(communicator, [&] { put_seal(name, sealed, file, writing); });
         if (!way.collective) return;
-        Sealed const again = sum_of_pieces(1);  // a host that saw what another one had not written yet
+        Sealed const again = sum_of_pieces(to_other_host);  // one that does not see yet what another one has written
         on_first_rank(communicator, [&] {
             if (again != sealed) refuse("ranks do not see the same file");
         });
     }
     void require_that_it_reads_back() const {
         CheckpointRead read;
-        share(1, [&](Reader reader) {
+        share(to_other_host, [&](Reader reader) {
             try {
                 File const back(check(H5Fopen(name.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name, reading_checkpoint));
                 read = read_checkpoint_file({back.get(), name, reading_checkpoint}, Arrays::only_check, reader);
@@ -174,17 +170,16 @@ CheckpointWriter::CheckpointWriter(Communicator const& communicator, std::string
     draft.way = choose_file_way(communicator, file_wish_of_run(communicator), draft.name, bytes_of(later), "arrays");
     if (draft.way.collective) {
         std::unique_ptr<Writers> all;
-        std::string const why = why_not_together(
-            communicator, {[&] { all = all_writers(communicator); }, [&] { draft.open(std::move(all)); }, [&] { draft.open_arrays(); }});
+        std::string const why =
+            why_not_together(communicator, {[&] { all = all_writers(communicator); }, [&] { draft.open(std::move(all)); }});
+        auto const of_host = static_cast<int>(communicator.max(communicator.ranks_on_host()));
+        draft.to_other_host = of_host < communicator.size() ? of_host : 1;
         if (why.empty()) return;
         draft.leave_open();
         draft.writers.reset();
         draft.way = by_the_root(why);
     }
-    on_first_rank(communicator, [&] {
-        draft.open(one_writer());
-        draft.open_arrays();
-    });
+    on_first_rank(communicator, [&] { draft.open(one_writer()); });
 }
 
 CheckpointWriter::~CheckpointWriter() {
@@ -209,11 +204,13 @@ void CheckpointWriter::finish() {
     Quiet const quiet;
     Draft& draft = *draft_;
     Communicator const& communicator = draft.communicator;
-    on_first_rank(communicator, [&] {
-        if (draft.failure) std::rethrow_exception(std::exchange(draft.failure, nullptr));
-        if (!draft.way.collective) draft.close();
-    });
-    if (draft.way.collective) draft.close();
+    if (draft.way.collective)
+        draft.close();
+    else
+        on_first_rank(communicator, [&] {
+            if (draft.failure) std::rethrow_exception(std::exchange(draft.failure, nullptr));
+            draft.close();
+        });
     std::uint64_t const all = sum_over(communicator, draft.of_values);
     on_first_rank(communicator, [&] { put_checksum(draft.name, draft.file, checksum_of(draft.head, draft.sizes, all)); });
     draft.seal();

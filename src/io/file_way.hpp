@@ -10,7 +10,7 @@
 
 namespace catena {
 
-/// What CATENA_HDF5 wants: nothing (collective where that is possible), `root` or `collective` (an error where it is not).
+/// What CATENA_HDF5 wants: nothing (collective where that is possible), `root` or `collective` (of frames an error where it is not).
 enum class FileWish { best, root, collective };
 /// InputError for other words.
 FileWish file_wish(std::string const& word);

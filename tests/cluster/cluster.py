@@ -98,6 +98,9 @@ class Runs:
         """From the last checkpoint to the end; from the start where there was none yet."""
         checkpoint = self.path(name, "checkpoint.h5")
         self.complete(ranks, name, ["--restart", checkpoint] if os.path.exists(checkpoint) else ["--overwrite"])
+        left = glob.glob(self.path(name, "*.writing"))
+        if left:
+            sys.exit(f"FAILED: drafts are left: {left}")
 
     def remove(self, name):
         shutil.rmtree(self.path(name), ignore_errors=True)

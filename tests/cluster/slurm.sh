@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The job scripts of jobs/ on a real Slurm, made on this machine for the test alone: a job reaches its time limit's signal, writes a
 # checkpoint, goes back to the queue, goes on when its turn comes (after the 120 s that Slurm makes it wait) and ends in the bits of an
-# undisturbed run; a job array gives each element its own run. Needs root and the packages slurmctld, slurmd, slurm-client, munge.
+# undisturbed run; a job of threads and one of GPUs, which Slurm counts and this machine may lack, are the run alone; a job array gives
+# each element its own run. Needs root and the packages slurmctld, slurmd, slurm-client, munge.
 # Usage: tests/cluster/slurm.sh [PROGRAM]
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -109,7 +110,7 @@ wait_for 900 "its end" is "$number" JobState COMPLETED
 
 echo "-- several threads a rank"
 sbatch --wait --quiet --nodes=1 --ntasks-per-node=1 --cpus-per-task=2 --time=10 --output="$work/threads.out" "$root/jobs/slurm-nodes.sh" \
-    scene.yaml threads --steps 500
+    scene.yaml threads --steps 500 --backend=openmp --threads 2
 "$CATENA_PROGRAM" run scene.yaml --output threads-alone --steps 500 --backend openmp --threads 2 --quiet
 "$python" "$root/tests/cluster/compare_runs.py" threads-alone threads
 
@@ -123,6 +124,10 @@ if [ "$status" -eq 0 ]; then
 else
     grep -h '^catena: .*cuda' gpu.out
     [ "$status" -eq 2 ] || { echo "FAILED: status $status where there is no GPU"; exit 1; }
+    sbatch --wait --quiet --nodes=1 --ntasks-per-node=2 --gpus-per-node=2 --cpus-per-task=1 --time=10 --output="$work/host.out" \
+        "$root/jobs/slurm-gpu.sh" scene.yaml host --steps 500 --backend segments
+    "$CATENA_PROGRAM" run scene.yaml --output host-alone --steps 500 --backend segments --quiet
+    "$python" "$root/tests/cluster/compare_runs.py" host-alone host
 fi
 
 echo "-- an array of two"

@@ -163,6 +163,18 @@ TEST_P(Restart, RefusesAnExistingFolder) {
     EXPECT_EQ(message_of([&] { run("parts", 5); }).find("--restart"), std::string::npos);
 }
 
+using FromRest = Restart;
+
+TEST_P(FromRest, TakesAwayTheDraftsOfAKilledRun) {
+    run("parts", 20);
+    std::string const drafts[] = {folder_ / "parts/checkpoint.h5.writing", folder_ / "parts/checkpoint.previous.h5.writing"};
+    for (std::string const& draft : drafts) std::ofstream(draft) << "half";
+    EXPECT_NE(message_of([&] { run("parts", 5); }).find("the output folder exists"), std::string::npos);
+    for (std::string const& draft : drafts) EXPECT_TRUE(std::filesystem::exists(draft)) << draft << " of a folder that was refused";
+    run("parts", 20, folder_ / "parts/checkpoint.h5");
+    for (std::string const& draft : drafts) EXPECT_FALSE(std::filesystem::exists(draft)) << draft;
+}
+
 /// What starts at rest gains speed, and sweeps, at steps that nothing but the look at 1, 2, 4, ... falls on.
 RunScene const from_rest{"from_rest",
                          "units: si\nforces: {gravity: [0, 0, -9.81]}\n"
@@ -172,8 +184,6 @@ RunScene const from_rest{"from_rest",
                          "      - {mass: 0.1, position: [1.1, 0.1, 1.4], joint: {type: link}}\n"
                          "      - {mass: 0.1, position: [1.5, 0, 1.5], joint: {type: link}}\n"
                          "dynamics: {integrator: rattle, step: 1e-3, steps: 20}\noutput: {every: 1000}\n"};
-using FromRest = Restart;
-
 TEST_P(FromRest, SweepsAreAddedAsInTheUndisturbedRun) {
     auto const sweeps = [](nlohmann::json const& summary) { return summary["solver"]["sweeps_a_drift"].get<int>(); };
     int const at_start = sweeps(run("start", 0)), at_end = sweeps(run("whole", 40));
