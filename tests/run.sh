@@ -144,11 +144,12 @@ fi
 if build asan-ubsan; then
     # What takes half of the tests' time under them. Vectors' kernels have none, and shared chains run on 2 ranks.
     slow='stage_kernels|^(simd|dca_levels|command_same_bits|trajectory|force_ranks_mpi|openmm_runs).(ranks_[13-6]|two_stages|together)|force_ranks.Steps'
-    slow+='|^(dca_levels|force_ranks_mpi|openmm_runs).ranks_2|^balance.ranks_[36]'
+    slow+='|^(dca_levels|force_ranks_mpi|openmm_runs).ranks_2|^balance.ranks_[136]'
     slow+='|force_ranks.Halo.Forces|Report.(Quick|TheStability)|AThousandRandom|ChainsOf2000|OnLinks.*/(openmp|serial|segments_full)'
     slow+='|RandomChainsAgree.*/(serial_full|openmp_projected|segments_projected)'
+    slow+='|^gpu|^(dca_articulated|kinematics|at_once).ranks_[1346]'  # this build has no GPU; two ranks do what others do
     slow+='|Staggered.(Samples|IsStable|IsOfSecondOrder)|HaveTheirOrder|ErrorsAreInProportion|Sampling.TheTemperatures'  # many steps of the same
-    if [ $long = yes ]; then slow='ranks_[56]$|stage_kernels.ranks_2'; fi
+    if [ $long = yes ]; then slow='^gpu|ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
 same_anywhere='^(dca_levels|dca_stage_kernels|dca_articulated|dca_campaign|oracle|kinematics|simd.ranks|physics_(order|trimer|energy))'
