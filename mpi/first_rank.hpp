@@ -62,11 +62,9 @@ void on_every_rank(Communicator const& communicator, Action const& action) {
     };
     auto length = static_cast<std::int64_t>(text.size());
     to_first(std::as_writable_bytes(std::span(&length, 1)));
-    communicator.broadcast(std::as_writable_bytes(std::span(&length, 1)));
-    text.resize(static_cast<std::size_t>(length));
+    if (communicator.rank() == 0) text.resize(static_cast<std::size_t>(length));
     to_first(std::as_writable_bytes(std::span(text)));
-    communicator.broadcast(std::as_writable_bytes(std::span(text)));
-    throw SharedError(text);
+    on_first_rank(communicator, [&] { throw ComputationError(text); });
 }
 
 }  // namespace catena

@@ -1,19 +1,15 @@
 // All ranks by parallel HDF5. A write that fails on one rank leaves the others waiting within HDF5, and at times that rank as well: MPI
 // tells of it before HDF5 does, and there the program ends. So the failure to be expected, a full disk, is looked for before: rank 0 takes
 // the room for a frame or a checkpoint from the system before anybody writes, and all ranks end in good order.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <string_view>
 #include <thread>
 #include <vector>
 
+#include "io/descriptor.hpp"
 #include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
 #include "mpi/mpi_handles.hpp"
@@ -99,16 +95,12 @@ class AllWriters final : public Writers {
 
   private:
     void reserve(std::string const& file, std::string const& doing) {
-        struct Open {
-            int descriptor;
-            ~Open() { ::close(descriptor); }
-        } const opened{::open(file.c_str(), O_RDWR | O_CLOEXEC)};
-        if (opened.descriptor < 0) throw ComputationError("cannot " + doing + " (" + file + "): " + std::strerror(errno));
+        Descriptor const opened(file, O_RDWR, file, doing);
         // Parallel HDF5 does not tell how long the file is to be. At first it is as the root left it.
-        if (reserved_ == 0) reserved_ = first_ = ::lseek(opened.descriptor, 0, SEEK_END);
+        if (reserved_ == 0) reserved_ = first_ = ::lseek(opened.get(), 0, SEEK_END);
         off_t const wanted = first_ + grown_ + grown_ / 64 + (16 << 10);  // with metadata: 100 bytes a chunk of 8 kB and more
         if (wanted <= reserved_) return;
-        take_from_system(opened.descriptor, reserved_, wanted - reserved_, file, doing);
+        take_from_system(opened.get(), reserved_, wanted - reserved_, file, doing);
         reserved_ = wanted;
     }
 

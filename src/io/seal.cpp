@@ -1,72 +1,21 @@
 #include "io/seal.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>
-#include <system_error>
-#include <utility>
 #include <vector>
 
-#include "error.hpp"
 #include "io/checksum.hpp"
+#include "io/descriptor.hpp"
 #include "io/output_file.hpp"
 
 namespace catena {
 namespace {
 
-constexpr std::string_view name = "Catena, sealed file";
-
-class Descriptor {
-  public:
-    /// Messages say "cannot <doing> (<shown>)".
-    Descriptor(std::string const& file, int flags, std::string shown, std::string doing)
-        : shown_(std::move(shown)), doing_(std::move(doing)), descriptor_(::open(file.c_str(), flags | O_CLOEXEC)) {
-        if (descriptor_ < 0) fail();
-    }
-    ~Descriptor() { ::close(descriptor_); }
-    Descriptor(Descriptor const&) = delete;
-    Descriptor& operator=(Descriptor const&) = delete;
-    int get() const { return descriptor_; }
-
-    /// As many bytes as there are, `most` at most.
-    std::size_t read(char* to, std::size_t most, std::int64_t at) const {
-        std::size_t done = 0;
-        while (done < most) {
-            ssize_t const count = ::pread(descriptor_, to + done, most - done, at + static_cast<std::int64_t>(done));
-            if (count < 0 && errno == EINTR) continue;
-            if (count < 0) fail();
-            if (count == 0) break;
-            done += static_cast<std::size_t>(count);
-        }
-        return done;
-    }
-    void write(std::string_view bytes, std::int64_t at) const {
-        while (!bytes.empty()) {
-            ssize_t const count = ::pwrite(descriptor_, bytes.data(), bytes.size(), at);
-            if (count < 0 && errno == EINTR) continue;
-            if (count <= 0) fail();
-            bytes.remove_prefix(static_cast<std::size_t>(count));
-            at += count;
-        }
-    }
-
-  private:
-    [[noreturn]] void fail() const {
-        throw ComputationError("cannot " + doing_ + " (" + shown_ + "): " + std::generic_category().message(errno));
-    }
-
-    std::string shown_, doing_;
-    int descriptor_;
-};
-
 constexpr std::int64_t piece_size = 4 << 20;
-
-constexpr std::string_view words = " bytes, checksum ", by_places = "by places ";
+constexpr std::string_view name = "Catena, sealed file", words = " bytes, checksum ", by_places = "by places ";
 std::string seal_of(Sealed const& of) { return fmt::format("{}: {}{}{}{:016x}\n", name, of.bytes, words, by_places, of.checksum); }
 
 std::string first_bytes(Descriptor const& file) {
