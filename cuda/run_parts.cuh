@@ -98,10 +98,9 @@ __device__ void down_quickly(Sweep const& sweep, dca::Run const& run, int p, Par
 /// Thread t of a block does part t / lanes mod parts of run t mod lanes of the block's t / (lanes parts)-th group of `lanes` runs: a
 /// warp's threads walk side by side.
 struct RunPart {
-    std::int64_t run;
-    int part;
-    __device__ RunPart(std::int64_t thread, int lanes)
-        : run(thread / (lanes * dca::parts_of_run) * lanes + thread % lanes), part(static_cast<int>(thread / lanes % dca::parts_of_run)) {}
+    int run, part;
+    __device__ RunPart(int thread, int lanes)
+        : run(thread / (lanes * dca::parts_of_run) * lanes + thread % lanes), part(thread / lanes % dca::parts_of_run) {}
 };
 __device__ inline int lanes_of_block() {
     int const of_part = static_cast<int>(blockDim.x) / dca::parts_of_run;
@@ -114,13 +113,13 @@ using NodesOfParts = PackedRecords<typename Sweep::Sweeps::Node, PackedRecords<t
 /// The segments of runs `first` + RunPart(...).run, as many as the block's threads do at once: take(run, segment) by one thread each. All
 /// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its
 /// bodies. `nodes_stay`: a sweep that keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
-template <bool nodes_stay, bool quick, class Sweep, class Take>
+template <bool nodes_stay, class Sweep, class Take>
 __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
                                 typename Sweep::Part& part, Take const& take) {
     using Segment = typename Sweep::Segment;
     PackedRecords<Segment> const parts{memory};
     int const lanes = lanes_of_block();
-    RunPart const mine(threadIdx.x, lanes);
+    RunPart const mine(static_cast<int>(threadIdx.x), lanes);
     std::int64_t const i = first + mine.run;
     dca::Run run;
     if (i < end) run = runs[i];
@@ -131,7 +130,7 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
         if (p < count) restricted_of[p] = sweep.s.restricted[dca::begin_of(run, p)];
     Segment segment;
     if (mine.part < count) {
-        part = read_quickly<quick>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
+        part = read_quickly<true>(sweep, dca::begin_of(run, mine.part), dca::end_of(run, mine.part));
         segment = part_quickly(sweep, run, mine.part, part);
     }
     if (mine.part > 0 && mine.part < count) parts.store(static_cast<int>(threadIdx.x), segment);
@@ -144,11 +143,14 @@ __device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::i
         for (int p = 1; p < count; ++p) {
             int const there = static_cast<int>(threadIdx.x) + lanes * p;
             dca::JointAt const at{dca::begin_of(run, p), static_cast<int>(restricted >> (8 * p) & 255)};
-            if constexpr (nodes_stay && Sweep::keeps_nodes) {
+            if constexpr (Sweep::keeps_nodes) {
                 typename Sweep::Node node;
                 segment = joined_quickly(sweep, segment, parts.load(there), at, node);
-                NodesOfParts<Sweep>{memory}.store(there, node);
-            } else {  // not quickly: registers are few where links' runs are apart
+                if constexpr (nodes_stay)
+                    NodesOfParts<Sweep>{memory}.store(there, node);
+                else
+                    sweep.keep(at.k, node);
+            } else {
                 segment = sweep.joined(segment, parts.load(there), at);
             }
         }
@@ -256,7 +258,7 @@ __device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, 
     using State = typename Sweep::Sweeps::State;
     PackedRecords<State> const at_part{memory};
     int const lanes = lanes_of_block(), here = static_cast<int>(threadIdx.x);
-    RunPart const mine(threadIdx.x, lanes);
+    RunPart const mine(static_cast<int>(threadIdx.x), lanes);
     std::int64_t const i = first_run + mine.run;
     dca::Run run;
     if (i < end) run = runs[i];

@@ -109,7 +109,7 @@ class BlockOfStage {
         else if (!stage_.runs)
             each_of(head.items, [&](int i) { segments_.store(i, sweep_.load(words_.item(i).own_slot())); });
         else
-            climb_some_runs<and_down, true>(
+            climb_some_runs<and_down>(
                 stage_.runs, head.first_item, head.first_item + head.items, sweep_, parts_, part,
                 [&](std::int64_t i, Segment const& segment) { segments_.store(static_cast<int>(i - head.first_item), segment); });
     }

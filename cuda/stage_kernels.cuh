@@ -83,11 +83,13 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     if (threadIdx.x == 0) letters.close();
 }
 /// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want few registers, and many to hide that
-/// memory is far; on planar and spherical joints the way down does.
+/// memory is far; on planar and spherical joints the way down does. On links' way up a fourth finds none for quotients without branches.
 template <class Sweep>
-constexpr int blocks_of_climb = Sweep::Sweeps::K == 1 ? 4 : 1;
+constexpr int blocks_of_climb = Sweep::Sweeps::K == 1 ? 3 : 1;
 template <class Sweep>
-constexpr int blocks_of_descent = comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3 : blocks_of_climb<Sweep>;
+constexpr int blocks_of_descent = Sweep::Sweeps::K == 1                                                    ? 4
+                                  : comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3
+                                                                                                           : 1;
 /// Whether a thread takes a whole run on the way up: larger handles would have most of them wait for one that joins the parts.
 template <class Sweep>
 constexpr bool whole_runs = Sweep::Sweeps::K > 1;
@@ -124,9 +126,8 @@ __global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_runs(dc
         if (std::int64_t const i = thread(); i < count) climb_whole(sweep, runs[i]);
     } else {
         typename Sweep::Part part;
-        climb_some_runs<false, false>(runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep,
-                                      shared_numbers, part,
-                                      [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
+        climb_some_runs<false>(runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers,
+                               part, [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
     }
 }
 /// From the last block to the first: what the way up read last is still near.
