@@ -20,14 +20,4 @@ void gather_to_scene(Communicator const& communicator, ChainGroup const& group, 
     }
 }
 
-std::vector<double> take_from_scene(ChainGroup const& group, int width, std::span<double const> in_scene_order) {
-    std::vector<double> own;
-    own.reserve(static_cast<std::size_t>(group.size * width));
-    for (dca::Piece const& piece : group.pieces) {
-        auto const begin = in_scene_order.begin() + (group.first_in_scene[piece.chain] + piece.body) * width;
-        own.insert(own.end(), begin, begin + piece.count * width);
-    }
-    return own;
-}
-
 }  // namespace catena

@@ -1,6 +1,7 @@
 #include "chain/scene_windows.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace catena {
 
@@ -9,6 +10,7 @@ SceneWindows::SceneWindows(Communicator const& communicator, std::vector<std::un
     for (std::size_t g = 0; g < groups.size(); ++g) {
         dca::Partition const& partition = groups[g]->partition;
         bodies_ += partition.bodies();
+        own_size_.push_back(groups[g]->size);
         int rank = 0;
         for (int chain = 0; chain < partition.chains(); ++chain) {
             std::int64_t const begin = partition.first_of_chain[chain], end = partition.first_of_chain[chain + 1];
@@ -66,17 +68,56 @@ std::vector<double> SceneWindows::receive(Window const& window, int width, std::
     return values;
 }
 
-void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const {
+template <class Action>
+void SceneWindows::for_each_window(int width, Action const& action) const {
     std::int64_t const length = std::max(bytes_ / (width * static_cast<std::int64_t>(sizeof(double))), std::int64_t{1});
     std::size_t first_part = 0;
     for (std::int64_t first = 0; first < bodies_; first += length) {
         while (parts_[first_part].first + parts_[first_part].count <= first) ++first_part;
-        Window const window{first, std::min(first + length, bodies_), first_part};
+        action(Window{first, std::min(first + length, bodies_), first_part});
+    }
+}
+
+void SceneWindows::pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const {
+    for_each_window(width, [&](Window const& window) {
         if (communicator_.rank() == 0)
-            take(first, receive(window, width, own));
+            take(window.first, receive(window, width, own));
         else
             send(window, width, own);
-    }
+    });
+}
+
+std::vector<std::vector<double>> SceneWindows::hand_out(int width, std::span<double const> in_scene_order) const {
+    std::vector<std::vector<double>> own;
+    for (std::int64_t const size : own_size_) own.emplace_back(static_cast<std::size_t>(size * width));
+    int const rank = communicator_.rank();
+    for_each_window(width, [&](Window const& window) {
+        std::vector<std::vector<double>> of_rank(static_cast<std::size_t>(communicator_.size()));  // on rank 0; elsewhere its own
+        for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
+            std::vector<double>& numbers = of_rank[static_cast<std::size_t>(part.rank)];
+            if (rank == 0) {
+                auto const from = in_scene_order.begin() + (part.first + begin) * width;
+                numbers.insert(numbers.end(), from, from + (end - begin) * width);
+            } else if (rank == part.rank) {
+                numbers.resize(numbers.size() + static_cast<std::size_t>((end - begin) * width));
+            }
+        });
+        for (int other = 1; other < communicator_.size(); ++other) {
+            std::vector<double>& numbers = of_rank[static_cast<std::size_t>(other)];
+            if (numbers.empty()) continue;
+            if (rank == 0)
+                communicator_.exchange(std::as_bytes(std::span(numbers)), other, {}, -1);
+            else
+                communicator_.exchange({}, -1, std::as_writable_bytes(std::span(numbers)), 0);
+        }
+        auto next = of_rank[static_cast<std::size_t>(rank)].begin();
+        for_each_part_in(window, [&](Part const& part, std::int64_t begin, std::int64_t end) {
+            if (part.rank != rank) return;
+            std::int64_t const numbers = (end - begin) * width;
+            std::copy_n(std::exchange(next, next + numbers), numbers, own[part.group].begin() + (part.local + begin) * width);
+        });
+    });
+    return own;
 }
 
 /// Joined where they are neighbours in their group too.

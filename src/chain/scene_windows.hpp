@@ -1,4 +1,4 @@
-// Numbers of bodies on their way to rank 0, in the order of the scene, a window of bounded size at a time.
+// Numbers of bodies on their way to rank 0 and back, in the order of the scene, a window of bounded size at a time.
 #pragma once
 
 #include <cstdint>
@@ -23,6 +23,8 @@ class SceneWindows {
     /// `own[g]`: `width` numbers for each of this rank's bodies of group g. Rank 0 takes window after window. What `take` throws leaves the
     /// other ranks waiting: it is for failures that end the program. Collective.
     void pass(int width, std::vector<std::vector<double>> const& own, Take const& take) const;
+    /// The reverse: what rank 0 has of all bodies (others give nothing) to the ranks that they are of, as `own`. Collective.
+    std::vector<std::vector<double>> hand_out(int width, std::span<double const> in_scene_order) const;
 
     /// Neighbours in the scene.
     struct Run {
@@ -53,6 +55,8 @@ class SceneWindows {
         std::size_t first_part;
     };
     template <class Action>
+    void for_each_window(int width, Action const& action) const;
+    template <class Action>
     void for_each_part_in(Window const&, Action const& action) const;
     std::vector<Part> own_parts() const;
     void send(Window const&, int width, std::vector<std::vector<double>> const& own) const;
@@ -60,7 +64,8 @@ class SceneWindows {
 
     Communicator const& communicator_;
     std::int64_t bytes_, bodies_ = 0;
-    std::vector<Part> parts_;  // in the order of the scene
+    std::vector<std::int64_t> own_size_;  // of every group
+    std::vector<Part> parts_;             // in the order of the scene
 };
 
 }  // namespace catena

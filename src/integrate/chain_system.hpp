@@ -143,11 +143,12 @@ class ChainSystem {
     void pass_array(OwnArray const&, std::function<void(ArrayPart const&)> const& take) const;
     /// The same without a message: every rank its own, in ascending order, in rounds, as many on every rank. Collective.
     void pass_own_array(OwnArray const&, std::function<void(std::vector<ArrayPart> const&)> const& take) const;
-    /// All of them at once, in scene order on rank 0; and back, on every rank.
+    /// All of them at once, in scene order on rank 0, which alone has them to set the state by. Collective.
     std::map<std::string, std::vector<double>> gathered(OwnState const&) const;
     std::map<std::string, std::vector<double>> state() const { return gathered(own_state()); }
     void set_state(std::map<std::string, std::vector<double>> const&);
-    JointRates own_rates(ChainGroup const&, std::map<std::string, std::vector<double>> const& arrays) const;
+    /// As add_rates() put them there, of each of joint(). Collective.
+    std::vector<JointRates> own_rates(std::map<std::string, std::vector<double>> const& arrays) const;
 
   private:
     bool is_current() noexcept;
@@ -173,9 +174,8 @@ class ChainSystem {
     void finish_openmm();
     void note_overlap(double start, double begun, double assembled, double waits, double finished);
     bool is_absolute(ChainGroup const& group) const { return group.beads || group.linked || axes_ == Axes::world; }
-    /// This rank's part of an array of a checkpoint; InputError where it is missing or of another size.
-    std::vector<double> own_part(ChainGroup const&, std::map<std::string, std::vector<double>> const&, std::string const& name,
-                                 int width) const;
+    /// Of rank 0's arrays of a checkpoint, those with these widths; InputError where one is missing or of another size. Collective.
+    OwnState handed_out(std::map<std::string, std::vector<double>> const& arrays, std::map<std::string, int> const& widths) const;
     /// Into an array of a checkpoint.
     void add_part(ChainGroup const&, std::vector<double> own, int width, std::string const& name, OwnState&) const;
     Scene const& scene_;

@@ -6,6 +6,7 @@
 
 #include "chain/gather.hpp"
 #include "error.hpp"
+#include "mpi/first_rank.hpp"
 
 namespace catena {
 namespace {
@@ -260,13 +261,22 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
     return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces(found), tip_forces(found)};
 }
 
-std::vector<double> ChainSystem::own_part(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays,
-                                          std::string const& name, int width) const {
-    auto const found = arrays.find(name);
-    if (found == arrays.end() || found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
-        throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart",
-                         "take a checkpoint of this scene and integrator");
-    return take_from_scene(group, width, found->second);
+ChainSystem::OwnState ChainSystem::handed_out(std::map<std::string, std::vector<double>> const& arrays,
+                                              std::map<std::string, int> const& widths) const {
+    on_first_rank(communicator_, [&] {
+        for (auto const& [name, width] : widths)
+            if (auto const found = arrays.find(name);
+                found == arrays.end() || found->second.size() != static_cast<std::size_t>(scene_.bodies() * width))
+                throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart",
+                                 "take a checkpoint of this scene and integrator");
+    });
+    OwnState own;
+    SceneWindows const windows(communicator_, groups_);
+    for (auto const& [name, width] : widths) {
+        std::span<double const> const whole = communicator_.rank() == 0 ? std::span(arrays.at(name)) : std::span<double const>();
+        own[name] = {width, windows.hand_out(width, whole)};
+    }
+    return own;
 }
 
 void ChainSystem::add_part(ChainGroup const& group, std::vector<double> own, int width, std::string const& name, OwnState& state) const {
@@ -320,25 +330,41 @@ std::map<std::string, std::vector<double>> ChainSystem::gathered(OwnState const&
     return arrays;
 }
 
-JointRates ChainSystem::own_rates(ChainGroup const& group, std::map<std::string, std::vector<double>> const& arrays) const {
-    JointRates rates{Field<3>(group.size), of_starts(group, triples(own_part(group, arrays, "base_acceleration", 3)))};
-    from_array<3>({"qdd", 3, own_part(group, arrays, "qdd", 3)}, rates.qdd.view());
-    return rates;
+std::vector<JointRates> ChainSystem::own_rates(std::map<std::string, std::vector<double>> const& arrays) const {
+    OwnState own = handed_out(arrays, {{"qdd", 3}, {"base_acceleration", 3}});
+    std::vector<JointRates> all;
+    for (auto const& dynamics : joint_) {
+        ChainGroup const& group = dynamics->group();
+        JointRates rates{Field<3>(group.size), of_starts(group, triples(own["base_acceleration"].of_group[index_of(group)]))};
+        from_array<3>({"qdd", 3, std::move(own["qdd"].of_group[index_of(group)])}, rates.qdd.view());
+        all.push_back(std::move(rates));
+    }
+    return all;
 }
 
 void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& arrays) {
+    std::map<std::string, int> widths;
+    std::vector<std::vector<StateArray>> absolute;
     for (auto const& group : absolute_) {
-        std::vector<StateArray> state = group->state();
-        for (StateArray& a : state) a.values = own_part(group->group(), arrays, a.name, a.width);
-        group->set_state(state);
+        absolute.push_back(group->state());
+        for (StateArray const& a : absolute.back()) widths[a.name] = a.width;
+    }
+    if (!joint_.empty()) widths.insert({{"q", 4}, {"qd", 3}, {"base_position", 3}, {"base_velocity", 3}});
+    OwnState own = handed_out(arrays, widths);
+    auto const own_part = [&](ChainGroup const& group, std::string const& name) {
+        return std::move(own.at(name).of_group[index_of(group)]);
+    };
+    for (std::size_t g = 0; g < absolute_.size(); ++g) {
+        for (StateArray& a : absolute[g]) a.values = own_part(absolute_[g]->group(), a.name);
+        absolute_[g]->set_state(absolute[g]);
     }
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         JointState s(group);
-        from_array<4>({"q", 4, own_part(group, arrays, "q", 4)}, s.q.view());
-        from_array<3>({"qd", 3, own_part(group, arrays, "qd", 3)}, s.qd.view());
-        s.base_position = of_starts(group, triples(own_part(group, arrays, "base_position", 3)));
-        s.base_velocity = of_starts(group, triples(own_part(group, arrays, "base_velocity", 3)));
+        from_array<4>({"q", 4, own_part(group, "q")}, s.q.view());
+        from_array<3>({"qd", 3, own_part(group, "qd")}, s.qd.view());
+        s.base_position = of_starts(group, triples(own_part(group, "base_position")));
+        s.base_velocity = of_starts(group, triples(own_part(group, "base_velocity")));
         dynamics->set_state(s);
     }
 }

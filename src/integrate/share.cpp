@@ -51,7 +51,8 @@ void share(Communicator const& communicator, Checkpoint& c) {
     value(c.step);
     value(c.time);
     json names = {{"integers", c.integers}, {"arrays", json::object()}};
-    for (auto const& [name, array] : c.arrays) names["arrays"][name] = array.size();
+    for (auto const& [name, array] : c.arrays)
+        if (array.size() <= largest_shared_array) names["arrays"][name] = array.size();
     std::string packed = names.dump();
     text(packed);
     names = json::parse(packed);

@@ -10,7 +10,9 @@
 
 namespace catena {
 
-/// Rank 0's checkpoint to every rank, its notes excepted. Collective.
+/// Arrays of more numbers are of bodies: each rank gets its own later (ChainSystem::set_state).
+inline constexpr std::size_t largest_shared_array = 1 << 16;
+/// Rank 0's checkpoint to every rank, but its notes and those arrays. Collective.
 void share(Communicator const&, Checkpoint&);
 
 /// {"ranks": [{"rank", "steps": [{"step", "phases": [...]}]}]} on rank 0. Collective.

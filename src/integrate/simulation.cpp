@@ -274,7 +274,7 @@ class Run {
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
     }
 
-    /// The checkpoint to go on from, on every rank but for its notes. Collective.
+    /// The checkpoint to go on from, on every rank but for its notes and arrays of bodies. Collective.
     Checkpoint read_start() const {
         Checkpoint c;
         on_first_rank(communicator_, [&] {

@@ -62,8 +62,11 @@ class JointStepper final : public Stepper {
     void restore(Checkpoint const& c) override {
         set_time(c.step);
         corrections_ = static_cast<int>(c.integers.at("corrections_of_tips"));
-        if (integrator_->carries_rates())
-            for (JointDynamics* const group : system_.joint()) group->carry_rates(system_.own_rates(group->group(), c.arrays));
+        if (integrator_->carries_rates()) {
+            std::vector<JointRates> const rates = system_.own_rates(c.arrays);
+            std::size_t next = 0;
+            for (JointDynamics* const group : system_.joint()) group->carry_rates(rates[next++]);
+        }
         integrator_->restored(c);
     }
     json describe() const override {

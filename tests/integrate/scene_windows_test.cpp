@@ -3,7 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+
+#include "error.hpp"
 #include "integrate/chain_system.hpp"
+#include "integrate/share.hpp"
 #include "tests/mpi/world.hpp"
 
 namespace catena::test {
@@ -33,6 +37,9 @@ TEST(SceneWindows, BringBodiesInTheOrderOfTheScene) {
                 for (double const value : values) EXPECT_EQ(value, static_cast<double>(next++));
             });
             EXPECT_EQ(next, world.rank() == 0 ? scene.bodies() * width : 0);
+            std::vector<double> whole(world.rank() == 0 ? static_cast<std::size_t>(scene.bodies() * width) : 0);
+            std::iota(whole.begin(), whole.end(), 0.0);
+            EXPECT_EQ(windows.hand_out(width, whole), own);
             std::int64_t rounds = 0, bodies = 0, before = -1;
             windows.pass_own(width, own, [&](std::vector<SceneWindows::Own> const& round) {
                 ++rounds;
@@ -47,6 +54,35 @@ TEST(SceneWindows, BringBodiesInTheOrderOfTheScene) {
             EXPECT_EQ(world.max(static_cast<double>(rounds)), static_cast<double>(rounds)) << "some rank has fewer";
             EXPECT_EQ(world.sum(bodies), scene.bodies());
         }
+}
+
+/// A restart takes memory for what is a rank's own: arrays of bodies stay where they were read, and each rank is given its part.
+TEST(SceneWindows, TheStateIsSetByWhatTheFirstRankHas) {
+    Communicator const& world = catena::testing::world();
+    Scene const scene = parse_scene(
+        "units: md\nchains: [{generator: {freely_jointed: {beads: 25000, length: 0.38}}}, "
+        "{generator: {random: {bodies: 40, joint: revolute, seed: 1}}}]",
+        "test");
+    ChainSystem system(scene, Axes::joint, world);
+    Checkpoint checkpoint;
+    checkpoint.arrays = system.state();
+    checkpoint.arrays["few"] = {1, 2, 3};
+    ASSERT_EQ(checkpoint.arrays["position"].size(), world.rank() == 0 ? static_cast<std::size_t>(3 * scene.bodies()) : 0);
+    std::map<std::string, std::vector<double>> other = checkpoint.arrays;
+    for (auto& [name, array] : other)
+        for (double& number : array) number = 0.5 * number + 1;
+    if (world.rank() > 0) checkpoint.arrays.clear();
+    share(world, checkpoint);
+    EXPECT_EQ(checkpoint.arrays["few"], (std::vector<double>{1, 2, 3}));
+    EXPECT_EQ(checkpoint.arrays.contains("position"), world.rank() == 0);
+    auto const at_first = system.state();
+    system.set_state(other);
+    EXPECT_EQ(system.state() == at_first, world.rank() > 0);  // the others have empty arrays
+    system.set_state(checkpoint.arrays);
+    EXPECT_EQ(system.state(), at_first);
+    std::map<std::string, std::vector<double>> lacking = checkpoint.arrays;
+    lacking.erase("velocity");
+    EXPECT_THROW(system.set_state(lacking), InputError);
 }
 
 }  // namespace
