@@ -83,9 +83,12 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     if (threadIdx.x == 0) letters.close();
 }
 /// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want few registers, and many to hide that
-/// memory is far; on planar and spherical joints the way down does. On links' way up a fourth finds none for quotients without branches.
+/// memory is far; on planar and spherical joints the way down does. On links' way up a fourth block finds none for quotients without
+/// branches.
 template <class Sweep>
-constexpr int blocks_of_climb = Sweep::Sweeps::K == 1 ? 3 : 1;
+constexpr int blocks_of_climb = Sweep::Sweeps::K > 1   ? 1
+                                : takes_factors<Sweep> ? 3
+                                                       : 4;
 template <class Sweep>
 constexpr int blocks_of_descent = Sweep::Sweeps::K == 1                                                    ? 4
                                   : comes_twice<Sweep> && (Sweep::Sweeps::K == 2 || Sweep::Sweeps::K == 3) ? 3

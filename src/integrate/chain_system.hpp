@@ -174,8 +174,11 @@ class ChainSystem {
     void finish_openmm();
     void note_overlap(double start, double begun, double assembled, double waits, double finished);
     bool is_absolute(ChainGroup const& group) const { return group.beads || group.linked || axes_ == Axes::world; }
-    /// Of rank 0's arrays of a checkpoint, those with these widths; InputError where one is missing or of another size. Collective.
-    OwnState handed_out(std::map<std::string, std::vector<double>> const& arrays, std::map<std::string, int> const& widths) const;
+    /// That rank 0's arrays of a checkpoint have these, with so many numbers a body; InputError where not. Collective.
+    void require_arrays(std::map<std::string, std::vector<double>> const& arrays, std::map<std::string, int> const& widths) const;
+    /// This rank's part of one of them, group by group. Collective.
+    std::vector<std::vector<double>> own_part(std::map<std::string, std::vector<double>> const& arrays, std::string const& name,
+                                              int width) const;
     /// Into an array of a checkpoint.
     void add_part(ChainGroup const&, std::vector<double> own, int width, std::string const& name, OwnState&) const;
     Scene const& scene_;

@@ -261,8 +261,7 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
     return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces(found), tip_forces(found)};
 }
 
-ChainSystem::OwnState ChainSystem::handed_out(std::map<std::string, std::vector<double>> const& arrays,
-                                              std::map<std::string, int> const& widths) const {
+void ChainSystem::require_arrays(std::map<std::string, std::vector<double>> const& arrays, std::map<std::string, int> const& widths) const {
     on_first_rank(communicator_, [&] {
         for (auto const& [name, width] : widths)
             if (auto const found = arrays.find(name);
@@ -270,13 +269,12 @@ ChainSystem::OwnState ChainSystem::handed_out(std::map<std::string, std::vector<
                 throw InputError("the checkpoint lacks the array " + name + " for this scene", "--restart",
                                  "take a checkpoint of this scene and integrator");
     });
-    OwnState own;
-    SceneWindows const windows(communicator_, groups_);
-    for (auto const& [name, width] : widths) {
-        std::span<double const> const whole = communicator_.rank() == 0 ? std::span(arrays.at(name)) : std::span<double const>();
-        own[name] = {width, windows.hand_out(width, whole)};
-    }
-    return own;
+}
+
+std::vector<std::vector<double>> ChainSystem::own_part(std::map<std::string, std::vector<double>> const& arrays, std::string const& name,
+                                                       int width) const {
+    std::span<double const> const whole = communicator_.rank() == 0 ? std::span(arrays.at(name)) : std::span<double const>();
+    return SceneWindows(communicator_, groups_).hand_out(width, whole);
 }
 
 void ChainSystem::add_part(ChainGroup const& group, std::vector<double> own, int width, std::string const& name, OwnState& state) const {
@@ -331,42 +329,59 @@ std::map<std::string, std::vector<double>> ChainSystem::gathered(OwnState const&
 }
 
 std::vector<JointRates> ChainSystem::own_rates(std::map<std::string, std::vector<double>> const& arrays) const {
-    OwnState own = handed_out(arrays, {{"qdd", 3}, {"base_acceleration", 3}});
+    require_arrays(arrays, {{"qdd", 3}, {"base_acceleration", 3}});
+    auto qdd = own_part(arrays, "qdd", 3), base_acceleration = own_part(arrays, "base_acceleration", 3);
     std::vector<JointRates> all;
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
-        JointRates rates{Field<3>(group.size), of_starts(group, triples(own["base_acceleration"].of_group[index_of(group)]))};
-        from_array<3>({"qdd", 3, std::move(own["qdd"].of_group[index_of(group)])}, rates.qdd.view());
+        JointRates rates{Field<3>(group.size), of_starts(group, triples(base_acceleration[index_of(group)]))};
+        from_array<3>({"qdd", 3, std::move(qdd[index_of(group)])}, rates.qdd.view());
         all.push_back(std::move(rates));
     }
     return all;
 }
 
+/// Array by array, which then goes: a rank may have little room beside the whole checkpoint.
 void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& arrays) {
-    std::map<std::string, int> widths;
+    std::map<std::string, int> absolute_widths;
     std::vector<std::vector<StateArray>> absolute;
     for (auto const& group : absolute_) {
         absolute.push_back(group->state());
-        for (StateArray const& a : absolute.back()) widths[a.name] = a.width;
+        for (StateArray& a : absolute.back()) {
+            absolute_widths[a.name] = a.width;
+            a.values = {};
+        }
     }
+    std::map<std::string, int> widths = absolute_widths;
     if (!joint_.empty()) widths.insert({{"q", 4}, {"qd", 3}, {"base_position", 3}, {"base_velocity", 3}});
-    OwnState own = handed_out(arrays, widths);
-    auto const own_part = [&](ChainGroup const& group, std::string const& name) {
-        return std::move(own.at(name).of_group[index_of(group)]);
+    require_arrays(arrays, widths);
+
+    for (auto const& [name, width] : absolute_widths) {
+        auto own = own_part(arrays, name, width);
+        for (std::size_t g = 0; g < absolute_.size(); ++g)
+            for (StateArray& a : absolute[g])
+                if (a.name == name) a.values = std::move(own[index_of(absolute_[g]->group())]);
+    }
+    for (std::size_t g = 0; g < absolute_.size(); ++g) absolute_[g]->set_state(std::exchange(absolute[g], {}));
+
+    std::vector<JointState> joint;
+    for (auto const& dynamics : joint_) joint.emplace_back(dynamics->group());
+    auto const set = [&](std::string const& name, int width, auto const& put) {
+        if (joint.empty()) return;
+        auto own = own_part(arrays, name, width);
+        for (std::size_t g = 0; g < joint.size(); ++g) {
+            ChainGroup const& group = joint_[g]->group();
+            put(joint[g], group, std::move(own[index_of(group)]));
+        }
     };
-    for (std::size_t g = 0; g < absolute_.size(); ++g) {
-        for (StateArray& a : absolute[g]) a.values = own_part(absolute_[g]->group(), a.name);
-        absolute_[g]->set_state(absolute[g]);
-    }
-    for (auto const& dynamics : joint_) {
-        ChainGroup const& group = dynamics->group();
-        JointState s(group);
-        from_array<4>({"q", 4, own_part(group, "q")}, s.q.view());
-        from_array<3>({"qd", 3, own_part(group, "qd")}, s.qd.view());
-        s.base_position = of_starts(group, triples(own_part(group, "base_position")));
-        s.base_velocity = of_starts(group, triples(own_part(group, "base_velocity")));
-        dynamics->set_state(s);
-    }
+    using Own = std::vector<double>;
+    set("q", 4, [](JointState& s, ChainGroup const&, Own own) { from_array<4>({"q", 4, std::move(own)}, s.q.view()); });
+    set("qd", 3, [](JointState& s, ChainGroup const&, Own own) { from_array<3>({"qd", 3, std::move(own)}, s.qd.view()); });
+    set("base_position", 3,
+        [](JointState& s, ChainGroup const& group, Own const& own) { s.base_position = of_starts(group, triples(own)); });
+    set("base_velocity", 3,
+        [](JointState& s, ChainGroup const& group, Own const& own) { s.base_velocity = of_starts(group, triples(own)); });
+    for (std::size_t g = 0; g < joint.size(); ++g) joint_[g]->set_state(joint[g]);
 }
 
 }  // namespace catena

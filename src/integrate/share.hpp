@@ -10,7 +10,8 @@
 
 namespace catena {
 
-/// Arrays of more numbers are of bodies: each rank gets its own later (ChainSystem::set_state).
+/// Arrays of more numbers are of bodies: each rank gets its own later (ChainSystem::set_state). What a run keeps beside them is shorter: at
+/// most a number a rank.
 inline constexpr std::size_t largest_shared_array = 1 << 16;
 /// Rank 0's checkpoint to every rank, but its notes and those arrays. Collective.
 void share(Communicator const&, Checkpoint&);

@@ -64,8 +64,8 @@ class JointStepper final : public Stepper {
         corrections_ = static_cast<int>(c.integers.at("corrections_of_tips"));
         if (integrator_->carries_rates()) {
             std::vector<JointRates> const rates = system_.own_rates(c.arrays);
-            std::size_t next = 0;
-            for (JointDynamics* const group : system_.joint()) group->carry_rates(rates[next++]);
+            std::vector<JointDynamics*> const groups = system_.joint();
+            for (std::size_t g = 0; g < groups.size(); ++g) groups[g]->carry_rates(rates[g]);
         }
         integrator_->restored(c);
     }

@@ -7,7 +7,6 @@
 #include <cstdlib>
 
 #include "integrate/chain_system.hpp"
-#include "integrate/share.hpp"
 #include "integrate/stepper.hpp"
 #include "mpi/first_rank.hpp"
 #include "tests/gpu/openmm_scene.hpp"
@@ -84,7 +83,6 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         f.all = system.bead_forces();
         stepper->save(f.checkpoint);
         f.checkpoint.arrays = system.state();
-        share(world_, f.checkpoint);
         f.traffic = system.openmm()->traffic();
         f.contexts = system.openmm()->contexts();
         if (DevicePath const* const path = system.openmm()->device_path()) f.lists = path->pair_lists();
