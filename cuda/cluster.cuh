@@ -77,6 +77,18 @@ struct alignas(16) LetterBox {
     }
 };
 
+/// One that blocks on other GPUs read and write.
+struct PeerLetterBox : LetterBox {
+    __device__ void put(Halves const& halves) {
+        asm volatile("st.relaxed.sys.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
+    }
+    __device__ Halves get() const {
+        Halves halves;
+        asm volatile("ld.relaxed.sys.global.v2.b64 {%0, %1}, [%2];" : "=l"(halves.lower), "=l"(halves.upper) : "l"(this) : "memory");
+        return halves;
+    }
+};
+
 /// In two halves, so that there is work between them.
 __device__ inline void arrive_at_cluster() {
 #if __CUDA_ARCH__ >= 900
@@ -102,8 +114,8 @@ __device__ inline void wait_for_launch() {
 
 #endif
 
-/// A number on its way between blocks of a launch, which all run at once: each half stands beside the launch's number, so that who reads it
-/// knows whether it has come, and nobody waits at a barrier.
+/// A number on its way between blocks of a launch, or of launches on several GPUs, which all run at once: each half stands beside the
+/// launch's number, so that who reads it knows whether it has come, and nobody waits at a barrier.
 struct Letter : LetterBox::Halves {
     __device__ static Letter of(double value, unsigned launch) {
         auto const bits = static_cast<unsigned long long>(__double_as_longlong(value)), beside = static_cast<unsigned long long>(launch) << 32;
@@ -115,9 +127,10 @@ struct Letter : LetterBox::Halves {
   private:
     static constexpr unsigned long long lower_half = 0xffffffff;
 };
-/// What blocks of a launch give each other: number n of record i.
-struct Letters {
-    LetterBox* boxes = nullptr;
+/// What such blocks give each other: number n of record i.
+template <class Box>
+struct LettersIn {
+    Box* boxes = nullptr;
     int records = 0;
     unsigned launch = 0;  // not 0, which letters are of that nobody has written
 
@@ -147,6 +160,7 @@ struct Letters {
         }
     }
 };
+using Letters = LettersIn<LetterBox>;
 /// Of a launch that turns: to the block above and from there.
 struct TurnLetters {
     Letters up, down;

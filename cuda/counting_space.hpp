@@ -57,11 +57,13 @@ class CountingSpace : public HostAccess {
     struct Direct {
         explicit operator bool() const { return false; }
     };
-    Direct connect(dca::Schedule const&, int) const { return {}; }
-    template <class Numbers>
-    void exchange(Direct const&, Numbers const&) const {}
+    Direct connect(dca::Schedule const&, int, int) const { return {}; }
+    template <class Numbers, class... Beside>
+    void exchange(Direct const&, Numbers const&, Beside const&...) const {}
     template <int D>
     void exchange(Communicator const&, BodyExchange<D> const&) const {}
+    template <int D, class First>
+    void exchange(Communicator const&, BodyExchange<D> const&, First const&) const {}
     /// Of the host.
     template <class T>
     class HostArray {

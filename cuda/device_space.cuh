@@ -208,19 +208,26 @@ class DeviceSpace {
     }
     template <int D>
     void exchange(Communicator const& communicator, BodyExchange<D> const& e) const {
-        if (!peers_) return exchange_by_host(*this, communicator, e);
-        Traffic message;
-        message.exchanges = 1;
-        message.sent_bytes = e.to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
-        communicator.tally(message);
-        exchange(peers_.to_and_from<D>(e.to, e.source), kernels::BodyNumbers{number_of(e.from, e.i), number_of(e.into, e.j)});
+        exchange(communicator, e, kernels::Nothing{});
+    }
+    template <int D, class First>
+    void exchange(Communicator const& communicator, BodyExchange<D> const& e, First const& first) const {
+        if (!e) return;
+        if (!peers_) {
+            if constexpr (!std::is_same_v<First, kernels::Nothing>) for_each(1, first);
+            return exchange_by_host(*this, communicator, e);
+        }
+        communicator.tally(traffic_of(e));
+        exchange(peers_.to_and_from<D>(e.to, e.source), numbers_of(e), {}, first);
     }
     using Direct = PeerCall;
-    Direct connect(dca::Schedule const& schedule, int width) const { return peers_.among_all(schedule, width); }
-    template <class Numbers>
-    void exchange(Direct const& direct, Numbers const& numbers) const {
-        kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers);
-        started();
+    Direct connect(dca::Schedule const& schedule, int width, int beside) const { return peers_.among_all(schedule, width, beside); }
+    template <class Numbers, int... D>
+    void exchange(Direct const& direct, Numbers const& numbers, BodyExchange<D> const&... beside) const {
+        static_assert(sizeof...(D) <= kernels::BodiesBeside::most);
+        kernels::BodiesBeside along;
+        (along.add(beside ? D : 0, beside.source, numbers_of(beside)), ...);
+        exchange(direct, numbers, along, kernels::Nothing{});
     }
     template <int D>
     Field<D> read(DeviceField<D> const& field) const {
@@ -295,6 +302,15 @@ class DeviceSpace {
     template <class Real, int D>
     static Real* number_of(FieldView<Real, D> const& field, std::int64_t k) {
         return field.origin + gpu_order::first_number(k, field.pitch);
+    }
+    template <class Numbers, class First>
+    void exchange(Direct const& direct, Numbers const& numbers, kernels::BodiesBeside const& beside, First const& first) const {
+        kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers, beside, first);
+        started();
+    }
+    template <int D>
+    static kernels::BodyNumbers numbers_of(BodyExchange<D> const& e) {
+        return {number_of(e.from, e.i), number_of(e.into, e.j)};
     }
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }

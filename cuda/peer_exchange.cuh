@@ -2,17 +2,17 @@
 #pragma once
 
 #include <algorithm>
-#include <cuda/atomic>
 #include <memory>
 #include <vector>
 
+#include "cuda/cluster.cuh"
 #include "cuda/peer_memory.hpp"
 #include "dca/tree.hpp"
 
 namespace catena::cuda {
 
 /// Who takes part in an exchange: each of `peer` gets this rank's `sent` numbers, and of its own `received[p]` are taken, which are numbers
-/// first[p], first[p] + 1, ... of all. Both of a pair call at the same time, if only to receive nothing. The rank itself may be one.
+/// first[p], first[p] + 1, ... of all. Both of a pair call at the same time, if only to receive nothing.
 struct PeerCall {
     PeerBoxes boxes;
     int peers = 0, sent = 0;
@@ -34,7 +34,7 @@ class Peers {
     Peers() = default;
     /// Collective.
     explicit Peers(Communicator const& communicator) : memory_(PeerMemory::connect(communicator)) {
-        if (memory_) of_bodies_ = memory_->boxes(most_of_a_body);
+        if (memory_) of_bodies_ = memory_->boxes(most_of_a_body + 1);
     }
     explicit operator bool() const { return memory_ != nullptr; }
     /// A body's numbers to one rank and from one; a negative rank means nobody.
@@ -47,8 +47,8 @@ class Peers {
         if (source >= 0 && source != to) call.add(source, 0, numbers);
         return call;
     }
-    /// `width` numbers of every shared unit, to all. All ranks ask for the same ones in the same order.
-    PeerCall among_all(dca::Schedule const& schedule, int width) const {
+    /// `width` numbers of every shared unit, to all, and up to `beside` of bodies. All ranks ask for the same ones in the same order.
+    PeerCall among_all(dca::Schedule const& schedule, int width, int beside) const {
         PeerCall call;
         if (!memory_ || schedule.shared.empty()) return call;
         std::vector<int> numbers(static_cast<std::size_t>(memory_->ranks()), 0);
@@ -56,11 +56,13 @@ class Peers {
         std::int64_t first = 0;
         for (int rank = 0; rank < memory_->ranks(); ++rank) {
             int const own = numbers[static_cast<std::size_t>(rank)];
-            call.add(rank, first, own);
-            if (rank == memory_->rank()) call.sent = own;
+            if (rank == memory_->rank())
+                call.sent = own;
+            else
+                call.add(rank, first, own);
             first += own;
         }
-        call.boxes = memory_->boxes(*std::max_element(numbers.begin(), numbers.end()));
+        call.boxes = memory_->boxes(*std::max_element(numbers.begin(), numbers.end()) + beside + 1);
         return call;
     }
 
@@ -71,35 +73,7 @@ class Peers {
 
 namespace kernels {
 
-constexpr int threads_of_exchange = 256;
-
-/// One block. numbers.show(i): number i to be sent; numbers.take(i, value): number i of all. A box is filled anew only after its owner has
-/// said, by filling the other one, that it was read.
-template <class Numbers>
-__global__ void exchange(PeerCall call, Numbers numbers) {
-    PeerBoxes const& boxes = call.boxes;
-    __shared__ unsigned long long times[most_peers];
-    int const t = static_cast<int>(threadIdx.x);
-    if (t < call.peers) times[t] = *boxes.exchanged(call.peer[t]) + 1;
-    __syncthreads();
-    for (int i = t; i < call.sent; i += threads_of_exchange) {
-        double const value = numbers.show(i);
-        for (int p = 0; p < call.peers; ++p) boxes.box(call.peer[p], boxes.rank, times[p])[i] = value;
-    }
-    __syncthreads();
-    if (t < call.peers) {
-        using Counter = ::cuda::atomic_ref<unsigned long long, ::cuda::thread_scope_system>;
-        Counter(*boxes.filled(call.peer[t], boxes.rank)).store(times[t], ::cuda::std::memory_order_release);
-        Counter const theirs(*boxes.filled(boxes.rank, call.peer[t]));
-        while (theirs.load(::cuda::std::memory_order_acquire) < times[t]) {
-        }
-        *boxes.exchanged(call.peer[t]) = times[t];
-    }
-    __syncthreads();
-    for (int p = 0; p < call.peers; ++p)
-        for (int i = t; i < call.received[p]; i += threads_of_exchange)
-            numbers.take(call.first[p] + i, __ldcg(boxes.box(boxes.rank, call.peer[p], times[p]) + i));
-}
+constexpr int threads_of_exchange = 512;
 
 /// Of a body on its way into another rank's halo.
 struct BodyNumbers {
@@ -108,6 +82,63 @@ struct BodyNumbers {
     __device__ double show(std::int64_t i) const { return from[i * gpu_order::lanes]; }
     __device__ void take(std::int64_t i, double value) const { to[i * gpu_order::lanes] = value; }
 };
+/// Bodies for neighbours that go along with what all get. Those that this rank wants are all of one rank, `source`, the same for each; a
+/// rank that has neighbours sends as many as they do.
+struct BodiesBeside {
+    static constexpr int most = 2;
+    int count = 0, numbers = 0, source = -1;
+    int end[most] = {};  // of each one's numbers
+    BodyNumbers body[most] = {};
+
+    void add(int numbers_of_it, int from, BodyNumbers const& it) {
+        end[count] = numbers += numbers_of_it;
+        body[count++] = it;
+        if (numbers_of_it > 0) source = from;
+    }
+    __device__ double show(int i) const { return i < end[0] ? body[0].show(i) : body[1].show(i - end[0]); }
+    __device__ void take(int i, double value) const {
+        BodyNumbers const& of = i < end[0] ? body[0] : body[1];
+        of.take(i < end[0] ? i : i - end[0], value);
+    }
+};
+
+struct Nothing {
+    __device__ void operator()(std::int64_t) const {}
+};
+
+/// One block. After first(0): numbers.show(i): number i to be sent; numbers.take(i, value): number i of all. The last letter of a box comes
+/// in any case: who has it knows that its sender has read what came the last time.
+template <class Numbers, class First>
+__global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, Numbers numbers, BodiesBeside beside, First first) {
+    PeerBoxes const& boxes = call.boxes;
+    __shared__ unsigned long long times[most_peers];
+    int const t = static_cast<int>(threadIdx.x);
+    if (t == 0) first(0);
+    if (t < call.peers) times[t] = *boxes.exchanged(call.peer[t]) += 1;
+    __syncthreads();
+    auto const letters = [&](int at, int from, int p) {
+        unsigned long long const launches = 0xffffffff;  // as many numbers as letters tell apart, 0 not among them
+        return LettersIn<PeerLetterBox>{reinterpret_cast<PeerLetterBox*>(boxes.box(at, from, times[p])), 1,
+                                        static_cast<unsigned>(times[p] % launches) + 1};
+    };
+    int const sent = call.sent + beside.numbers, last = boxes.width - 1;
+    for (int i = t; i <= sent; i += threads_of_exchange) {
+        double const value = i < call.sent ? numbers.show(i) : i < sent ? beside.show(i - call.sent) : 0.0;
+        for (int p = 0; p < call.peers; ++p) letters(call.peer[p], boxes.rank, p).put(0, i < sent ? i : last, value);
+    }
+    constexpr int at_once = 4;
+    for (int p = 0; p < call.peers; ++p) {
+        auto const came = letters(boxes.rank, call.peer[p], p);
+        int const received = call.received[p], end = received + (call.peer[p] == beside.source ? beside.numbers : 0);
+        came.template take_some<at_once>(0, t, end, threads_of_exchange, [&](int i, double value) {
+            if (i < received)
+                numbers.take(call.first[p] + i, value);
+            else
+                beside.take(i - received, value);
+        });
+        if (t == 0) came.wait_for(0, last);
+    }
+}
 
 }  // namespace kernels
 }  // namespace catena::cuda

@@ -62,7 +62,7 @@ bool apart_on_one_host(Communicator const& communicator) {
     return most_alike(all) == 1 && reaches(device, all);
 }
 
-constexpr std::int64_t capacity = 1 << 19;  // numbers: 4 MiB; the widest segments of all ranks' units take three quarters of it
+constexpr std::int64_t capacity = 1 << 21;  // numbers: 16 MiB; the widest segments of all ranks' units take most of it
 
 /// Of the CUDA context that is current: no two have the same, also where one is gone; 0: the driver does not tell.
 unsigned long long context_number() {

@@ -15,23 +15,24 @@ namespace catena::cuda {
 inline constexpr int most_peers = 16;
 inline constexpr int most_of_a_body = 16;  // numbers of a field
 
-/// For kernels: where each rank has what pairs of ranks exchange. Rank r keeps for every rank s: two boxes of `width` numbers that s fills
-/// in turns, how often s has filled one, and how often they have exchanged.
+/// For kernels: where each rank has what pairs of ranks exchange. Rank r keeps for every rank s: two boxes of `width` letters (cluster.cuh)
+/// that s fills in turns, how often s has come to r without any (meet()), and how often they have exchanged.
 struct PeerBoxes {
     double* base[most_peers] = {};  // of each rank
     int rank = 0, ranks = 0, width = 0;
 
-    static std::int64_t numbers(int ranks, int width) { return std::int64_t{2} * ranks * (width + 1); }
+    static std::int64_t numbers(int ranks, int width) { return std::int64_t{2} * ranks * (letter * width + 1); }
     /// Of rank `at`, filled by rank `from`.
     CATENA_HD double* box(int at, int from, unsigned long long times) const {
-        return base[at] + (2 * from + static_cast<int>(times & 1)) * static_cast<std::int64_t>(width);
+        return base[at] + (2 * from + static_cast<int>(times & 1)) * std::int64_t{letter} * width;
     }
-    CATENA_HD unsigned long long* filled(int at, int from) const { return counters(at) + from; }
+    CATENA_HD unsigned long long* came(int to, int from) const { return counters(to) + from; }
     CATENA_HD unsigned long long* exchanged(int with) const { return counters(rank) + ranks + with; }
 
   private:
+    static constexpr int letter = 2;  // numbers that it has room for
     CATENA_HD unsigned long long* counters(int at) const {
-        return reinterpret_cast<unsigned long long*>(base[at] + std::int64_t{2} * ranks * width);
+        return reinterpret_cast<unsigned long long*>(base[at] + std::int64_t{2} * ranks * letter * width);
     }
 };
 

@@ -233,8 +233,7 @@ void fill(ChainGroup& group, Scene const& scene) {
     }
 }
 
-/// Joints at the boundaries of shared units are eliminated at the top, under another index; articulated handles read the local entries, the
-/// halo's among them, on the way down.
+/// Also of the joints at the boundaries of shared units, the halo's among them, which are eliminated at the top.
 void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
     dca::Schedule const& s = group.schedule;
     auto const restricted = [&](int chain, std::int64_t body) {
@@ -253,9 +252,8 @@ void fill_restricted(ChainGroup& group, Scene const& scene, bool implicit) {
         group.restricted_of_joint[s.halo] = restricted(last.chain, last.body + last.count);
     }
     for (std::size_t i = 0; i < s.tip_chain.size(); ++i)
-        if (!group.partition.is_split(s.tip_chain[i]))
-            group.restricted_of_joint[s.first_tip() + static_cast<std::int64_t>(i)] =
-                restricted(s.tip_chain[i], group.partition.trees[s.tip_chain[i]].bodies);
+        group.restricted_of_joint[s.first_tip() + static_cast<std::int64_t>(i)] =
+            restricted(s.tip_chain[i], group.partition.trees[s.tip_chain[i]].bodies);
     for (std::size_t i = 0; i < s.top_chain_of_joint.size(); ++i)
         group.restricted_of_joint[s.first_top_joint() + static_cast<std::int64_t>(i)] =
             restricted(s.top_chain_of_joint[i], s.top_body_of_joint[i]);

@@ -137,10 +137,22 @@ struct BodyExchange {
     View<D> into;
     std::int64_t j;
     int source;
+
+    static constexpr int numbers = D;
+    static BodyExchange none() { return {{}, 0, -1, {}, 0, -1}; }
+    explicit operator bool() const { return to >= 0 || source >= 0; }
 };
+template <int D>
+Traffic traffic_of(BodyExchange<D> const& e) {
+    Traffic message;
+    message.exchanges = e ? 1 : 0;
+    message.sent_bytes = e.to >= 0 ? D * static_cast<std::int64_t>(sizeof(double)) : 0;
+    return message;
+}
 /// By the host: `access` gets and puts bodies, wherever they are.
 template <int D, class Access>
 void exchange_by_host(Access const& access, Communicator const& communicator, BodyExchange<D> const& e) {
+    if (!e) return;
     Vector<double, D> const send = access.get(e.from, e.i);
     Vector<double, D> receive = send;
     communicator.exchange(std::as_bytes(std::span(send.data)), e.to, std::as_writable_bytes(std::span(receive.data)), e.source);
@@ -161,17 +173,27 @@ struct HostAccess {
     void exchange(Communicator const& communicator, BodyExchange<D> const& e) const {
         exchange_by_host(*this, communicator, e);
     }
+    /// After first(0), where there is an exchange.
+    template <int D, class First>
+    void exchange(Communicator const& communicator, BodyExchange<D> const& e, First const& first) const {
+        if (!e) return;
+        first(0);
+        exchange(communicator, e);
+    }
 };
+/// Of a field's halos: entry size, from the outboard neighbour's first body.
+template <int D>
+BodyExchange<D> from_outboard(ChainGroup const& group, View<D> field) {
+    return {field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard};
+}
 /// Fills halos of a field: entry size from the outboard neighbour's first body, entry -1 from the inboard neighbour's last one. `access`
 /// reads and writes bodies of the field, wherever it is.
 template <int D, class Access = HostAccess>
 void exchange_from_outboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
-    if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
-    access.exchange(communicator, BodyExchange<D>{field, 0, group.neighbour_inboard, field, group.size, group.neighbour_outboard});
+    access.exchange(communicator, from_outboard(group, field));
 }
 template <int D, class Access = HostAccess>
 void exchange_from_inboard(Communicator const& communicator, ChainGroup const& group, View<D> field, Access const& access = {}) {
-    if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return;
     access.exchange(communicator, BodyExchange<D>{field, group.size - 1, group.neighbour_outboard, field, -1, group.neighbour_inboard});
 }
 

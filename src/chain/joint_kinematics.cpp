@@ -36,11 +36,4 @@ std::vector<std::int32_t> run_slots(ChainGroup const& group) {
     return slots;
 }
 
-std::vector<dca::TopCopy> own_shared_units(ChainGroup const& group) {
-    std::vector<dca::TopCopy> copies;
-    for (dca::SharedUnit const& unit : group.schedule.shared)
-        if (unit.source >= 0) copies.push_back({unit.slot, unit.source});
-    return copies;
-}
-
 }  // namespace catena

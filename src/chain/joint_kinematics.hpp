@@ -47,10 +47,9 @@ struct MotionFields {
 };
 using BodyMotion = MotionFields<HostSpace>;
 
-/// First bodies of the group's pieces; of every body the slot of its run; where wholes of shared chains' own units come from.
+/// First bodies of the group's pieces; of every body the slot of its run.
 std::vector<std::int64_t> first_bodies(ChainGroup const&);
 std::vector<std::int32_t> run_slots(ChainGroup const&);
-std::vector<dca::TopCopy> own_shared_units(ChainGroup const&);
 
 template <class Space>
 class JointKinematics {
@@ -58,6 +57,9 @@ class JointKinematics {
     using FieldOf = typename Space::template FieldOf<D>;
 
   public:
+    /// Joints' loads of a first body (HingeLoads), or none, which go along with what ranks tell each other of motions.
+    using LoadsForNeighbour = BodyExchange<4>;
+    using MeetingForNeighbour = BodyExchange<9>;
     /// The group and the communicator must outlive it.
     JointKinematics(ChainGroup const& group, Space const& space, Communicator const& communicator)
         : group_(group),
@@ -65,7 +67,6 @@ class JointKinematics {
           communicator_(communicator),
           first_body_(first_bodies(group)),
           slot_of_body_(run_slots(group)),
-          own_shared_(own_shared_units(group)),
           joint_(group.joint),
           is_first_(group.is_first),
           is_last_(group.is_last),
@@ -82,14 +83,14 @@ class JointKinematics {
           runs_(group.schedule.runs),
           roots_(group.schedule.roots),
           top_roots_(group.schedule.top_roots),
-          from_top_(own_shared_),
           slot_(slot_of_body_),
           rotation_(group.size),
           omega_(group.size),
           translation_(group.size),
           velocity_(group.size),
           next_meeting_(group.moving_meeting() ? 1 : 0),
-          shared_(group.schedule, dca::RecordNumbers<Motion>::width, space, communicator),
+          shared_(group.schedule, dca::RecordNumbers<Motion>::width, space, communicator,
+                  MeetingForNeighbour::numbers + LoadsForNeighbour::numbers),
           whole_(group.schedule.slots),
           before_(group.schedule.slots) {
         begin_at_ground();
@@ -127,36 +128,35 @@ class JointKinematics {
     /// Up and down the tree, after set_relative() of every body, and then last(k) for every body, with set_motion(). Collective where a
     /// chain is shared by ranks.
     template <bool positions, class Last>
-    void sweep(JointScan const& s, Last const& last) {
+    void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, MotionScan<positions>{s}, group_.size, last);
-        sweep<positions>(s);
+        sweep<positions>(s, loads);
         space_.for_each(group_.size, last);
     }
     template <bool positions>
-    void sweep(JointScan const& s) {
-        sweep<positions>(s, tree_);
+    void sweep(JointScan const& s, LoadsForNeighbour const& loads) {
+        sweep<positions>(s, tree_, loads);
     }
     /// `tree`: the group's, without runs that JointScan::follow was called of.
     template <bool positions>
-    void sweep(JointScan const& s, typename Space::ScanTree const& tree) {
-        sweep_with(MotionScan<positions>{s}, tree, [] {});
+    void sweep(JointScan const& s, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
+        sweep_with(MotionScan<positions>{s}, tree, loads);
     }
 
-    /// By a scan that may do more with runs than MotionScan. `tree`: as sweep(). `between`: before other ranks' part, where they have one.
-    template <class Scan, class Between>
-    void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, Between const& between) {
+    /// By a scan that may do more with runs than MotionScan, and leaves `loads` there. `tree`: as sweep().
+    template <class Scan>
+    void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
+        MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
         space_.climb(tree, scan);
-        between();
-        sweep_shared(scan.motions());
+        sweep_shared(scan.motions(), meeting, loads);
         space_.descend(tree, scan);
-        if (group_.moving_meeting()) exchange_meeting(scan.motions().s);
     }
     /// By one over all runs; then last(run) for each.
-    template <class Scan, class Between, class Last>
-    void sweep_runs(Scan const& scan, Between const& between, Last const& last) {
+    template <class Scan, class Last>
+    void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan, runs_, last);
-        sweep_with(scan, tree_, between);
+        sweep_with(scan, tree_, loads);
         space_.over(runs_, last);
     }
 
@@ -164,23 +164,22 @@ class JointKinematics {
     template <bool positions>
     void evaluate(JointScan const& s) {
         space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_relative<positions>(k); });
-        sweep<positions>(s, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
+        sweep<positions>(s, LoadsForNeighbour::none(), [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
     }
     template <class Scan>
-    void sweep_shared(Scan const& scan) {
-        MotionRecords const before = scan.s.before;
+    void sweep_shared(Scan const& scan, MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
         dca::RecordNumbers<Motion> const numbers{scan.s.whole, shared_.own_units(), shared_.units()};
         shared_.show(space_, numbers);
-        shared_.bring(space_, communicator_, numbers);
+        shared_.bring(space_, communicator_, numbers, meeting, loads);
         space_.climb_and_descend(top_, scan);
-        space_.over(from_top_, [before] CATENA_LAMBDA(dca::TopCopy const& copy) { before.store(copy.to, before.load(copy.from)); });
     }
-    /// Joint k's from body k - 1, across the ranks.
-    void exchange_meeting(JointScan const& s) {
-        if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
-        space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
+    /// Joint k's from body k - 1, across the ranks, where it moves.
+    MeetingForNeighbour shown_meeting(JointScan const& s) {
         View<9> const meeting = next_meeting_.view();
-        space_.exchange(communicator_, BodyExchange<9>{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard});
+        MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard};
+        if (!group_.moving_meeting() || !shown) return MeetingForNeighbour::none();
+        space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
+        return shown;
     }
     void begin_at_ground() {
         MotionRecords const before = before_.view();
@@ -194,7 +193,6 @@ class JointKinematics {
     Communicator const& communicator_;
     std::vector<std::int64_t> first_body_;
     std::vector<std::int32_t> slot_of_body_;
-    std::vector<dca::TopCopy> own_shared_;
     typename Space::template List<JointType> joint_;
     typename Space::template List<std::uint8_t> is_first_, is_last_;
     typename Space::template List<std::int64_t> piece_;
@@ -207,7 +205,6 @@ class JointKinematics {
     typename Space::ScanTree tree_, top_;
     typename Space::template List<dca::Run> runs_;
     typename Space::template List<dca::Root> roots_, top_roots_;
-    typename Space::template List<dca::TopCopy> from_top_;
     typename Space::template List<std::int32_t> slot_;
     FieldOf<4> rotation_;
     FieldOf<3> omega_, translation_, velocity_;

@@ -35,9 +35,9 @@ class HostSpace : public HostAccess {
     struct Direct {
         explicit operator bool() const { return false; }
     };
-    Direct connect(dca::Schedule const&, int /*width*/) const { return {}; }
-    template <class Numbers>
-    void exchange(Direct const&, Numbers const&) const {}
+    Direct connect(dca::Schedule const&, int /*width*/, int /*beside*/) const { return {}; }
+    template <class Numbers, class... Beside>
+    void exchange(Direct const&, Numbers const&, Beside const&...) const {}
     using HostAccess::exchange;
     /// Memory that loops and the host share: what one wrote the other finds after wait().
     template <class T>

@@ -30,13 +30,6 @@ struct InverseSweep {
         across.store(m.inboard, e.inboard);
         across.store(m.outboard, e.outboard);
     }
-    void operator()(TopCopy const& copy) const {
-        s.joints.store(copy.to, s.joints.load(copy.from));
-        own.store(copy.to, own.load(copy.from));
-    }
-    void operator()(SharedUnit const& unit) const {
-        if (unit.source >= 0) across.store(unit.source, across.load(unit.slot));
-    }
     /// Its parts from the far end on, and each part's bodies.
     void operator()(Run const& run) const {
         Ends rest{own.load(run.body), across.load(run.slot), own.load(run.next)};

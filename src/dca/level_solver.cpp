@@ -42,7 +42,7 @@ class LevelSolver final : public ChainSolver {
         }
         std::vector<std::int64_t> own, all;
         for (SharedUnit const& unit : s.shared) {
-            if (unit.source >= 0) own.push_back(unit.source);
+            if (unit.is_own) own.push_back(unit.slot);
             all.push_back(unit.slot);
         }
         own_units_ = upper_.part->choose(own);
@@ -169,7 +169,7 @@ std::vector<std::int64_t> segments_at(Schedule const& s, std::size_t up) {
         }
     for (Root const& root : s.roots) wanted.push_back(root.slot);
     for (SharedUnit const& unit : s.shared)
-        if (unit.source >= 0) wanted.push_back(unit.source);
+        if (unit.is_own) wanted.push_back(unit.slot);
     return missing(std::move(wanted), std::move(made));
 }
 

@@ -27,7 +27,7 @@ void add_tree(ChainGroup const& group, Communicator const& communicator, SolverR
 void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     dca::Schedule const& schedule = group.schedule;
     std::int64_t chain, body;
-    if (joint < schedule.bodies) {
+    if (joint <= schedule.halo) {
         std::int64_t const global = group.partition.first_of_rank[rank] + joint;
         chain = group.partition.chain_of(global);
         body = global - group.partition.first_of_chain[chain];

@@ -81,7 +81,6 @@ class SpaceLevels final : public LevelPart {
           top_(lists(schedule_.top_levels, 0, work.top ? schedule_.top_levels.size() : 0)),
           roots_(work.top ? schedule_.roots : none_.roots),
           top_roots_(work.top ? schedule_.top_roots : none_.roots),
-          top_copies_(work.top ? schedule_.top_copies : none_.top_copies),
           matrices_(schedule_.slots),
           biases_(schedule_.slots),
           joints_(schedule_.joints),
@@ -126,7 +125,6 @@ class SpaceLevels final : public LevelPart {
         space_.over(roots_, loop);
         space_.over(top_roots_, loop);
         descend(top_);
-        space_.over(top_copies_, CopyForces<Sweeps>{sweeps_});
         space_.wait();
     }
     void disassemble() override {
@@ -164,7 +162,6 @@ class SpaceLevels final : public LevelPart {
     struct Empty {
         std::vector<Run> runs;
         std::vector<Root> roots;
-        std::vector<TopCopy> top_copies;
     };
     struct Places {
         explicit Places(std::vector<std::int64_t> const& places_in) : host(places_in), list(host) {}
@@ -234,7 +231,6 @@ class SpaceLevels final : public LevelPart {
     List<Run> leaves_up_, leaves_down_;
     std::vector<List<Merge>> up_, down_, top_;
     List<Root> roots_, top_roots_;
-    List<TopCopy> top_copies_;
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
     Records<typename Sweeps::Joint, Order::by_body> joints_;

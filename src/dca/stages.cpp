@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <unordered_map>
+#include <utility>
 
 namespace catena::dca {
 namespace {
@@ -31,6 +32,15 @@ class Planner {
                 know(m.outboard, m.joint, m.next);
                 of(m.inboard).met = of(m.outboard).met = l;
                 of(m.inboard).up = of(m.outboard).up = m.slot;
+                of(m.slot).leaves = of(m.inboard).leaves + of(m.outboard).leaves;
+            }
+        for (Node& node : node_) node.whole = node.joint;
+        for (int l = end(); l-- > 0;)
+            for (Merge const& m : levels[static_cast<std::size_t>(l)]) {
+                Node const& all = of(m.slot);
+                of(m.inboard).whole = of(m.outboard).whole = all.whole;
+                of(m.inboard).along = all.along;
+                of(m.outboard).along = all.along + of(m.inboard).leaves;
             }
     }
     int end() const { return static_cast<int>(levels_.size()); }
@@ -50,7 +60,10 @@ class Planner {
                     if (!made[static_cast<std::size_t>(slot)]) slots.push_back(slot);
                 made[static_cast<std::size_t>(m.slot)] = 1;
             }
-        std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) { return of(a).joint < of(b).joint; });
+        // Not by joints: those at the top of a chain that ranks share are stored in another order.
+        std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) {
+            return std::pair(of(a).whole, of(a).along) < std::pair(of(b).whole, of(b).along);
+        });
         return slots;
     }
 
@@ -81,9 +94,11 @@ class Planner {
 
   private:
     struct Node {
-        std::int64_t joint = 0, next = 0;  // of storage
-        std::int64_t up = -1;              // what it becomes part of
-        int met = -1;                      // at this level; -1: never
+        std::int64_t joint = 0, next = 0;    // of storage
+        std::int64_t up = -1;                // what it becomes part of
+        int met = -1;                        // at this level; -1: never
+        std::int64_t whole = 0;              // the first joint of all that it becomes part of
+        std::int64_t leaves = 1, along = 0;  // how many it is made of, how many of the whole's come before it
         std::int64_t block = -1;
         std::int32_t place = 0, next_place = 0;
     };

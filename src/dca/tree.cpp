@@ -157,30 +157,27 @@ class Builder {
         std::vector<Node> units;
         for (std::int64_t unit = 0; unit < tree.units; ++unit) {
             std::int64_t const body = chain_first + tree.first_body_of_unit(unit);
-            SharedUnit shared{s_.slots++, partition_.owner(body), -1};
-            if (shared.owner == rank_) shared.source = own_units_[next_own_unit_++].slot;
-            s_.shared.push_back(shared);
+            int const owner = partition_.owner(body);
+            bool const is_own = owner == rank_;
+            s_.shared.push_back({is_own ? own_units_[next_own_unit_++].slot : s_.slots++, owner, is_own});
             if (!mine) continue;
-            units.push_back({shared.slot, s_.joints, s_.joints + 1});
-            s_.top_chain_of_joint.push_back(chain);
-            s_.top_body_of_joint.push_back(body - chain_first);
-            if (body >= begin && body < end) s_.top_copies.push_back({s_.joints, body - begin});
-            if (body == end) s_.top_copies.push_back({s_.joints, s_.halo});
-            ++s_.joints;
+            std::int64_t const first = body >= begin && body < end ? body - begin
+                                       : body == end               ? s_.halo
+                                                                   : top_joint(chain, body - chain_first);
+            if (!units.empty()) units.back().next = first;
+            units.push_back({s_.shared.back().slot, first, s_.none});
         }
         if (!mine) return;
-        units.back().next = s_.none;
-        if (partition_.has_jointed_tip(chain)) add_shared_tip(chain, units.back().next);
+        if (partition_.has_jointed_tip(chain))
+            units.back().next = after(chain) != s_.none ? after(chain) : top_joint(chain, partition_.trees[chain].bodies);
         for (std::size_t level = 0; units.size() > 1; ++level) units = pair_up(units, level_of(s_.top_levels, level), s_.slots);
         s_.top_roots.push_back({units.front().slot, units.front().first, units.front().next, chain, partition_.tip[chain]});
     }
 
-    /// Every rank that finishes the top has the tip's joint there; the rank of the last body takes its force over.
-    void add_shared_tip(int chain, std::int64_t& next) {
-        next = s_.joints++;
+    std::int64_t top_joint(int chain, std::int64_t body) {
         s_.top_chain_of_joint.push_back(chain);
-        s_.top_body_of_joint.push_back(partition_.trees[chain].bodies);
-        if (after(chain) != s_.none) s_.top_copies.push_back({next, after(chain)});
+        s_.top_body_of_joint.push_back(body);
+        return s_.joints++;
     }
 
     Partition const& partition_;

@@ -97,30 +97,25 @@ struct Root {
 };
 /// A unit of a chain that several ranks share.
 struct SharedUnit {
-    std::int64_t slot = 0;  // where its segment lies after the gather
+    std::int64_t slot = 0;  // where its segment lies; on other ranks than the owner, after the gather
     int owner = 0;
-    std::int64_t source = 0;  // on the owner: the slot it comes from
-};
-/// The storage index of a joint force at the top of a shared chain goes to a local one (own joints and the halo at the end).
-struct TopCopy {
-    std::int64_t from = 0, to = 0;
+    bool is_own = false;
 };
 
 struct Schedule {
     // Storage of joints: [0, bodies): own ones; `halo`: the joint after the last body; `none`: always 0; then the jointed tips of
-    // chains that end here; then the joints at the top of shared chains.
+    // chains that end here; then those at the top of shared chains that are none of these.
     std::int64_t bodies = 0;
     std::int64_t halo = 0, none = 0, joints = 0;
     std::int64_t slots = 0;
     std::vector<Run> runs;
     std::vector<std::vector<Merge>> levels;      // below the roots of whole chains and below shared units
     std::vector<Root> roots;                     // of whole chains
-    std::vector<SharedUnit> shared;              // of all shared chains, in order; the same list on every rank (but for source)
+    std::vector<SharedUnit> shared;              // of all shared chains, in order; the same list on every rank (but for slots and whose they are)
     std::vector<std::vector<Merge>> top_levels;  // of the shared chains this rank takes part in
     std::vector<Root> top_roots;
-    std::vector<TopCopy> top_copies;
     std::vector<int> tip_chain;           // of the jointed tips that end here
-    std::vector<int> top_chain_of_joint;  // of the joints at the top: chain and body (a tip: the number of bodies)
+    std::vector<int> top_chain_of_joint;  // of the joints stored for the top: chain and body (a tip: the number of bodies)
     std::vector<std::int64_t> top_body_of_joint;
     std::int64_t first_tip() const { return none + 1; }
     std::int64_t first_top_joint() const { return first_tip() + static_cast<std::int64_t>(tip_chain.size()); }

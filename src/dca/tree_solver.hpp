@@ -36,7 +36,6 @@ class TreeSolver final : public ChainSolver {
           model_(group),
           tree_(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
           top_(no_runs_, schedule_.top_levels, schedule_.top_roots, schedule_.slots, group.restricted_of_joint, Sweeps::in_stage),
-          top_copies_(schedule_.top_copies),
           matrices_(schedule_.slots),
           biases_(schedule_.slots),
           joints_(schedule_.joints),
@@ -52,6 +51,7 @@ class TreeSolver final : public ChainSolver {
             if (at_once())
                 whole_runs_.emplace(schedule_.runs, schedule_.levels, schedule_.roots, schedule_.slots, group.restricted_of_joint,
                                     Sweeps::in_stage_of_whole_runs);
+        if (at_once()) shown_both_.emplace(schedule_, NumbersOfSegments::width, space, communicator);
         if constexpr (has_lanes) {
             aside_.emplace(group, model_.view(), space.simd());
             if (aside_->items() > 0)
@@ -106,8 +106,6 @@ class TreeSolver final : public ChainSolver {
             };
             each(schedule_.top_roots);
             each_level(schedule_.top_levels);
-            each(schedule_.top_copies);
-            each(schedule_.shared);
             each(schedule_.roots);
             each_level(schedule_.levels);
             each(schedule_.runs);
@@ -201,7 +199,7 @@ class TreeSolver final : public ChainSolver {
     /// With runs and merges that go side by side where there are any, and the others of each level after them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
-        auto const gather_both = [&] { gather(of_matrices(), of_biases()); };
+        auto const gather_both = [&] { gather(of_both()); };
         if constexpr (has_lanes)
             if (aside_) {
                 RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
@@ -247,32 +245,36 @@ class TreeSolver final : public ChainSolver {
             space_.climb(tree, sweep);
             gather();
             space_.climb_and_descend(top_, sweep);
-            space_.over(top_copies_, CopyForces<Sweeps>{sweeps_});
             space_.descend(tree, sweep);
         }
         if (out.joint_force && group_.neighbour_outboard >= 0)
             space_.for_each(1, ForceOfNextRank<Sweeps>{sweeps_, out.joint_force, schedule_.halo, schedule_.bodies});
     }
 
-    template <class T>
+    using NumbersOfSegments = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
+    template <class Numbers>
     struct Shown {
         SharedUnits<Space>& units;
-        RecordNumbers<T> numbers;
+        Numbers numbers;
     };
     /// The shared units' records, to all ranks.
-    template <class... T>
-    void gather(Shown<T> const&... shown) {
+    template <class Numbers>
+    void gather(Shown<Numbers> const& shown) {
         auto const start = seconds_now();
-        (shown.units.show(space_, shown.numbers), ...);
-        (shown.units.bring(space_, communicator_, shown.numbers), ...);
+        shown.units.show(space_, shown.numbers);
+        shown.units.bring(space_, communicator_, shown.numbers);
         if (measured_) space_.wait();
         report_.exchange_seconds += seconds_now() - start;
     }
-    Shown<typename Sweeps::Matrices> of_matrices() {
+    Shown<RecordNumbers<typename Sweeps::Matrices>> of_matrices() {
         return {shown_matrices_, {matrices_.view(), shown_matrices_.own_units(), shown_matrices_.units()}};
     }
-    Shown<typename Sweeps::Biases> of_biases() {
+    Shown<RecordNumbers<typename Sweeps::Biases>> of_biases() {
         return {shown_biases_, {biases_.view(), shown_biases_.own_units(), shown_biases_.units()}};
+    }
+    /// Precondition: at_once().
+    Shown<NumbersOfSegments> of_both() {
+        return {*shown_both_, {matrices_.view(), biases_.view(), shown_both_->own_units(), shown_both_->units()}};
     }
 
     ChainGroup const& group_;
@@ -285,13 +287,13 @@ class TreeSolver final : public ChainSolver {
     std::vector<Root> no_roots_;
     typename Space::Tree tree_, top_;
     std::optional<typename Space::Tree> whole_runs_;  // that evaluations go by whose runs are taken whole
-    typename Space::template List<TopCopy> top_copies_;
     Records<typename Sweeps::Matrices, Order::plain> matrices_;
     Records<typename Sweeps::Biases, Order::plain> biases_;
     Records<typename Sweeps::Joint, Order::by_body> joints_;
     Records<typename Sweeps::Offset, Order::by_body> offsets_;
     Records<typename Sweeps::State, Order::by_body> forces_;
     SharedUnits<Space> shown_matrices_, shown_biases_;
+    std::optional<SharedUnits<Space>> shown_both_;  // where evaluations are at once
     typename Space::template Array<unsigned long long> lost_;
     Sweeps sweeps_;
     std::optional<typename Space::Blocks> blocks_;

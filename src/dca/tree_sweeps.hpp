@@ -311,12 +311,6 @@ struct SweepsOf {
     using OfBiases = BiasSweep<Leaf>;
 };
 
-/// What is known of joints at the top of chains that several ranks share, to this rank's own joints.
-template <class Sweeps>
-struct CopyForces {
-    Sweeps s;
-    CATENA_HD void operator()(TopCopy const& copy) const { s.forces.store(copy.to, s.forces.load(copy.from)); }
-};
 template <int K>
 CATENA_HD Vector<double, K> const& force_of(Vector<double, K> const& force) {
     return force;

@@ -265,18 +265,18 @@ class JointDynamicsIn final : public JointDynamics {
         if (!std::exchange(relative_, false))
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
                                  [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
-        show_joint_loads();
+        BodyExchange<4> const loads = shown_joint_loads();
         auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); };
         if constexpr (has_lanes) {
             if (lanes_) {
                 lanes_->follow(space_, positions, c.scan);
-                kinematics_.template sweep<positions>(c.scan, lanes_->tree());
+                kinematics_.template sweep<positions>(c.scan, lanes_->tree(), loads);
             } else {
-                kinematics_.template sweep<positions>(c.scan);
+                kinematics_.template sweep<positions>(c.scan, loads);
             }
             each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); }, set_motion);
         } else {
-            kinematics_.template sweep<positions>(c.scan, set_motion);
+            kinematics_.template sweep<positions>(c.scan, loads, set_motion);
         }
         if (!group_.has_tips()) return;
         set_ends();
@@ -305,22 +305,20 @@ class JointDynamicsIn final : public JointDynamics {
     void follow_by_runs(JointChains const& c, bool relative) {
         HingeScan const scan{c, joint_by_joint(), refinement_.has_value()};
         if (scan.joint_by_joint && !relative) set_relative();
-        kinematics_.sweep_runs(scan, [this] { show_joint_loads(); }, [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
+        kinematics_.sweep_runs(scan, shown_joint_loads(), [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
     }
     void follow_by_lanes(JointChains const& c) {
         HingeScan const scan{c, false, refinement_.has_value()};
         // Of bodies that begin a chain, on whatever joint; where others meet is as fixed as it was at first.
         space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_relative<false>(k); });
         lanes_->follow_hinges(space_, c);
-        kinematics_.sweep_with(scan, lanes_->tree(), [this] { show_joint_loads(); });
+        kinematics_.sweep_with(scan, lanes_->tree(), shown_joint_loads());
         lanes_->begin_runs(space_, c.scan);
         space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_motion<false>(k, false); });
         space_.over(lanes_->other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
     }
     /// Of first bodies, to the rank before.
-    void show_joint_loads() {
-        if (given_.joint_loads) exchange_from_outboard(communicator_, group_, joint_load_.view(), space_);
-    }
+    BodyExchange<4> shown_joint_loads() { return given_.joint_loads ? from_outboard(group_, joint_load_.view()) : BodyExchange<4>::none(); }
     template <bool positions>
     void runge_kutta(RungeKuttaStage const& stage) {
         JointSteps const s = steps();

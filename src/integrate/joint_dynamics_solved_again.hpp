@@ -93,10 +93,9 @@ void JointDynamicsIn<Space>::correct(bool velocities) {
 
 template <class Space>
 void JointDynamicsIn<Space>::exchange_ends(JointChains const& c) {
-    if (group_.neighbour_inboard < 0 && group_.neighbour_outboard < 0) return;
-    space_.for_each(1, [c, last = group_.size - 1] CATENA_LAMBDA(std::int64_t) { c.outboard_end.store(0, c.outboard_end_of(last)); });
     View<4> const end = outboard_end_.view();
-    space_.exchange(communicator_, BodyExchange<4>{end, 0, group_.neighbour_outboard, end, -1, group_.neighbour_inboard});
+    space_.exchange(communicator_, BodyExchange<4>{end, 0, group_.neighbour_outboard, end, -1, group_.neighbour_inboard},
+                    [c, last = group_.size - 1] CATENA_LAMBDA(std::int64_t) { c.outboard_end.store(0, c.outboard_end_of(last)); });
 }
 
 template <class Space>

@@ -39,6 +39,11 @@ class JointIntegrator {
 
 /// Whether its solutions are refined `solver.refine` times: those of the others are solved for more than once with one matrix.
 inline bool is_refined(Integrator i) { return i <= Integrator::velocity_verlet; }
+/// Whether steps in joint coordinates assemble matrices by themselves: forces are computed meanwhile, or they are needed again
+/// (ChainSystem::solves_once()).
+inline bool keeps_matrices(Scene const& scene) {
+    return scene.forces.openmm || scene.solver.refine > 0 || !is_refined(scene.dynamics.integrator);
+}
 bool has_jointed_tips(Scene const&);
 /// `tips`: whether the scene has jointed ones. Of an adaptive step: of one inner step.
 SweepsAStep sweeps_a_step(DynamicsSpec const&, bool tips);

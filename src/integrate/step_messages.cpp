@@ -28,13 +28,15 @@ class Sum {
         traffic_.sent_bytes += times * bytes(cut_.ring_ends * numbers);
     }
     /// Sweeps of the tree with K directions a handle (segment.hpp, articulated.hpp).
-    void matrix_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) {
-        gathers(times, articulated ? 3 * k * k + k * (k + 1) / 2 : 2 * k * k + k);
-    }
-    void bias_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) { gathers(times, (articulated ? 3 : 2) * k); }
+    void matrix_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) { gathers(times, of_matrices(k, articulated)); }
+    void bias_sweeps(std::int64_t times, std::int64_t k, bool articulated = false) { gathers(times, of_biases(k, articulated)); }
+    /// Both at once.
+    void evaluations(std::int64_t times, std::int64_t k) { gathers(times, of_matrices(k, false) + of_biases(k, false)); }
     Traffic const& traffic() const { return traffic_; }
 
   private:
+    static std::int64_t of_matrices(std::int64_t k, bool articulated) { return articulated ? 3 * k * k + k * (k + 1) / 2 : 2 * k * k + k; }
+    static std::int64_t of_biases(std::int64_t k, bool articulated) { return (articulated ? 3 : 2) * k; }
     static std::int64_t bytes(std::int64_t numbers) { return numbers * static_cast<std::int64_t>(sizeof(double)); }
     void exchanges(std::int64_t times, std::int64_t numbers, bool sends) {
         if (!cut_.inboard && !cut_.outboard) return;
@@ -44,6 +46,11 @@ class Sum {
     Cut cut_;
     Traffic traffic_;
 };
+
+/// ChainSolver::at_once() of the group's solver.
+bool solves_at_once(ChainGroup const& group) {
+    return group.handles == Handles::projected && group.directions < 6 && group.partition.trees.front().run_length > 1;
+}
 
 }  // namespace
 
@@ -64,6 +71,7 @@ StepMessages::StepMessages(ChainGroup const& group, Scene const& scene)
       moving_meeting_(group.moving_meeting()),
       tips_(group.has_tips()),
       fixman_(scene.dynamics.fixman),
+      at_once_(!keeps_matrices(scene) && solves_at_once(group)),
       refinements_(scene.solver.refine) {
     BodyLoads const loads = group.beads ? BodyLoads() : make_body_loads(group, scene);
     joint_loads_ = loads.joint_loads;
@@ -102,13 +110,15 @@ Traffic StepMessages::absolute(int sweeps, int parts, Cut const& cut) const {
 Traffic StepMessages::joint(int corrections, Cut const& cut, SweepsAStep const& solved) const {
     auto const [matrices, biases, closings] = solved;
     std::int64_t const more = tips_ ? closings * (corrections + 1) : 0, motions = biases + more, refinements = matrices * refinements_;
+    std::int64_t const at_once = at_once_ ? matrices : 0;
     Sum sum(cut);
     sum.gathers(motions, 13);
     sum.from_ring_ends(motions, 13);
     if (moving_meeting_) sum.from_outboard(motions, 9);
     if (joint_loads_) sum.from_outboard(biases, 4);
-    sum.matrix_sweeps(matrices + more, directions_, articulated_);
-    sum.bias_sweeps(motions + refinements, directions_, articulated_);
+    sum.evaluations(at_once, directions_);
+    sum.matrix_sweeps(matrices - at_once + more, directions_, articulated_);
+    sum.bias_sweeps(motions - at_once + refinements, directions_, articulated_);
     sum.from_inboard(motions + refinements, 4);
     sum.from_inboard(refinements, 8);
     sum.from_ring_ends(refinements, 8);

@@ -30,7 +30,7 @@ class StepMessages {
     Integrator integrator_;
     SweepsAStep sweeps_;
     std::int64_t directions_;
-    bool articulated_, absolute_, beads_, implicit_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_;
+    bool articulated_, absolute_, beads_, implicit_, linked_, joint_loads_, springs_, moving_meeting_, tips_, fixman_, at_once_;
     std::int64_t refinements_;
 };
 

@@ -55,8 +55,7 @@ StepWork work_of_step(Scene const& scene, int sweeps) {
     bool const tips = has_jointed_tips(scene);
     auto const [matrices, biases, closings] = sweeps_a_step(d, tips);
     int const corrections = tips ? closings * (sweeps + 1) : 0, refinements = matrices * scene.solver.refine;
-    bool const keeps_matrices = scene.forces.openmm || scene.solver.refine > 0 || !is_refined(d.integrator);  // as ChainSystem does
-    int const evaluations = keeps_matrices ? 0 : matrices;
+    int const evaluations = keeps_matrices(scene) ? 0 : matrices;
     return {evaluations, biases - evaluations + corrections, matrices - evaluations + corrections,
             biases - evaluations + corrections + refinements};
 }

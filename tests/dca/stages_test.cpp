@@ -59,7 +59,7 @@ class Walk {
         for (std::size_t j = 0; j < inner_.size(); ++j) made += inner_[j] && known_[j];
         EXPECT_EQ(made, static_cast<std::int64_t>(merges));
         for (SharedUnit const& unit : s.shared)
-            EXPECT_TRUE(runs.empty() || unit.source < 0 || segment_[index(unit.source)].first >= 0) << "not there for other ranks";
+            EXPECT_TRUE(runs.empty() || !unit.is_own || segment_[index(unit.slot)].first >= 0) << "not there for other ranks";
         StagesTogether const together(plan_, sizes_);
         for (std::int32_t const item : together.places.segment) EXPECT_TRUE(!together || item >= 0);
         for (Stage const& stage : plan_.stages) {

@@ -55,6 +55,10 @@ TEST(Schedule, EveryJointIsEliminatedOnce) {
                     for (Merge const& m : level) eliminated.insert(first + m.joint);
                 for (auto const& level : s.top_levels)
                     for (Merge const& m : level) {
+                        if (m.joint <= s.halo) {
+                            at_top.insert(first + m.joint);
+                            continue;
+                        }
                         auto const i = static_cast<std::size_t>(m.joint - s.first_top_joint());
                         at_top.insert(p.first_of_chain[s.top_chain_of_joint[i]] + s.top_body_of_joint[i]);
                     }

@@ -227,7 +227,7 @@ void expect_followed(Scene const& scene, std::string const& what) {
             JointScan const scan = kinematics.scan(state.view(), several.view());
             for (std::int64_t k = 0; k < group->size; ++k) scan.set_relative<positions>(k);
             lanes.follow(space, positions, scan);
-            kinematics.sweep<positions>(scan, lanes.tree());
+            kinematics.sweep<positions>(scan, lanes.tree(), BodyExchange<4>::none());
             for (std::int64_t k = 0; k < group->size; ++k) scan.set_motion<positions>(k);
             std::string const name = what + ", " + name_of(level) + (positions ? ", positions" : "");
             auto const same_field = [](auto& a, auto& b) {
