@@ -109,9 +109,9 @@ struct Schedule {
     std::int64_t halo = 0, none = 0, joints = 0;
     std::int64_t slots = 0;
     std::vector<Run> runs;
-    std::vector<std::vector<Merge>> levels;      // below the roots of whole chains and below shared units
-    std::vector<Root> roots;                     // of whole chains
-    std::vector<SharedUnit> shared;              // of all shared chains, in order; the same list on every rank (but for slots and whose they are)
+    std::vector<std::vector<Merge>> levels;  // below the roots of whole chains and below shared units
+    std::vector<Root> roots;                 // of whole chains
+    std::vector<SharedUnit> shared;  // of all shared chains, in order; the same list on every rank (but for slots and whose they are)
     std::vector<std::vector<Merge>> top_levels;  // of the shared chains this rank takes part in
     std::vector<Root> top_roots;
     std::vector<int> tip_chain;           // of the jointed tips that end here
