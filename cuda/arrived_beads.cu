@@ -21,6 +21,7 @@ void each(std::int64_t count, Action const& action, cudaStream_t stream) {
     in_turn<<<static_cast<unsigned>((count + threads - 1) / threads), threads, 0, stream>>>(count, action);
     check(cudaGetLastError(), "start a kernel");
 }
+
 /// One block: all that ranks wrote before, into whosever memory, is there after it.
 __global__ void meet(PeerBoxes boxes) {
     int const rank = static_cast<int>(threadIdx.x);
