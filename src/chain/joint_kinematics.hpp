@@ -57,7 +57,8 @@ class JointKinematics {
     using FieldOf = typename Space::template FieldOf<D>;
 
   public:
-    /// Joints' loads of a first body (HingeLoads), or none, which go along with what ranks tell each other of motions.
+    /// Of a rank's first body, or none, along with what ranks tell each other of motions: its joint's loads (HingeLoads), and where that
+    /// joint lies on the body before.
     using LoadsForNeighbour = BodyExchange<4>;
     using MeetingForNeighbour = BodyExchange<9>;
     /// The group and the communicator must outlive it.
