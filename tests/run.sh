@@ -4,7 +4,7 @@ set -euo pipefail
 
 usage() {
     cat <<'TEXT'
-usage: tests/run.sh [--quick] [--long] [--cluster] [--help]
+usage: tests/run.sh [--quick] [--long] [--cluster] [--slow-device-code] [--help]
 
 Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
@@ -16,6 +16,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
 
   --quick  format and release alone
+  --slow-device-code  the GPU's code is compiled in half the time, and slower: for where nobody will run what is in build/release
   --long   also the long tests (statistics, drift; an hour or so), most of those that sanitizers make slow, and all without MPI
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
            job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
@@ -24,12 +25,13 @@ Logs: build/logs/. Exit status 0 if everything passed, 1 if not; the last line c
 TEXT
 }
 
-quick=no long=no cluster=no
+quick=no long=no cluster=no slow_device_code=OFF
 for option in "$@"; do
     case $option in
         --quick) quick=yes ;;
         --long) long=yes ;;
         --cluster) cluster=yes ;;
+        --slow-device-code) slow_device_code=ON ;;
         -h | --help) usage; exit 0 ;;
         *) echo "unknown option: $option (see tests/run.sh --help)" >&2; exit 2 ;;
     esac
@@ -68,7 +70,8 @@ ctests() {
 # build PRESET TEST-PROGRAMS...: configured and built with warnings as errors, without these programs.
 build() {
     say "$1"
-    check "$1-configure" cmake --preset "$1" -DCATENA_WERROR=ON -DCATENA_TESTS_LEFT_OUT="$(IFS=';'; echo "${*:2}")" || return 1
+    check "$1-configure" cmake --preset "$1" -DCATENA_WERROR=ON -DCATENA_TESTS_LEFT_OUT="$(IFS=';'; echo "${*:2}")" \
+        -DCATENA_SLOW_DEVICE_CODE=$slow_device_code || return 1
     sed -n '/^-- Catena /,/^$/p' "$logs/$1-configure.log"
     check "$1-build" cmake --build --preset "$1" --parallel "$(build_jobs)"
 }

@@ -153,7 +153,12 @@ if(catena_wanted)
         endif()
     endif()
 endif()
-catena_settle(CUDA IN "${CMAKE_CUDA_COMPILER_VERSION}, sm_${CATENA_CUDA_ARCHITECTURES}"
+option(CATENA_SLOW_DEVICE_CODE "Compile the GPU's code in half the time, and slower: to see that it compiles" OFF)
+set(how "")
+if(CATENA_SLOW_DEVICE_CODE)
+    set(how ", slow device code")
+endif()
+catena_settle(CUDA IN "${CMAKE_CUDA_COMPILER_VERSION}, sm_${CATENA_CUDA_ARCHITECTURES}${how}"
               DEBIAN "NVIDIA's CUDA Toolkit, 12.1 or newer" LEFT_OUT "backend cuda" BECAUSE "${because}")
 
 function(catena_print_summary)
