@@ -18,5 +18,7 @@ int blocks_at_once();
 inline std::atomic<std::int64_t> short_launches = 0;
 /// And those whose blocks waited for the block above them (cuda/turn_launch.cuh).
 inline std::atomic<std::int64_t> turns_together = 0;
+/// Sweeps' and scans' launches so far in which ranks met between the ways up and down.
+inline std::atomic<std::int64_t> turns_shared = 0, scans_shared = 0;
 
 }  // namespace catena::cuda

@@ -60,6 +60,10 @@ class CountingSpace : public HostAccess {
     Direct connect(dca::Schedule const&, int, int) const { return {}; }
     template <class Numbers, class... Beside>
     void exchange(Direct const&, Numbers const&, Beside const&...) const {}
+    template <class Numbers, class AnyTree, class Sweep, class... Beside>
+    bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const&, Sweep const&, Beside const&...) const {
+        return false;
+    }
     template <int D>
     void exchange(Communicator const&, BodyExchange<D> const&) const {}
     template <int D, class First>

@@ -1,6 +1,7 @@
 // Scans along chains on a GPU: a launch a stage upwards, a launch a stage downwards, one for both at the top.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "cuda/clusters.hpp"
@@ -16,8 +17,10 @@ class DeviceScan {
     DeviceScan(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
                std::int64_t slots)
         : runs_(runs) {
-        for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
+        for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan)) {
             stages_.emplace_back(stage, runs_.data());
+            gathers_ = stage.gathers;
+        }
     }
     template <class Scan>
     void climb(Scan const& scan, cudaStream_t stream) const {
@@ -35,6 +38,11 @@ class DeviceScan {
     template <class Scan, class Action>
     bool at_once(Scan const& scan, std::int64_t count, Action const& action, cudaStream_t stream) const {
         return walk(stream).at_once(scan, count, action);
+    }
+    /// As ScanWalk::turn_shared.
+    template <class Scan, class Exchange>
+    bool turn_shared(Scan const& scan, DeviceScan const& top, Exchange const& exchange, cudaStream_t stream) const {
+        return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
     }
 
   private:
@@ -68,6 +76,7 @@ class DeviceScan {
 
         std::size_t stages() const { return tree.stages_.size(); }
         unsigned blocks() const { return tree.stages_.front().view.blocks; }
+        bool gathers() const { return tree.gathers_; }
         template <class Scan>
         void climb(std::size_t i, Scan const& scan) const {
             launch(kernels::climb_scan<Scan>, i, scan);
@@ -90,6 +99,20 @@ class DeviceScan {
             return true;
         }
 
+        template <class Scan, class Exchange>
+        bool can_turn_shared(Scan const&, Exchange const&, Launches const& top) const {
+            return tree.stages_.back().view.blocks == 1 && top.stages() == 1 && top.blocks() == 1;
+        }
+        template <class Scan, class Exchange>
+        void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
+            kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
+            std::size_t const all = bytes<Scan>(own) + bytes<Scan>(above);
+            auto* const kernel = kernels::turn_shared_scan<Scan, Exchange>;
+            allow_shared(kernel, all);
+            cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above, exchange, scan);
+            ++scans_shared;
+        }
+
       private:
         template <class Scan>
         static std::size_t bytes(kernels::DeviceScanStage const& stage) {
@@ -103,7 +126,7 @@ class DeviceScan {
     };
     ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
 
-    bool has_clusters_ = knows_clusters();
+    bool has_clusters_ = knows_clusters(), gathers_ = false;
     Buffer<dca::Run> runs_;
     std::vector<Stage> stages_;
 };

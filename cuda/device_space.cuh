@@ -58,6 +58,7 @@ class DeviceSpace {
             dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
             dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
             runs_apart_ = plan.runs_apart;
+            gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
             dca::StagesTogether const together(plan, sizes);
             for (dca::Stage const& stage : plan.stages)
                 stages_.emplace_back(stage, together, stage.of_runs ? runs_.data() : nullptr, sizes, records);
@@ -80,7 +81,8 @@ class DeviceSpace {
                        runs,
                        words.data(),
                        roots.data(),
-                       kept.data()} {}
+                       kept.data(),
+                       stage.gathers} {}
             Buffer<dca::StageWord> words;
             Buffer<dca::StageRoot> roots;
             Buffer<double> kept;
@@ -96,7 +98,7 @@ class DeviceSpace {
         int most_shared_bytes_ = 0;  // of a block
         Buffer<dca::Run> runs_;
         std::vector<StageHere> stages_;
-        bool runs_apart_ = false;
+        bool runs_apart_ = false, gathers_ = false;
         TurnLaunch turn_;
         ShortLaunch short_;
     };
@@ -224,10 +226,18 @@ class DeviceSpace {
     Direct connect(dca::Schedule const& schedule, int width, int beside) const { return peers_.among_all(schedule, width, beside); }
     template <class Numbers, int... D>
     void exchange(Direct const& direct, Numbers const& numbers, BodyExchange<D> const&... beside) const {
-        static_assert(sizeof...(D) <= kernels::BodiesBeside::most);
-        kernels::BodiesBeside along;
-        (along.add(beside ? D : 0, beside.source, numbers_of(beside)), ...);
-        exchange(direct, numbers, along, kernels::Nothing{});
+        exchange(direct, numbers, along(beside...), kernels::Nothing{});
+    }
+    template <class Sweep>
+    bool turn_shared(Direct const& direct, typename Sweep::ShownNumbers const& numbers, Tree const& tree, Tree const& top,
+                     Sweep const& sweep) const {
+        return walk(tree).turn_shared(sweep, ExchangeOf<Sweep>{direct, numbers, {}}, Launches{*this, top});
+    }
+    template <class Numbers, class Scan, int... D>
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
+                     BodyExchange<D> const&... beside) const {
+        peers_.meet_next(stream_);
+        return tree.turn_shared(scan, top, kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, stream());
     }
     template <int D>
     Field<D> read(DeviceField<D> const& field) const {
@@ -280,6 +290,7 @@ class DeviceSpace {
         auto const all = [&] {
             for (int i = 0; i < chained; ++i) action();
         };
+        if (peers_) peers_.meet_next(stream_);
         std::optional<Graph> graph;
         if (!asks_host) graph.emplace(stream(), all);
         Event start(Event::For::clock), end(Event::For::clock);
@@ -305,8 +316,16 @@ class DeviceSpace {
     }
     template <class Numbers, class First>
     void exchange(Direct const& direct, Numbers const& numbers, kernels::BodiesBeside const& beside, First const& first) const {
+        peers_.meet_next(stream_);
         kernels::exchange<<<1, kernels::threads_of_exchange, 0, stream()>>>(direct, numbers, beside, first);
         started();
+    }
+    template <int... D>
+    static kernels::BodiesBeside along(BodyExchange<D> const&... beside) {
+        static_assert(sizeof...(D) <= kernels::BodiesBeside::most);
+        kernels::BodiesBeside all;
+        (all.add(beside ? D : 0, beside.source, numbers_of(beside)), ...);
+        return all;
     }
     template <int D>
     static kernels::BodyNumbers numbers_of(BodyExchange<D> const& e) {
@@ -315,6 +334,8 @@ class DeviceSpace {
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
     static void started() { check(cudaGetLastError(), "start a kernel"); }
+    template <class Sweep>
+    using ExchangeOf = kernels::ExchangeByBlock<typename Sweep::ShownNumbers>;
     /// Of StageWalk.
     struct Launches {
         DeviceSpace const& space;
@@ -322,11 +343,8 @@ class DeviceSpace {
 
         std::size_t stages() const { return tree.stages_.size(); }
         bool runs_apart() const { return tree.runs_apart_; }
+        bool gathers() const { return tree.gathers_; }
         bool takes_runs(std::size_t i) const { return tree.stages_[i].view.runs != nullptr; }
-        template <class Sweep>
-        bool together(Sweep const& sweep) const {
-            return tree.turn_ && tree.turn_.fits(kernels::turn_together<Sweep>, grid_of_turn_together(sweep));
-        }
         template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
             launch(kernels::climb<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
@@ -338,16 +356,26 @@ class DeviceSpace {
                    tree.stages_[i].view, sweep);
         }
         template <class Sweep>
-        void turn(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::turn<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of_turn<Sweep>, sweep),
-                   tree.stages_[i].view, sweep);
+        bool can_turn(std::size_t first, Sweep const& sweep) const {
+            return first + 1 == stages() || runs_at_once<kernels::NoExchange>(first, sweep, nullptr);
         }
-        /// Precondition: together(). The last two stages.
         template <class Sweep>
-        void turn_together(Sweep const& sweep) const {
-            launch(kernels::turn_together<Sweep>, grid_of_turn_together(sweep), tree.stages_[stages() - 2].view, tree.stages_.back().view,
-                   tree.turn_.letters(), sweep);
-            ++turns_together;
+        void turn(std::size_t first, Sweep const& sweep) const {
+            turn(first, sweep, kernels::NoExchange{}, nullptr);
+        }
+        /// With what ranks show each other and the only stage of `top`.
+        template <class Sweep>
+        bool can_turn(std::size_t first, Sweep const& sweep, ExchangeOf<Sweep> const&, Launches const& top) const {
+            if (tree.stages_.back().view.blocks != 1 || top.stages() != 1 || top.tree.stages_.back().view.blocks != 1) return false;
+            Tree::StageHere const& above = top.tree.stages_.back();
+            if (first + 1 < stages()) return runs_at_once<ExchangeOf<Sweep>>(first, sweep, &above);
+            return grid_of_turn(first, sweep, &above).shared_bytes <= static_cast<std::size_t>(tree.most_shared_bytes_);
+        }
+        template <class Sweep>
+        void turn(std::size_t first, Sweep const& sweep, ExchangeOf<Sweep> const& exchange, Launches const& top) const {
+            space.peers_.meet_next(space.stream_);
+            turn(first, sweep, exchange, &top.tree.stages_.back());
+            ++turns_shared;
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
@@ -375,14 +403,31 @@ class DeviceSpace {
             return {stage.view.blocks, static_cast<unsigned>(of_block),
                     sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
         }
+        /// `top`: null where nothing is above.
+        template <class Sweep, class Exchange>
+        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Tree::StageHere const* top) const {
+            bool const together = first + 1 < stages();
+            launch(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top),
+                   together ? tree.stages_[first].view : kernels::DeviceStage{}, tree.stages_.back().view,
+                   top ? top->view : kernels::DeviceStage{}, together ? tree.turn_.letters() : kernels::TurnLetters{}, exchange, sweep);
+            if (together) ++turns_together;
+        }
+        /// While it waits for other ranks, there is room for what they meet in besides (arrived_beads.cu).
+        template <class Exchange, class Sweep>
+        bool runs_at_once(std::size_t first, Sweep const& sweep, Tree::StageHere const* top) const {
+            return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top), top ? 1 : 0);
+        }
         template <class Sweep>
-        Grid grid_of_turn_together(Sweep const& sweep) const {
-            Tree::StageHere const &lower = tree.stages_[stages() - 2], &upper = tree.stages_.back();
-            int const planned = std::max(lower.threads, upper.threads);
-            Grid grid = grid_of(lower, planned, kernels::threads_of_turn<Sweep>, sweep);
-            Grid const above = grid_of(upper, planned, kernels::threads_of_turn<Sweep>, sweep);
-            grid.blocks += above.blocks;
-            grid.shared_bytes = std::max(grid.shared_bytes, above.shared_bytes);
+        Grid grid_of_turn(std::size_t first, Sweep const& sweep, Tree::StageHere const* top) const {
+            Tree::StageHere const &lower = tree.stages_[first], &upper = tree.stages_.back();
+            int const planned = std::max({lower.threads, upper.threads, top ? kernels::threads_among_ranks<Sweep> : 0});
+            auto const of = [&](Tree::StageHere const& stage) { return grid_of(stage, planned, kernels::threads_of_turn<Sweep>, sweep); };
+            Grid grid = of(upper);
+            if (top) grid.shared_bytes += of(*top).shared_bytes;
+            if (first + 1 == stages()) return grid;
+            Grid const below = of(lower);
+            grid.blocks += below.blocks;
+            grid.shared_bytes = std::max(grid.shared_bytes, below.shared_bytes);
             grid.all_at_once = true;
             return grid;
         }

@@ -28,6 +28,25 @@ struct PeerCall {
     }
 };
 
+/// Kernels in which ranks meet go one after the other on a GPU, whatever their streams, in the order in which the host asks for them, which
+/// is the same on all ranks: one that fills a GPU while it waits leaves no room for another that some other GPU waits for. (Contexts take
+/// turns on a GPU.)
+class Meetings {
+  public:
+    /// The next one is on this stream, of that context (PeerMemory). Where a stream is captured, the last one before was on it as well.
+    static void next(std::shared_ptr<Stream> const& stream, unsigned long long context) {
+        static std::weak_ptr<Stream> last;
+        static unsigned long long context_of_last = 0;
+        if (auto const before = last.lock(); before && before != stream && context_of_last == context) {
+            Event so_far(Event::For::order);
+            so_far.record(before->get());
+            so_far.hold(stream->get());
+        }
+        last = stream;
+        context_of_last = context;
+    }
+};
+
 /// A rank's ways to other ranks' GPUs; none by default.
 class Peers {
   public:
@@ -37,6 +56,8 @@ class Peers {
         if (memory_) of_bodies_ = memory_->boxes(most_of_a_body + 1);
     }
     explicit operator bool() const { return memory_ != nullptr; }
+    /// Kernels in which they are used must come right after it. Precondition: there are ways.
+    void meet_next(std::shared_ptr<Stream> const& stream) const { Meetings::next(stream, memory_->context()); }
     /// A body's numbers to one rank and from one; a negative rank means nobody.
     template <int numbers>
     PeerCall to_and_from(int to, int source) const {
@@ -106,31 +127,39 @@ struct Nothing {
     __device__ void operator()(std::int64_t) const {}
 };
 
-/// One block. After first(0): numbers.show(i): number i to be sent; numbers.take(i, value): number i of all. The last letter of a box comes
-/// in any case: who has it knows that its sender has read what came the last time.
-template <class Numbers, class First>
-__global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, Numbers numbers, BodiesBeside beside, First first) {
+/// By all threads of a block, as many as there are peers or more, which have met before it. numbers.show(i): number i to be sent;
+/// numbers.take(i, value): number i of all. The last letter of a box comes in any case: who has it knows that its sender has read what came
+/// the last time.
+template <class Numbers>
+__device__ void exchange_by_block(PeerCall const& call, Numbers const& numbers, BodiesBeside const& beside) {
     PeerBoxes const& boxes = call.boxes;
-    __shared__ unsigned long long times[most_peers];
-    int const t = static_cast<int>(threadIdx.x);
-    if (t == 0) first(0);
-    if (t < call.peers) times[t] = *boxes.exchanged(call.peer[t]) += 1;
-    __syncthreads();
+    int const t = static_cast<int>(threadIdx.x), threads = static_cast<int>(blockDim.x);
     auto const letters = [&](int at, int from, int p) {
         unsigned long long const launches = 0xffffffff;  // as many numbers as letters tell apart, 0 not among them
-        return LettersIn<PeerLetterBox>{reinterpret_cast<PeerLetterBox*>(boxes.box(at, from, times[p])), 1,
-                                        static_cast<unsigned>(times[p] % launches) + 1};
+        unsigned long long const times = *boxes.exchanged(call.peer[p]) + 1;
+        return LettersIn<PeerLetterBox>{reinterpret_cast<PeerLetterBox*>(boxes.box(at, from, times)), 1,
+                                        static_cast<unsigned>(times % launches) + 1};
     };
+    constexpr int at_once = 8;  // memory is far
     int const sent = call.sent + beside.numbers, last = boxes.width - 1;
-    for (int i = t; i <= sent; i += threads_of_exchange) {
-        double const value = i < call.sent ? numbers.show(i) : i < sent ? beside.show(i - call.sent) : 0.0;
-        for (int p = 0; p < call.peers; ++p) letters(call.peer[p], boxes.rank, p).put(0, i < sent ? i : last, value);
+    for (int first = t; first <= sent; first += at_once * threads) {
+        double value[at_once];
+    CATENA_UNROLL
+        for (int j = 0; j < at_once; ++j) {
+            int const i = first + j * threads;
+            value[j] = i < call.sent ? numbers.show(i) : i < sent ? beside.show(i - call.sent) : 0.0;
+        }
+        for (int p = 0; p < call.peers; ++p) {
+            auto const to = letters(call.peer[p], boxes.rank, p);
+            CATENA_UNROLL
+            for (int j = 0; j < at_once; ++j)
+                if (int const i = first + j * threads; i <= sent) to.put(0, i < sent ? i : last, value[j]);
+        }
     }
-    constexpr int at_once = 4;
     for (int p = 0; p < call.peers; ++p) {
         auto const came = letters(boxes.rank, call.peer[p], p);
         int const received = call.received[p], end = received + (call.peer[p] == beside.source ? beside.numbers : 0);
-        came.template take_some<at_once>(0, t, end, threads_of_exchange, [&](int i, double value) {
+        came.template take_some<at_once>(0, t, end, threads, [&](int i, double value) {
             if (i < received)
                 numbers.take(call.first[p] + i, value);
             else
@@ -138,7 +167,24 @@ __global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, N
         });
         if (t == 0) came.wait_for(0, last);
     }
+    __syncthreads();
+    if (t < call.peers) *boxes.exchanged(call.peer[t]) += 1;
 }
+/// One block, after first(0).
+template <class Numbers, class First>
+__global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, Numbers numbers, BodiesBeside beside, First first) {
+    if (threadIdx.x == 0) first(0);
+    __syncthreads();
+    exchange_by_block(call, numbers, beside);
+}
+/// As kernels turn() and turn_shared_scan() want it.
+template <class Numbers>
+struct ExchangeByBlock {
+    PeerCall call;
+    Numbers numbers;
+    BodiesBeside beside;
+    __device__ void operator()() const { exchange_by_block(call, numbers, beside); }
+};
 
 }  // namespace kernels
 }  // namespace catena::cuda

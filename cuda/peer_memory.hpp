@@ -56,6 +56,8 @@ class PeerMemory {
 
     int rank() const { return rank_; }
     int ranks() const { return ranks_; }
+    /// No two have the same number; 0: unknown.
+    unsigned long long context() const { return context_; }
     /// Places for exchanges of up to `width` numbers a pair: all ranks ask for the same ones in the same order.
     PeerBoxes boxes(int width);
 

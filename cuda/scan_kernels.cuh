@@ -53,7 +53,11 @@ class BlockOfScan {
         if (merge < here.merge.end) merges_[threadIdx.x] = stage.merges[merge];
         if (static_cast<int>(threadIdx.x) < stage.levels)
             level_end_[threadIdx.x] = stage.level_end[static_cast<std::int64_t>(blockIdx.x) * stage.levels + threadIdx.x];
-        if (known && has_top_) before_top_ = scan.before(top_.slot);
+        if (known) learn();
+    }
+    /// What lies before what is complete.
+    __device__ void learn() {
+        if (has_top_) before_top_ = scan_.before(top_.slot);
     }
 
     __device__ void climb() const {
@@ -70,6 +74,9 @@ class BlockOfScan {
     /// What other stages make more of, and what the way down by a launch of its own needs.
     __device__ void put() const {
         if (has_item_) scan_.set_whole(slot_, values_.load(place()));
+        put_tops();
+    }
+    __device__ void put_tops() const {
         if (has_top_) scan_.set_whole(top_.slot, values_.load(top_.place));
     }
     __device__ void take() const {
@@ -140,6 +147,23 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage s
     std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
     for (std::int64_t i = thread(); i < gpu_order::padded(count); i += threads)
         if (std::int64_t const k = gpu_order::body(i); k < count) action(k);
+}
+/// Of one block, with exchange() and the one block of `top` in between, as turn().
+template <class Scan, class Exchange>
+__global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
+    wait_for_launch();
+    BlockOfScan<Scan> block(stage, scan, shared_numbers, false);
+    BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
+    block.climb();
+    block.put_tops();
+    __syncthreads();
+    exchange();
+    __syncthreads();
+    above.climb();
+    above.descend();
+    __syncthreads();
+    block.learn();
+    block.descend();
 }
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {

@@ -8,19 +8,20 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and descend(i, scan) of stage i; whether
-/// turn_then(scan, count, action) was launched.
+/// `Launches`: stages(), blocks() of the first stage, whether the last one gathers(); climb(i, scan), turn(i, scan) and descend(i, scan) of
+/// stage i; whether turn_then(scan, count, action) was launched; whether it can_turn_shared(scan, above...), and turn_shared() of the last
+/// stage and what is above it.
 template <class Launches>
 class ScanWalk {
   public:
     explicit ScanWalk(Launches const& launches) : launches_(launches) {}
     template <class Scan>
     void climb(Scan const& scan) const {
-        climb_below(launches_.stages(), scan);
+        climb_below(working_stages(), scan);
     }
     template <class Scan>
     void descend(Scan const& scan) const {
-        descend_below(launches_.stages(), scan);
+        descend_below(working_stages(), scan);
     }
     template <class Scan>
     void climb_and_descend(Scan const& scan) const {
@@ -36,7 +37,20 @@ class ScanWalk {
         return launches_.stages() == 1 && launches_.blocks() == 1 && launches_.turn_then(scan, count, action);
     }
 
+    /// As StageWalk::turn_shared.
+    template <class Scan, class... Above>
+    bool turn_shared(Scan const& scan, Above const&... above) const {
+        if (launches_.stages() == 0 || !launches_.can_turn_shared(scan, above...)) return false;
+        std::size_t const last = launches_.stages() - 1;
+        climb_below(last, scan);
+        launches_.turn_shared(scan, above...);
+        descend_below(last, scan);
+        return true;
+    }
+
   private:
+    /// As StageWalk's.
+    std::size_t working_stages() const { return launches_.stages() - (launches_.gathers() ? 1 : 0); }
     template <class Scan>
     void climb_below(std::size_t stages, Scan const& scan) const {
         for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, scan);

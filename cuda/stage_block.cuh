@@ -18,6 +18,7 @@ struct DeviceStage {
     dca::StageWord const* words = nullptr;
     dca::StageRoot const* roots = nullptr;
     double* kept = nullptr;  // of every block, its segments' memory: StageRecords::kept numbers a place
+    bool gathers = false;    // as dca::Stage
 };
 
 /// Whether lanes of a warp share a merge: larger segments and biases at once find no registers in one.
@@ -75,9 +76,10 @@ class BlockOfStage {
     static constexpr bool by_teams = merges_by_teams<Sweep>;
 
   public:
-    /// Numbers that it needs, of `threads` threads.
+    /// Numbers that it needs, of so many threads; an even number, so that words may stand behind them.
     static __host__ __device__ int size(DeviceStage const& stage, int of_threads) {
-        return before_parts(stage) + (stage.runs ? static_cast<int>(Segments::size(of_threads)) : 0);
+        int const all = before_parts(stage) + (stage.runs ? static_cast<int>(Segments::size(of_threads)) : 0);
+        return all + all % 2;
     }
     /// `block` of the stage.
     __device__ BlockOfStage(DeviceStage const& stage, unsigned block, Sweep const& sweep, double* memory)

@@ -35,52 +35,73 @@ __global__ void __launch_bounds__(threads_of<Sweep>, blocks_of_stage<Sweep>) des
     block.descend();
     block.template give_items<true>(nullptr);
 }
-/// Up and down again.
+/// Threads that are worth having where ranks meet.
 template <class Sweep>
-__global__ void __launch_bounds__(threads_of_turn<Sweep>) turn(DeviceStage stage, Sweep sweep) {
-    BlockOfStage<Sweep> const block(stage, blockIdx.x, sweep, shared_numbers);
-    block.take_words();
-    __syncthreads();
-    wait_for_launch();
-    typename Sweep::Part part;
-    block.template take_items<true>(part);
-    block.climb();
-    block.close();
-    __syncthreads();
-    block.take_forces();
-    block.descend();
-    block.template give_items<false>(&part);
-}
-/// A stage whose blocks all run at once, and the one above it, whose one block comes last: it is all ears before the others have anything
-/// to say. The same instructions do both.
-template <class Sweep>
+constexpr int threads_among_ranks = std::min(256, threads_of_turn<Sweep>);
+/// Of a launch in which they do not.
+struct NoExchange {
+    __device__ void operator()() const {}
+};
+/// Up and down again: blocks of the last stage, `upper`. With a stage below, all of whose blocks run at once, the one block of `upper`
+/// comes last: it is all ears before the others have anything to say. With a `top` that ranks share, of one block as `upper`, exchange(),
+/// which all threads of that one call, shows what is in its slots to other ranks and fills in theirs, and it turns the top. The same
+/// instructions do all of it.
+template <class Sweep, class Exchange>
 __global__ void __launch_bounds__(threads_of_turn<Sweep>)
-    turn_together(DeviceStage lower, DeviceStage upper, TurnLetters letters, Sweep sweep) {
-    if constexpr (lets_next_start<Sweep>) let_next_launch_start();
-    bool const is_above = blockIdx.x >= lower.blocks;
-    DeviceStage const stage = is_above ? upper : lower;
-    BlockOfStage<Sweep> const block(stage, is_above ? 0 : blockIdx.x, sweep, shared_numbers);
-    block.take_words();
+    turn(DeviceStage lower, DeviceStage upper, DeviceStage top, TurnLetters letters, Exchange exchange, Sweep sweep) {
+    constexpr bool among_ranks = !std::is_same_v<Exchange, NoExchange>;
+    bool const by_letters = lower.blocks > 0, is_upper = blockIdx.x >= lower.blocks, has_top = among_ranks && is_upper;
+    if constexpr (lets_next_start<Sweep>)
+        if (by_letters && !has_top) let_next_launch_start();
+    // Alone, a stage that gathers has nothing to do: all that it would is in its slots.
+    int const begin = has_top && !by_letters && upper.gathers ? 1 : 0, end = has_top ? 2 : 1;
+    auto const with_block = [&](bool is_top, auto const& action) {
+        DeviceStage const stage = is_top ? top : is_upper ? upper : lower;
+        unsigned const block = is_top ? 0 : is_upper ? blockIdx.x - lower.blocks : blockIdx.x;
+        int const before = is_top ? BlockOfStage<Sweep>::size(upper, static_cast<int>(blockDim.x)) : 0;
+        action(BlockOfStage<Sweep>(stage, block, sweep, shared_numbers + before));
+    };
+    CATENA_NO_UNROLL
+    for (int i = begin; i < end; ++i) with_block(i == 1, [](auto const& block) { block.take_words(); });
     __syncthreads();
     wait_for_launch();
-    letters.open();
+    if (by_letters) letters.open();
     typename Sweep::Part part;
-    if (is_above)
-        block.take_items(letters.up);
-    else
-        block.template take_items<true>(part);
-    block.climb();
-    if (!is_above) block.give_up(letters.up);
-    block.close();
-    __syncthreads();
-    if (is_above)
-        block.take_forces();
-    else
-        block.take_forces(letters.down);
-    block.descend();
-    if (is_above) block.give_forces(letters.down);
-    block.template give_items<false>(&part);
-    if (threadIdx.x == 0) letters.close();
+    CATENA_NO_UNROLL
+    for (int i = begin; i < end; ++i) {
+        if (among_ranks && i == 1) {
+            exchange();
+            __syncthreads();
+            if constexpr (lets_next_start<Sweep>) let_next_launch_start();
+        }
+        with_block(i == 1, [&](auto const& block) {
+            if (by_letters && is_upper && i == 0)
+                block.take_items(letters.up);
+            else
+                block.template take_items<true>(part);
+            block.climb();
+            if (!is_upper)
+                block.give_up(letters.up);
+            else if (has_top && i == 0)
+                block.give_up();
+            block.close();
+        });
+        __syncthreads();
+    }
+    CATENA_NO_UNROLL
+    for (int i = end - 1; i >= begin; --i) {
+        with_block(i == 1, [&](auto const& block) {
+            if (is_upper)
+                block.take_forces();
+            else
+                block.take_forces(letters.down);
+            block.descend();
+            if (by_letters && is_upper && i == 0) block.give_forces(letters.down);
+            block.template give_items<false>(&part);
+        });
+        if (i > begin) __syncthreads();
+    }
+    if (by_letters && threadIdx.x == 0) letters.close();
 }
 /// Blocks of `threads` that share a multiprocessor, on the way up and on the way down: links want few registers, and many to hide that
 /// memory is far; on planar and spherical joints the way down does. On links' way up a fourth block finds none for quotients without

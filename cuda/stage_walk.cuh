@@ -7,8 +7,9 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages() and runs_apart() of a tree (StagePlan), takes_runs(i), whether stage i does; climb(i, sweep), descend(i, sweep) and
-/// turn(i, sweep) of stage i, turn_together(sweep) of the last two where together(sweep); climb_runs(sweep) and descend_runs(sweep).
+/// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers() and stage i takes_runs(i); climb(i, sweep)
+/// and descend(i, sweep) of stage i; turn(i, sweep, above...) of stage i and the one after it, if any, where can_turn() says so;
+/// climb_runs(sweep) and descend_runs(sweep). It can turn the last stage with nothing above.
 template <class Launches>
 class StageWalk {
   public:
@@ -16,11 +17,11 @@ class StageWalk {
     template <class Sweep>
     void climb(Sweep const& sweep) const {
         climb_runs(sweep);
-        climb_stages(launches_.stages(), sweep);
+        climb_stages(working_stages(), sweep);
     }
     template <class Sweep>
     void descend(Sweep const& sweep) const {
-        descend_stages(launches_.stages(), sweep);
+        descend_stages(working_stages(), sweep);
         descend_runs(sweep);
     }
     /// Precondition: there are stages.
@@ -30,25 +31,45 @@ class StageWalk {
         turn_stages(sweep);
         descend_runs(sweep);
     }
+    /// The same with what is `above` a tree that ranks share, if one launch turns it with the last stages; else nothing is done.
+    template <class Sweep, class... Above>
+    bool turn_shared(Sweep const& sweep, Above const&... above) const {
+        std::size_t const stages = launches_.stages();
+        for (std::size_t const turned : {std::size_t{2}, std::size_t{1}})
+            if (stages >= turned && !goes_apart<Sweep>(stages - turned) && launches_.can_turn(stages - turned, sweep, above...)) {
+                climb_runs(sweep);
+                turn_from(stages - turned, sweep, above...);
+                descend_runs(sweep);
+                return true;
+            }
+        return false;
+    }
 
   private:
-    // Where merges go by teams, a stage with runs is for the sweep's two sweeps one after the other: a thread finds no registers for runs'
-    // segments and biases at once.
+    /// Without one that gathers, which has nothing to do alone.
+    std::size_t working_stages() const { return launches_.stages() - (launches_.gathers() ? 1 : 0); }
+    /// Where merges go by teams, a stage with runs is for the sweep's two sweeps one after the other: a thread finds no registers for runs'
+    /// segments and biases at once.
+    template <class Sweep>
+    bool goes_apart(std::size_t stage) const {
+        return kernels::merges_by_teams<Sweep> && launches_.takes_runs(stage);
+    }
     template <class Sweep>
     void turn_stages(Sweep const& sweep) const {
-        bool const together = launches_.together(sweep);
-        std::size_t const apart = launches_.stages() - (together ? 2 : 1);
+        std::size_t const stages = launches_.stages(),
+                          first = stages >= 2 && launches_.can_turn(stages - 2, sweep) ? stages - 2 : stages - 1;
         if constexpr (kernels::merges_by_teams<Sweep>)
-            if (launches_.takes_runs(apart)) {
-                climb_stages(launches_.stages(), sweep.matrices());
+            if (goes_apart<Sweep>(first)) {
+                climb_stages(stages, sweep.matrices());
                 return turn_stages(sweep.biases());
             }
-        climb_stages(apart, sweep);
-        if (together)
-            launches_.turn_together(sweep);
-        else
-            launches_.turn(apart, sweep);
-        descend_stages(apart, sweep);
+        turn_from(first, sweep);
+    }
+    template <class Sweep, class... Above>
+    void turn_from(std::size_t first, Sweep const& sweep, Above const&... above) const {
+        climb_stages(first, sweep);
+        launches_.turn(first, sweep, above...);
+        descend_stages(first, sweep);
     }
     /// Of the first `stages` stages.
     template <class Sweep>
@@ -58,7 +79,7 @@ class StageWalk {
     template <class Sweep>
     void climb_stage(std::size_t i, Sweep const& sweep) const {
         if constexpr (kernels::merges_by_teams<Sweep>)
-            if (launches_.takes_runs(i)) {
+            if (goes_apart<Sweep>(i)) {
                 launches_.climb(i, sweep.matrices());
                 return launches_.climb(i, sweep.biases());
             }
@@ -71,7 +92,7 @@ class StageWalk {
     template <class Sweep>
     void descend_stage(std::size_t i, Sweep const& sweep) const {
         if constexpr (kernels::merges_by_teams<Sweep>)
-            if (launches_.takes_runs(i)) return launches_.descend(i, sweep.biases());
+            if (goes_apart<Sweep>(i)) return launches_.descend(i, sweep.biases());
         launches_.descend(i, sweep);
     }
     template <class Sweep>

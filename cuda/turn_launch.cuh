@@ -23,23 +23,24 @@ class TurnLaunch {
           most_bytes_(most_bytes) {}
     explicit operator bool() const { return launches_.size() > 0; }
     kernels::TurnLetters letters() const { return {{up_.data(), items_}, {down_.data(), forces_}, launches_.data()}; }
-    /// Whether the GPU runs all of the grid's blocks at once.
+    /// Whether the GPU runs all of the grid's blocks at once, and has so many multiprocessors to spare; of a kernel and a tree there is one
+    /// grid.
     template <class Kernel>
-    bool fits(Kernel* kernel, Grid const& grid) const {
+    bool fits(Kernel* kernel, Grid const& grid, int spare) const {
         auto const [known, is_new] = fits_.try_emplace(reinterpret_cast<void const*>(kernel));
-        if (is_new) known->second = asks_for(kernel, grid);
+        if (is_new) known->second = asks_for(kernel, grid, spare);
         return known->second;
     }
 
   private:
     template <class Kernel>
-    bool asks_for(Kernel* kernel, Grid const& grid) const {
+    bool asks_for(Kernel* kernel, Grid const& grid, int spare) const {
         if (grid.shared_bytes > static_cast<std::size_t>(most_bytes_)) return false;
         allow_shared(kernel, grid.shared_bytes);
         int of_multiprocessor = 0;
         check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&of_multiprocessor, kernel, static_cast<int>(grid.threads), grid.shared_bytes),
               "say how many blocks it runs at once");
-        return grid.blocks <= static_cast<unsigned>(of_multiprocessor * multiprocessors());
+        return grid.blocks <= static_cast<unsigned>(of_multiprocessor * (multiprocessors() - spare));
     }
 
     Buffer<kernels::LetterBox> up_, down_;

@@ -149,8 +149,12 @@ class JointKinematics {
     void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
+        dca::RecordNumbers<Motion> const numbers{scan.motions().s.whole, shared_.own_units(), shared_.units()};
+        if (shared_.turn(space_, communicator_, numbers, tree, top_, scan, meeting, loads)) return;
         space_.climb(tree, scan);
-        sweep_shared(scan.motions(), meeting, loads);
+        shared_.show(space_, numbers);
+        shared_.bring(space_, communicator_, numbers, meeting, loads);
+        space_.climb_and_descend(top_, scan.motions());
         space_.descend(tree, scan);
     }
     /// By one over all runs; then last(run) for each.
@@ -166,13 +170,6 @@ class JointKinematics {
     void evaluate(JointScan const& s) {
         space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_relative<positions>(k); });
         sweep<positions>(s, LoadsForNeighbour::none(), [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
-    }
-    template <class Scan>
-    void sweep_shared(Scan const& scan, MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
-        dca::RecordNumbers<Motion> const numbers{scan.s.whole, shared_.own_units(), shared_.units()};
-        shared_.show(space_, numbers);
-        shared_.bring(space_, communicator_, numbers, meeting, loads);
-        space_.climb_and_descend(top_, scan);
     }
     /// Joint k's from body k - 1, across the ranks, where it moves.
     MeetingForNeighbour shown_meeting(JointScan const& s) {

@@ -183,6 +183,7 @@ struct ArticulatedBiasSweep {
     static constexpr bool descends = true, keeps_nodes = false, goes_short = false;
     using Sweeps = ArticulatedSweeps<Leaf>;
     using Segment = typename Sweeps::Biases;
+    using ShownNumbers = RecordNumbers<Segment>;
     using State = typename Sweeps::State;
     using Node = typename Sweeps::Node;
     using Part = NothingRead;

@@ -111,6 +111,7 @@ struct Evaluation {
     static constexpr int K = Leaf::K;
     using Sweeps = TreeSweeps<Leaf>;
     using Segment = BiasedSegment<double, K>;
+    using ShownNumbers = NumbersOfBoth<typename Sweeps::Matrices, typename Sweeps::Biases>;
     using Directions = typename Sweeps::Directions;
     using Joint = typename Sweeps::Joint;
     using Node = typename Sweeps::Node;

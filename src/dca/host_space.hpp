@@ -38,6 +38,11 @@ class HostSpace : public HostAccess {
     Direct connect(dca::Schedule const&, int /*width*/, int /*beside*/) const { return {}; }
     template <class Numbers, class... Beside>
     void exchange(Direct const&, Numbers const&, Beside const&...) const {}
+    /// As SharedUnits::turn() says.
+    template <class Numbers, class AnyTree, class Sweep, class... Beside>
+    bool turn_shared(Direct const&, Numbers const&, AnyTree const&, AnyTree const& /*top*/, Sweep const&, Beside const&...) const {
+        return false;
+    }
     using HostAccess::exchange;
     /// Memory that loops and the host share: what one wrote the other finds after wait().
     template <class T>

@@ -7,37 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "dca/records.hpp"
-#include "dca/tree.hpp"
+#include "dca/shown_numbers.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena::dca {
-
-/// Numbers of records: number i is i % width of unit i / width, of this rank's units or of all.
-template <class T>
-struct RecordNumbers {
-    static constexpr int width = RecordsView<T, Order::plain>::numbers;
-    RecordsView<T, Order::plain> records;
-    SharedUnit const *own, *all;
-    CATENA_HD double show(std::int64_t i) const { return records.number(own[i / width].slot, static_cast<int>(i % width)); }
-    CATENA_HD void take(std::int64_t i, double value) const { records.number(all[i / width].slot, static_cast<int>(i % width)) = value; }
-};
-
-/// As RecordNumbers, of two records a unit: those of the one, then those of the other.
-template <class A, class B>
-struct NumbersOfBoth {
-    static constexpr int of_first = RecordNumbers<A>::width, width = of_first + RecordNumbers<B>::width;
-    RecordsView<A, Order::plain> first;
-    RecordsView<B, Order::plain> second;
-    SharedUnit const *own, *all;
-    CATENA_HD double show(std::int64_t i) const { return number(own[i / width].slot, static_cast<int>(i % width)); }
-    CATENA_HD void take(std::int64_t i, double value) const { number(all[i / width].slot, static_cast<int>(i % width)) = value; }
-
-  private:
-    CATENA_HD double& number(std::int64_t slot, int n) const {
-        return n < of_first ? first.number(slot, n) : second.number(slot, n - of_first);
-    }
-};
 
 /// Loops over numbers that pass through the host's memory.
 template <class Numbers>
@@ -86,11 +59,7 @@ class SharedUnits {
     template <class Numbers, class... Beside>
     void bring(Space const& space, Communicator const& communicator, Numbers const& numbers, Beside const&... beside) {
         if (direct_) {
-            Traffic message;
-            message.gathers = 1;
-            message.gathered_bytes = std::accumulate(bytes_.begin(), bytes_.end(), std::int64_t{0});
-            ((message += traffic_of(beside)), ...);
-            communicator.tally(message);
+            communicator.tally(message_with(beside...));
             return space.exchange(direct_, numbers, beside...);
         }
         (space.exchange(communicator, beside), ...);
@@ -99,8 +68,25 @@ class SharedUnits {
                                 std::as_writable_bytes(std::span(all_.data(), shared_.size() * static_cast<std::size_t>(width_))), bytes_);
         space.for_each(width_ * std::ssize(shared_), TakeNumbers<Numbers>{numbers, all_.data()});
     }
+    /// Both, with a sweep's way up `tree` before and its way down after them, and up and down the `top` in between, if the space does all
+    /// that in one; else nothing is done. Ranks that do and ranks that do not find together.
+    template <class Numbers, class Tree, class Sweep, class... Beside>
+    bool turn(Space const& space, Communicator const& communicator, Numbers const& numbers, Tree const& tree, Tree const& top,
+              Sweep const& sweep, Beside const&... beside) {
+        if (!direct_ || !space.turn_shared(direct_, numbers, tree, top, sweep, beside...)) return false;
+        communicator.tally(message_with(beside...));
+        return true;
+    }
 
   private:
+    template <class... Beside>
+    Traffic message_with(Beside const&... beside) const {
+        Traffic message;
+        message.gathers = 1;
+        message.gathered_bytes = std::accumulate(bytes_.begin(), bytes_.end(), std::int64_t{0});
+        ((message += traffic_of(beside)), ...);
+        return message;
+    }
     static std::vector<SharedUnit> own_units(Schedule const& schedule) {
         std::vector<SharedUnit> own;
         std::copy_if(schedule.shared.begin(), schedule.shared.end(), std::back_inserter(own), [](auto const& u) { return u.is_own; });

@@ -60,23 +60,33 @@ class Planner {
                     if (!made[static_cast<std::size_t>(slot)]) slots.push_back(slot);
                 made[static_cast<std::size_t>(m.slot)] = 1;
             }
-        // Not by joints: those at the top of a chain that ranks share are stored in another order.
-        std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) {
-            return std::pair(of(a).whole, of(a).along) < std::pair(of(b).whole, of(b).along);
-        });
+        sort(slots);
         return slots;
     }
 
     /// All levels from `level` on, up to `most` items to a block. More than that are halved, level by level, where `together` blocks do.
+    /// The last stage takes as well what other ranks want that stages below it have made: where its one block has all of that, it can speak
+    /// to these ranks.
     void add_upper(int level, std::int64_t most, std::int64_t together, std::vector<Stage>& stages) {
         for (std::vector<std::int64_t> left = needed(level, end()); !left.empty(); left = needed(level, end())) {
             std::int64_t width = most;
             for (std::int64_t half = most / 2; half * half >= std::ssize(left) && half * together >= std::ssize(left); half /= 2)
                 width = half;
             int const end_level = std::ssize(left) <= most ? end() : std::min(end(), level + levels_above(width));
-            stages.push_back(stage(needed(level, end_level), end_level == end() ? most : width, level, end_level));
+            std::vector<std::int64_t> items = needed(level, end_level);
+            if (std::vector<std::int64_t> all = items; end_level == end()) {
+                add_units(stages, all);
+                if (std::ssize(all) <= most) items = std::move(all);
+            }
+            stages.push_back(stage(items, end_level == end() ? most : width, level, end_level));
             level = end_level;
         }
+        if (stages.empty() || stages.back().blocks() == 1) return;
+        std::vector<std::int64_t> units;
+        add_units(stages, units);
+        if (units.empty() || std::ssize(units) > most) return;
+        stages.push_back(stage(units, most, end(), end()));
+        stages.back().gathers = true;
     }
     /// Levels `first` to `end_level` - 1 above these items, up to `width` of them to a block.
     Stage stage(std::vector<std::int64_t> const& items, std::int64_t width, int first, int end_level) {
@@ -102,6 +112,20 @@ class Planner {
         std::int64_t block = -1;
         std::int32_t place = 0, next_place = 0;
     };
+    /// To the items, each once and along the chains: what other ranks want that these stages give.
+    void add_units(std::vector<Stage> const& stages, std::vector<std::int64_t>& items) const {
+        for (Stage const& s : stages)
+            for (Handed const& up : s.segments_up)
+                if (of(up.at).met < 0) items.push_back(up.at);
+        sort(items);
+        items.erase(std::unique(items.begin(), items.end()), items.end());
+    }
+    /// Along the chains. Not by joints: those at the top of a chain that ranks share are stored in another order.
+    void sort(std::vector<std::int64_t>& slots) const {
+        std::sort(slots.begin(), slots.end(), [&](std::int64_t a, std::int64_t b) {
+            return std::pair(of(a).whole, of(a).along) < std::pair(of(b).whole, of(b).along);
+        });
+    }
     Node& of(std::int64_t slot) { return node_[static_cast<std::size_t>(slot)]; }
     Node const& of(std::int64_t slot) const { return node_[static_cast<std::size_t>(slot)]; }
     void know(std::int64_t slot, std::int64_t joint, std::int64_t next) { of(slot).joint = joint, of(slot).next = next; }
@@ -242,7 +266,7 @@ std::int64_t width_of_runs(std::int64_t runs, bool apart, int levels, StageSizes
 
 ScanStage scan_stage_of(Stage const& stage) {
     ScanStage s;
-    s.levels = stage.levels, s.of_runs = stage.of_runs, s.width = stage.width;
+    s.levels = stage.levels, s.of_runs = stage.of_runs, s.gathers = stage.gathers, s.width = stage.width;
     for (StageItem const& item : stage.items) s.slot.push_back(static_cast<std::int32_t>(item.slot));
     for (StageMerge const& m : stage.merges) s.merges.push_back({m.inboard, m.outboard});
     for (StageBlock const& block : blocks_of(stage)) {
@@ -305,7 +329,7 @@ StagesTogether::StagesTogether(StagePlan const& plan, StageSizes const& sizes) {
     Stage const& below = plan.stages[plan.stages.size() - 2];
     if (below.blocks() > sizes.together) return;
     places = places_above(below, plan.stages.back());
-    // Units that other ranks want are complete already.
+    // Units that other ranks want may be elsewhere.
     if (std::find(places.segment.begin(), places.segment.end(), -1) != places.segment.end()) return;
     lower = &below, upper = &plan.stages.back();
 }

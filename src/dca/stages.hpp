@@ -45,6 +45,7 @@ struct Handed {
 struct Stage {
     int levels = 0;
     bool of_runs = false;                // items are the schedule's runs
+    bool gathers = false;                // the last one, of one block and no merges, which has what others have made for other ranks
     std::int64_t width = 0, forces = 0;  // most places of a block
     std::vector<StageItem> items;
     std::vector<StageMerge> merges;
@@ -142,6 +143,7 @@ struct ScanBlock {
 struct ScanStage {
     int levels = 0;
     bool of_runs = false;            // items are the schedule's runs
+    bool gathers = false;            // as Stage
     std::int64_t width = 0;          // most items of a block
     std::vector<std::int32_t> slot;  // of items
     std::vector<ScanMerge> merges;

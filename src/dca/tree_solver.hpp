@@ -78,7 +78,7 @@ class TreeSolver final : public ChainSolver {
 
     void solve(LoadsView const& loads, AccelerationsView const& out) override {
         Stopwatch const watch(*this, report_.bias_seconds);
-        up_and_down(tree_, OfBiases{sweeps_, loads, out}, [&] { gather(of_biases()); }, out);
+        up_and_down(tree_, OfBiases{sweeps_, loads, out}, of_biases(), out);
         ++report_.bias_sweeps;
     }
 
@@ -199,7 +199,6 @@ class TreeSolver final : public ChainSolver {
     /// With runs and merges that go side by side where there are any, and the others of each level after them.
     template <class Sweep>
     void sweep_at_once(Sweep const& sweep, ConfigurationView const& configuration, LoadsView const& loads, AccelerationsView const& out) {
-        auto const gather_both = [&] { gather(of_both()); };
         if constexpr (has_lanes)
             if (aside_) {
                 RunWork<Leaf> work{sweeps_, model_.view(), configuration, loads, out};
@@ -209,7 +208,7 @@ class TreeSolver final : public ChainSolver {
                     aside_->climb_level(space_, sweeps_, l);
                     space_.climb(rest_[1 + l], sweep);
                 }
-                up_and_down(rest_.back(), sweep, gather_both, out);
+                up_and_down(rest_.back(), sweep, of_both(), out);
                 for (std::size_t l = aside_->levels().size(); l-- > 0;) {
                     aside_->descend_level(space_, sweeps_, l);
                     space_.descend(rest_[1 + l], sweep);
@@ -217,7 +216,7 @@ class TreeSolver final : public ChainSolver {
                 space_.descend(rest_.front(), sweep);
                 return aside_->descend(space_, work);
             }
-        up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, gather_both, out);
+        up_and_down(whole_runs_ ? *whole_runs_ : tree_, sweep, of_both(), out);
     }
 
     /// Of a sweep; where the space does not wait for its work, only while the solver is measured.
@@ -237,13 +236,14 @@ class TreeSolver final : public ChainSolver {
         double start_;
     };
 
-    template <class Sweep, class Gather>
-    void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Gather const& gather, AccelerationsView const& out) {
+    /// `shown`: of the sweep's records. A solver that is measured says how long ranks exchange them.
+    template <class Sweep, class Shown>
+    void up_and_down(typename Space::Tree const& tree, Sweep const& sweep, Shown const& shown, AccelerationsView const& out) {
         if (schedule_.shared.empty()) {
             space_.climb_and_descend(tree, sweep);
-        } else {
+        } else if (measured_ || !shown.units.turn(space_, communicator_, shown.numbers, tree, top_, sweep)) {
             space_.climb(tree, sweep);
-            gather();
+            gather(shown);
             space_.climb_and_descend(top_, sweep);
             space_.descend(tree, sweep);
         }

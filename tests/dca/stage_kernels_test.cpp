@@ -36,6 +36,7 @@ char const* const h100 = "an H100";
 StagedGpu of_h100(dca::StageRecords const& records) {
     StagedGpu gpu{dca::stage_sizes(records, cuda_on_host::most_shared_bytes, 132)};
     gpu.short_chains = true;
+    gpu.ranks_reach_each_other = true;
     return gpu;
 }
 std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
@@ -47,11 +48,16 @@ std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
     NamedGpu small = with(64, 4, 3, true);
     small.name += ", of little shared memory";
     small.gpu.shared_bytes = 40 << 10;  // less than any GPU has
+    auto const among_ranks = [](NamedGpu each) {
+        each.name += ", ranks together";
+        each.gpu.ranks_reach_each_other = true;
+        return each;
+    };
     return {small,
             with(32, 2, 0, false),
-            with(64, 4, 3, true),
+            among_ranks(with(64, 4, 3, true)),
             with(64, 12, 0, false),
-            with(128, 8, 8, false),
+            among_ranks(with(128, 8, 8, false)),
             with(256, 16, 8, true),
             {"of too few threads", {{128, 32, 4}, false, 32}},
             {h100, of_h100(records)}};
@@ -72,6 +78,7 @@ class StageKernels : public ::testing::Test {
                 for (NamedGpu const& each : gpus(records_of(*group))) {
                     if (h100_alone_ && each.name != h100) continue;
                     StageSpace::gpu = each.gpu;
+                    StageSpace::ranks = each.gpu.ranks_reach_each_other ? &testing::world() : nullptr;
                     solvers.push_back({each.name, make_stage_solver(*group, *executor_, testing::world())});
                 }
                 directions_.insert(group->directions);
@@ -107,6 +114,20 @@ TEST_F(StageKernels, EveryKindAndSize) {
             if (HasFailure()) return;
         }
     EXPECT_EQ(directions_, (std::set<int>{1, 2, 3, 4, 5, 6}));
+    EXPECT_EQ(StageSpace::seen.blocks_that_turn_shared.contains(0), !alone());
+}
+/// Ranks whose last stage but one has several blocks: what they speak of is with one above them.
+TEST_F(StageKernels, UnitsOfSeveralBlocks) {
+    if (alone()) return;
+    h100_alone_ = true;
+    for (RandomJoints const joints : {RandomJoints::planar, RandomJoints::spherical, RandomJoints::revolute}) {
+        StageSpace::seen = {};
+        std::size_t const bodies = joints == RandomJoints::revolute ? 20000 : 6000;
+        expect_same(scene_of({random_chain(4, {.bodies = bodies, .joints = joints, .base = Base::fixed})}));
+        ASSERT_FALSE(StageSpace::seen.blocks_that_turn_shared.empty());
+        EXPECT_GT(*StageSpace::seen.blocks_that_turn_shared.rbegin(), 1U);
+    }
+    expect_same(scene_of({random_bead_chain(3, 6000, Base::fixed), random_bead_chain(4, 70, Base::free)}));
 }
 
 TEST_F(StageKernels, ManyChainsAndTips) {

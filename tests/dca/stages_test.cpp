@@ -60,6 +60,14 @@ class Walk {
         EXPECT_EQ(made, static_cast<std::int64_t>(merges));
         for (SharedUnit const& unit : s.shared)
             EXPECT_TRUE(runs.empty() || !unit.is_own || segment_[index(unit.slot)].first >= 0) << "not there for other ranks";
+        std::int64_t own_units = 0;
+        for (SharedUnit const& unit : s.shared) own_units += unit.is_own ? 1 : 0;
+        if (!runs.empty() && own_units > 0 && own_units <= sizes_.most) {
+            EXPECT_EQ(plan_.stages.back().blocks(), 1) << "no block has all units";
+            if (Stage const& last = plan_.stages.back(); last.width + own_units <= sizes_.most) {
+                EXPECT_EQ(std::ssize(last.segments_up), own_units);
+            }
+        }
         StagesTogether const together(plan_, sizes_);
         for (std::int32_t const item : together.places.segment) EXPECT_TRUE(!together || item >= 0);
         for (Stage const& stage : plan_.stages) {
@@ -105,8 +113,10 @@ class Walk {
             });
         each(stage.up[b], [&](std::size_t i) {
             Handed const& up = stage.segments_up[i];
-            EXPECT_TRUE(plan_.runs_apart || runs_.empty() || segment_[index(up.at)].first == -1) << "made twice";
-            segment_[index(up.at)] = own.at(index(up.place));
+            Ends const &made = own.at(index(up.place)), &before = segment_[index(up.at)];
+            bool const is_handed_on = before.first == made.first && before.next == made.next;
+            EXPECT_TRUE(plan_.runs_apart || runs_.empty() || is_handed_on || before.first == -1) << "made twice";
+            segment_[index(up.at)] = made;
             EXPECT_GE(segment_[index(up.at)].first, 0);
         });
         each(stage.root[b], [&](std::size_t i) {

@@ -96,6 +96,7 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     ScanSpace::blocks_of_clusters.clear();
     auto const expect_the_same = [&](Scene const& scene, std::int64_t most) {
         ScanSpace::most = most;
+        ScanSpace::ranks = most > 2 ? &world : nullptr;
         Moved const by_loops(scene, false, world);
         MovedIn<ScanSpace> by_kernels(scene, false, world);
         ScanSpace::most = dca::most_of_scan;
@@ -113,6 +114,7 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     for (std::size_t bodies = 1; bodies <= 40; ++bodies)
         many.chains.push_back(random_chain(bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
     for (std::int64_t const most : {2, 8, 256}) expect_the_same(many, most);
+    EXPECT_EQ(ScanSpace::shared_turns > 0, world.size() > 1);
     if (world.size() > 1) return;
     EXPECT_GE(ScanSpace::most_stages, 6U);
     EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));

@@ -6,6 +6,7 @@
 
 #include "dca/host_space.hpp"
 #include "tests/support/cuda_on_host.hpp"
+#include "tests/support/shared_by_host.hpp"
 
 // After CUDA's words.
 #include "cuda/scan_walk.cuh"
@@ -21,6 +22,18 @@ class ScanSpace : public HostSpace {
     static inline std::int64_t most = cuda::kernels::most_of_scan;
     static inline std::size_t most_stages = 0;
     static inline std::set<unsigned> blocks_of_clusters;
+    /// Scans among ranks so far that took one launch there.
+    static inline int shared_turns = 0;
+    /// That reach each other's memory; null: none do.
+    static inline Communicator const* ranks = nullptr;
+    using Direct = SharedByHost;
+    Direct connect(dca::Schedule const& schedule, int width, int /*beside*/) const { return {ranks, schedule, width}; }
+    using HostSpace::exchange;
+    template <class Numbers, int... D>
+    void exchange(Direct const& direct, Numbers const& numbers, BodyExchange<D> const&... beside) const {
+        direct(numbers);
+        (exchange(*direct.communicator(), beside), ...);
+    }
 
     class ScanTree {
       public:
@@ -57,6 +70,14 @@ class ScanSpace : public HostSpace {
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
+    template <class Numbers, class Scan, int... D>
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
+                     BodyExchange<D> const&... beside) const {
+        auto const show = [&] {
+            if (threadIdx.x == 0) exchange(direct, numbers, beside...);
+        };
+        return walk(tree).turn_shared(scan, show, Launches{top});
+    }
 
   private:
     /// Of ScanWalk.
@@ -65,6 +86,7 @@ class ScanSpace : public HostSpace {
 
         std::size_t stages() const { return tree.stages_.size(); }
         unsigned blocks() const { return tree.stages_.front().blocks; }
+        bool gathers() const { return !tree.plan_.empty() && tree.plan_.back().gathers; }
         template <class Scan>
         void climb(std::size_t i, Scan const& scan) const {
             launch(cuda::kernels::climb_scan<Scan>, i, scan);
@@ -85,6 +107,18 @@ class ScanSpace : public HostSpace {
             cuda_on_host::launch({blocks, cuda::kernels::most_of_scan, numbers<Scan>(stage), blocks},
                                  cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count, action);
             return true;
+        }
+        template <class Scan, class Exchange>
+        bool can_turn_shared(Scan const&, Exchange const&, Launches const& top) const {
+            return tree.stages_.back().blocks == 1 && top.stages() == 1 && top.blocks() == 1;
+        }
+        template <class Scan, class Exchange>
+        void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
+            auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
+            ++shared_turns;
+            cuda_on_host::launch({1, std::max(cuda::kernels::threads_of_scan(own), cuda::kernels::threads_of_scan(above)),
+                                  numbers<Scan>(own) + numbers<Scan>(above)},
+                                 cuda::kernels::turn_shared_scan<Scan, Exchange>, own, above, exchange, scan);
         }
 
       private:

@@ -8,6 +8,7 @@
 
 #include "dca/tree_solver.hpp"
 #include "tests/support/cuda_on_host.hpp"
+#include "tests/support/shared_by_host.hpp"
 
 // After CUDA's words.
 #include "cuda/hinge_teams.cuh"
@@ -22,6 +23,7 @@ struct StagedGpu {
     bool runs_apart = false;               // also where they are few, and a thread each
     std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
     bool short_chains = false;             // by themselves
+    bool ranks_reach_each_other = false;
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
 };
 /// In launches so far.
@@ -29,6 +31,7 @@ struct StagesSeen {
     std::set<unsigned> blocks_that_turn;
     std::size_t most_stages = 0;
     std::set<unsigned> blocks_of_short_chains;
+    std::set<unsigned> blocks_that_turn_shared;  // below the one that speaks to other ranks
     int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0;
 };
 
@@ -40,6 +43,14 @@ class StageSpace : public HostSpace {
     /// That trees are made for from now on.
     static inline StagedGpu gpu;
     static inline StagesSeen seen;
+    /// That reach each other's memory; null: none do.
+    static inline Communicator const* ranks = nullptr;
+    using Direct = SharedByHost;
+    Direct connect(dca::Schedule const& schedule, int width, int /*beside*/) const { return {ranks, schedule, width}; }
+    template <class Numbers>
+    void exchange(Direct const& direct, Numbers const& numbers) const {
+        direct(numbers);
+    }
 
     class Tree {
       public:
@@ -99,7 +110,20 @@ class StageSpace : public HostSpace {
         walk(tree).climb_and_descend(sweep);
     }
 
+    template <class Numbers, class Sweep>
+    bool turn_shared(Direct const& direct, Numbers const& numbers, Tree const& tree, Tree const& top, Sweep const& sweep) const {
+        return walk(tree).turn_shared(sweep, Exchange<Numbers>{direct, numbers}, Launches{top});
+    }
+
   private:
+    template <class Numbers>
+    struct Exchange {
+        Direct const& direct;
+        Numbers numbers;
+        void operator()() const {
+            if (threadIdx.x == 0) direct(numbers);
+        }
+    };
     static kernels::DeviceStage view(Tree const& tree, dca::Stage const& stage) {
         auto const which = static_cast<std::size_t>(&stage - tree.plan_.stages.data());
         return {static_cast<unsigned>(stage.blocks()),
@@ -108,7 +132,8 @@ class StageSpace : public HostSpace {
                 stage.of_runs ? tree.runs_.data() : nullptr,
                 tree.words_[which].data(),
                 stage.roots.data(),
-                tree.kept_[which].data()};
+                tree.kept_[which].data(),
+                stage.gathers};
     }
     template <class Sweep>
     static bool turn_short(kernels::ShortChain const& chain, Sweep const& sweep) {
@@ -125,11 +150,8 @@ class StageSpace : public HostSpace {
 
         std::size_t stages() const { return tree.plan_.stages.size(); }
         bool runs_apart() const { return tree.plan_.runs_apart; }
+        bool gathers() const { return !tree.plan_.stages.empty() && tree.plan_.stages.back().gathers; }
         bool takes_runs(std::size_t i) const { return stage(i).of_runs; }
-        template <class Sweep>
-        bool together(Sweep const&) const {
-            return static_cast<bool>(*tree.together_);
-        }
         template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
             launch(kernels::climb<Sweep>, stage(i), sweep);
@@ -139,29 +161,28 @@ class StageSpace : public HostSpace {
             launch(kernels::descend<Sweep>, stage(i), sweep);
         }
         template <class Sweep>
-        void turn(std::size_t i, Sweep const& sweep) const {
-            see_stages();
-            ++seen.turns_alone;
-            int const threads = kernels::threads_for<Sweep>(threads_for(stage(i)), kernels::threads_of_turn<Sweep>);
-            auto const here = view(tree, stage(i));
-            cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernels::turn<Sweep>, here,
-                                 sweep);
+        bool can_turn(std::size_t first, Sweep const&) const {
+            return first + 1 == stages() || *tree.together_;
         }
         template <class Sweep>
-        void turn_together(Sweep const& sweep) const {
-            see_stages();
-            dca::Stage const &lower = *tree.together_->lower, &upper = *tree.together_->upper;
-            auto const of = [&](dca::Stage const& one) {
-                return kernels::threads_for<Sweep>(threads_for(one), kernels::threads_of_turn<Sweep>);
-            };
-            int const threads = std::max(of(lower), of(upper));
-            auto const here = view(tree, lower), above = view(tree, upper);
-            seen.blocks_that_turn.insert(here.blocks);
-            kernels::TurnLetters const letters{
-                {tree.up_.data(), above.layout.items}, {tree.down_.data(), above.forces}, tree.launches_.data()};
-            cuda_on_host::launch({here.blocks + 1, static_cast<unsigned>(threads),
-                                  std::max(numbers<Sweep>(here, threads), numbers<Sweep>(above, threads)), 1, true},
-                                 kernels::turn_together<Sweep>, here, above, letters, sweep);
+        void turn(std::size_t first, Sweep const& sweep) const {
+            bool const together = first + 1 < stages();
+            if (together)
+                seen.blocks_that_turn.insert(view(tree, stage(first)).blocks);
+            else
+                ++seen.turns_alone;
+            turn(first, sweep, kernels::NoExchange{}, nullptr);
+        }
+        /// As DeviceSpace's.
+        template <class Sweep, class Exchange>
+        bool can_turn(std::size_t first, Sweep const& sweep, Exchange const&, Launches const& top) const {
+            return tree.plan_.stages.back().blocks() == 1 && top.stages() == 1 && top.stage(0).blocks() == 1 && can_turn(first, sweep) &&
+                   grid_of_turn<Sweep>(first, &top).numbers <= cuda_on_host::most_shared_bytes / sizeof(double);
+        }
+        template <class Sweep, class Exchange>
+        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
+            seen.blocks_that_turn_shared.insert(first + 1 < stages() ? view(tree, stage(first)).blocks : 0);
+            turn(first, sweep, exchange, &top);
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
@@ -184,6 +205,34 @@ class StageSpace : public HostSpace {
 
       private:
         dca::Stage const& stage(std::size_t i) const { return tree.plan_.stages[i]; }
+        template <class Sweep>
+        cuda_on_host::Launch grid_of_turn(std::size_t first, Launches const* top) const {
+            bool const together = first + 1 < stages();
+            dca::Stage const &lower = stage(first), &upper = tree.plan_.stages.back();
+            auto const of = [&](dca::Stage const& one) {
+                return kernels::threads_for<Sweep>(threads_for(one), kernels::threads_of_turn<Sweep>);
+            };
+            int const threads = std::max({of(lower), of(upper), top ? kernels::threads_among_ranks<Sweep> : 0});
+            EXPECT_LE(threads, kernels::threads_of_turn<Sweep>);
+            std::size_t shared = numbers<Sweep>(view(tree, upper), threads);
+            if (top) shared += numbers<Sweep>(view(top->tree, top->stage(0)), threads);
+            if (together) shared = std::max(shared, numbers<Sweep>(view(tree, lower), threads));
+            std::int64_t const blocks = upper.blocks() + (together ? lower.blocks() : 0);
+            return {static_cast<unsigned>(blocks), static_cast<unsigned>(threads), shared, 1, together};
+        }
+        /// `top`: null where nothing is above.
+        template <class Sweep, class Exchange>
+        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Launches const* top) const {
+            see_stages();
+            bool const together = first + 1 < stages();
+            kernels::DeviceStage const here = view(tree, tree.plan_.stages.back()),
+                                       below = together ? view(tree, stage(first)) : kernels::DeviceStage{},
+                                       above = top ? view(top->tree, top->stage(0)) : kernels::DeviceStage{};
+            kernels::TurnLetters letters;
+            if (together) letters = {{tree.up_.data(), here.layout.items}, {tree.down_.data(), here.forces}, tree.launches_.data()};
+            cuda_on_host::launch(grid_of_turn<Sweep>(first, top), kernels::turn<Sweep, Exchange>, below, here, above, letters, exchange,
+                                 sweep);
+        }
         int threads_for(dca::Stage const& stage) const {
             int const wanted = dca::threads_for(stage, tree.sizes_);
             return stage.of_runs ? wanted : std::min(wanted, tree.threads_);
