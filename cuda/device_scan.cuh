@@ -17,10 +17,8 @@ class DeviceScan {
     DeviceScan(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
                std::int64_t slots)
         : runs_(runs) {
-        for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan)) {
+        for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
             stages_.emplace_back(stage, runs_.data());
-            gathers_ = stage.gathers;
-        }
     }
     template <class Scan>
     void climb(Scan const& scan, cudaStream_t stream) const {
@@ -76,7 +74,6 @@ class DeviceScan {
 
         std::size_t stages() const { return tree.stages_.size(); }
         unsigned blocks() const { return tree.stages_.front().view.blocks; }
-        bool gathers() const { return tree.gathers_; }
         template <class Scan>
         void climb(std::size_t i, Scan const& scan) const {
             launch(kernels::climb_scan<Scan>, i, scan);
@@ -126,7 +123,7 @@ class DeviceScan {
     };
     ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
 
-    bool has_clusters_ = knows_clusters(), gathers_ = false;
+    bool has_clusters_ = knows_clusters();
     Buffer<dca::Run> runs_;
     std::vector<Stage> stages_;
 };

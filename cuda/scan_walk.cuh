@@ -8,7 +8,7 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages(), blocks() of the first stage, whether the last one gathers(); climb(i, scan), turn(i, scan) and descend(i, scan) of
+/// `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and descend(i, scan) of
 /// stage i; whether turn_then(scan, count, action) was launched; whether it can_turn_shared(scan, above...), and turn_shared() of the last
 /// stage and what is above it.
 template <class Launches>
@@ -17,11 +17,11 @@ class ScanWalk {
     explicit ScanWalk(Launches const& launches) : launches_(launches) {}
     template <class Scan>
     void climb(Scan const& scan) const {
-        climb_below(working_stages(), scan);
+        climb_below(launches_.stages(), scan);
     }
     template <class Scan>
     void descend(Scan const& scan) const {
-        descend_below(working_stages(), scan);
+        descend_below(launches_.stages(), scan);
     }
     template <class Scan>
     void climb_and_descend(Scan const& scan) const {
@@ -49,8 +49,6 @@ class ScanWalk {
     }
 
   private:
-    /// As StageWalk's.
-    std::size_t working_stages() const { return launches_.stages() - (launches_.gathers() ? 1 : 0); }
     template <class Scan>
     void climb_below(std::size_t stages, Scan const& scan) const {
         for (std::size_t i = 0; i < stages; ++i) launches_.climb(i, scan);

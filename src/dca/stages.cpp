@@ -81,6 +81,9 @@ class Planner {
             stages.push_back(stage(items, end_level == end() ? most : width, level, end_level));
             level = end_level;
         }
+    }
+    /// Where several blocks of the last stage have units that other ranks want, one above them.
+    void gather_units(std::int64_t most, std::vector<Stage>& stages) {
         if (stages.empty() || stages.back().blocks() == 1) return;
         std::vector<std::int64_t> units;
         add_units(stages, units);
@@ -266,7 +269,7 @@ std::int64_t width_of_runs(std::int64_t runs, bool apart, int levels, StageSizes
 
 ScanStage scan_stage_of(Stage const& stage) {
     ScanStage s;
-    s.levels = stage.levels, s.of_runs = stage.of_runs, s.gathers = stage.gathers, s.width = stage.width;
+    s.levels = stage.levels, s.of_runs = stage.of_runs, s.width = stage.width;
     for (StageItem const& item : stage.items) s.slot.push_back(static_cast<std::int32_t>(item.slot));
     for (StageMerge const& m : stage.merges) s.merges.push_back({m.inboard, m.outboard});
     for (StageBlock const& block : blocks_of(stage)) {
@@ -321,6 +324,7 @@ StagePlan plan_stages(std::vector<Run> const& runs, std::vector<std::vector<Merg
         plan.stages.back().of_runs = !plan.runs_apart;
     }
     planner.add_upper(level, sizes.most, sizes.together, plan.stages);
+    planner.gather_units(sizes.most, plan.stages);
     return plan;
 }
 

@@ -143,7 +143,6 @@ struct ScanBlock {
 struct ScanStage {
     int levels = 0;
     bool of_runs = false;            // items are the schedule's runs
-    bool gathers = false;            // as Stage
     std::int64_t width = 0;          // most items of a block
     std::vector<std::int32_t> slot;  // of items
     std::vector<ScanMerge> merges;

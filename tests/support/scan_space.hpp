@@ -86,7 +86,6 @@ class ScanSpace : public HostSpace {
 
         std::size_t stages() const { return tree.stages_.size(); }
         unsigned blocks() const { return tree.stages_.front().blocks; }
-        bool gathers() const { return !tree.plan_.empty() && tree.plan_.back().gathers; }
         template <class Scan>
         void climb(std::size_t i, Scan const& scan) const {
             launch(cuda::kernels::climb_scan<Scan>, i, scan);
