@@ -8,9 +8,9 @@
 
 namespace catena::cuda {
 
-/// `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and descend(i, scan) of
-/// stage i; whether turn_then(scan, count, action) was launched; whether it can_turn_shared(scan, above...), and turn_shared() of the last
-/// stage and what is above it.
+/// `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and descend(i, scan) of stage i; whether
+/// turn_then(scan, count, action) was launched; whether it can_turn_shared(scan, above...), and turn_shared() of the last stage and what is
+/// above it.
 template <class Launches>
 class ScanWalk {
   public:

@@ -115,8 +115,7 @@ class ScanSpace : public HostSpace {
         void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
             auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
             ++shared_turns;
-            cuda_on_host::launch({1, std::max(cuda::kernels::threads_of_scan(own), cuda::kernels::threads_of_scan(above)),
-                                  numbers<Scan>(own) + numbers<Scan>(above)},
+            cuda_on_host::launch({1, cuda::kernels::most_of_scan, numbers<Scan>(own) + numbers<Scan>(above)},
                                  cuda::kernels::turn_shared_scan<Scan, Exchange>, own, above, exchange, scan);
         }
 
