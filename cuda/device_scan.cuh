@@ -7,6 +7,7 @@
 #include "cuda/clusters.hpp"
 #include "cuda/launch.cuh"
 #include "cuda/owners.hpp"
+#include "cuda/peer_exchange.cuh"
 #include "cuda/scan_walk.cuh"
 
 namespace catena::cuda {
@@ -16,9 +17,9 @@ class DeviceScan {
   public:
     DeviceScan(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
                std::int64_t slots)
-        : runs_(runs) {
+        : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
         for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
-            stages_.emplace_back(stage, runs_.data());
+            stages_.emplace_back(stage, runs_);
     }
     template <class Scan>
     void climb(Scan const& scan, cudaStream_t stream) const {
@@ -38,14 +39,14 @@ class DeviceScan {
         return walk(stream).at_once(scan, count, action);
     }
     /// As ScanWalk::turn_shared.
-    template <class Scan, class Exchange>
-    bool turn_shared(Scan const& scan, DeviceScan const& top, Exchange const& exchange, cudaStream_t stream) const {
+    template <class Scan, class Numbers>
+    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, cudaStream_t stream) const {
         return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
     }
 
   private:
     struct Stage {
-        Stage(dca::ScanStage const& stage, dca::Run const* runs)
+        Stage(dca::ScanStage const& stage, RunsView const& runs)
             : slot(stage.slot),
               merges(stage.merges),
               tops(stage.tops),
@@ -54,7 +55,7 @@ class DeviceScan {
               view{static_cast<unsigned>(stage.blocks.size()),
                    stage.levels,
                    static_cast<int>(stage.width),
-                   stage.of_runs ? runs : nullptr,
+                   stage.of_runs ? runs : RunsView{},
                    slot.data(),
                    merges.data(),
                    tops.data(),
@@ -73,7 +74,7 @@ class DeviceScan {
         cudaStream_t stream;
 
         std::size_t stages() const { return tree.stages_.size(); }
-        unsigned blocks() const { return tree.stages_.front().view.blocks; }
+        unsigned blocks(std::size_t i) const { return tree.stages_[i].view.blocks; }
         template <class Scan>
         void climb(std::size_t i, Scan const& scan) const {
             launch(kernels::climb_scan<Scan>, i, scan);
@@ -95,18 +96,13 @@ class DeviceScan {
                          scan, count, action);
             return true;
         }
-
-        template <class Scan, class Exchange>
-        bool can_turn_shared(Scan const&, Exchange const&, Launches const& top) const {
-            return tree.stages_.back().view.blocks == 1 && top.stages() == 1 && top.blocks() == 1;
-        }
-        template <class Scan, class Exchange>
-        void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
+        template <class Scan, class Numbers>
+        void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, Launches const& top) const {
             kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
             std::size_t const all = bytes<Scan>(own) + bytes<Scan>(above);
-            auto* const kernel = kernels::turn_shared_scan<Scan, Exchange>;
+            auto* const kernel = kernels::turn_shared_scan<Scan, kernels::ExchangeByBlock<Numbers>>;
             allow_shared(kernel, all);
-            cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above, exchange, scan);
+            cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above, exchange.next(), scan);
             ++scans_shared;
         }
 
@@ -124,7 +120,8 @@ class DeviceScan {
     ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
 
     bool has_clusters_ = knows_clusters();
-    Buffer<dca::Run> runs_;
+    Buffer<dca::Run> run_list_;
+    RunsView runs_;
     std::vector<Stage> stages_;
 };
 

@@ -6,20 +6,15 @@
 #include <memory>
 #include <optional>
 
-#include "cuda/clusters.hpp"
 #include "cuda/device_blocks.cuh"
 #include "cuda/device_model.cuh"
 #include "cuda/device_records.cuh"
 #include "cuda/device_scan.cuh"
-#include "cuda/hinge_teams.cuh"
+#include "cuda/device_tree.cuh"
 #include "cuda/kernels.cuh"
 #include "cuda/launch.cuh"
 #include "cuda/peer_exchange.cuh"
-#include "cuda/short_launch.cuh"
-#include "cuda/stage_walk.cuh"
-#include "cuda/turn_launch.cuh"
 #include "dca/host_space.hpp"
-#include "dca/stages.hpp"
 
 namespace catena::cuda {
 
@@ -50,59 +45,7 @@ class DeviceSpace {
     template <class T, dca::Order order>
     using Records = DeviceRecords<T, order>;
     using ScanTree = DeviceScan;
-    class Tree {
-      public:
-        Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
-             std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
-            : runs_(runs) {
-            dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
-            dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
-            runs_apart_ = plan.runs_apart;
-            gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
-            dca::StagesTogether const together(plan, sizes);
-            for (dca::Stage const& stage : plan.stages)
-                stages_.emplace_back(stage, together, stage.of_runs ? runs_.data() : nullptr, sizes, records);
-            if (together) turn_ = TurnLaunch(together, records, most_shared_bytes_);
-            if (knows_clusters()) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
-        }
-
-      private:
-        friend class DeviceSpace;
-        struct StageHere {
-            StageHere(dca::Stage const& stage, dca::StagesTogether const& together, dca::Run const* runs, dca::StageSizes const& sizes,
-                      dca::StageRecords const& records)
-                : words(dca::words_of(stage, together)),
-                  roots(stage.roots),
-                  kept(static_cast<std::size_t>(dca::kept_numbers(stage, records))),
-                  threads(dca::threads_for(stage, sizes)),
-                  view{static_cast<unsigned>(stage.blocks()),
-                       static_cast<int>(stage.forces),
-                       dca::layout_of(stage),
-                       runs,
-                       words.data(),
-                       roots.data(),
-                       kept.data(),
-                       stage.gathers} {}
-            Buffer<dca::StageWord> words;
-            Buffer<dca::StageRoot> roots;
-            Buffer<double> kept;
-            int threads;
-            kernels::DeviceStage view;
-        };
-        static dca::StageSizes sizes_here(dca::StageRecords const& records, int& shared_bytes) {
-            int device = 0;
-            check(cudaGetDevice(&device), "say which it is");
-            check(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "say how large it is");
-            return dca::stage_sizes(records, shared_bytes, blocks_at_once());
-        }
-        int most_shared_bytes_ = 0;  // of a block
-        Buffer<dca::Run> runs_;
-        std::vector<StageHere> stages_;
-        bool runs_apart_ = false, gathers_ = false;
-        TurnLaunch turn_;
-        ShortLaunch short_;
-    };
-
+    using Tree = DeviceTree;
     using Blocks = DeviceBlocks;
     template <int K>
     static constexpr bool has_blocks = K == 1;
@@ -158,18 +101,15 @@ class DeviceSpace {
     }
     template <class Sweep>
     void climb(Tree const& tree, Sweep const& sweep) const {
-        walk(tree).climb(sweep);
+        tree.climb(sweep, stream());
     }
     template <class Sweep>
     void descend(Tree const& tree, Sweep const& sweep) const {
-        walk(tree).descend(sweep);
+        tree.descend(sweep, stream());
     }
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
-        if (tree.stages_.empty()) return;
-        if constexpr (Sweep::goes_short)
-            if (tree.short_(sweep, stream())) return;
-        walk(tree).climb_and_descend(sweep);
+        tree.climb_and_descend(sweep, stream());
     }
     static bool has_threads_to_spare(std::int64_t items) { return items <= most_items_with_threads_to_spare; }
     template <class Value>
@@ -231,13 +171,12 @@ class DeviceSpace {
     template <class Sweep>
     bool turn_shared(Direct const& direct, typename Sweep::ShownNumbers const& numbers, Tree const& tree, Tree const& top,
                      Sweep const& sweep) const {
-        return walk(tree).turn_shared(sweep, ExchangeOf<Sweep>{direct, numbers, {}}, Launches{*this, top});
+        return turn_shared_by(kernels::ExchangeByBlock<typename Sweep::ShownNumbers>{direct, numbers, {}}, tree, top, sweep);
     }
     template <class Numbers, class Scan, int... D>
     bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
                      BodyExchange<D> const&... beside) const {
-        peers_.meet_next(stream_);
-        return tree.turn_shared(scan, top, kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, stream());
+        return turn_shared_by(kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, tree, top, scan);
     }
     template <int D>
     Field<D> read(DeviceField<D> const& field) const {
@@ -334,114 +273,11 @@ class DeviceSpace {
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
     static void started() { check(cudaGetLastError(), "start a kernel"); }
-    template <class Sweep>
-    using ExchangeOf = kernels::ExchangeByBlock<typename Sweep::ShownNumbers>;
-    /// Of StageWalk.
-    struct Launches {
-        DeviceSpace const& space;
-        Tree const& tree;
-
-        std::size_t stages() const { return tree.stages_.size(); }
-        bool runs_apart() const { return tree.runs_apart_; }
-        bool gathers() const { return tree.gathers_; }
-        bool takes_runs(std::size_t i) const { return tree.stages_[i].view.runs != nullptr; }
-        template <class Sweep>
-        void climb(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::climb<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
-                   tree.stages_[i].view, sweep);
-        }
-        template <class Sweep>
-        void descend(std::size_t i, Sweep const& sweep) const {
-            launch(kernels::descend<Sweep>, grid_of(tree.stages_[i], tree.stages_[i].threads, kernels::threads_of<Sweep>, sweep),
-                   tree.stages_[i].view, sweep);
-        }
-        template <class Sweep>
-        bool can_turn(std::size_t first, Sweep const& sweep) const {
-            return first + 1 == stages() || runs_at_once<kernels::NoExchange>(first, sweep, nullptr);
-        }
-        template <class Sweep>
-        void turn(std::size_t first, Sweep const& sweep) const {
-            turn(first, sweep, kernels::NoExchange{}, nullptr);
-        }
-        /// With what ranks show each other and the only stage of `top`.
-        template <class Sweep>
-        bool can_turn(std::size_t first, Sweep const& sweep, ExchangeOf<Sweep> const&, Launches const& top) const {
-            if (tree.stages_.back().view.blocks != 1 || top.stages() != 1 || top.tree.stages_.back().view.blocks != 1) return false;
-            Tree::StageHere const& above = top.tree.stages_.back();
-            if (first + 1 < stages()) return runs_at_once<ExchangeOf<Sweep>>(first, sweep, &above);
-            return grid_of_turn(first, sweep, &above).shared_bytes <= static_cast<std::size_t>(tree.most_shared_bytes_);
-        }
-        template <class Sweep>
-        void turn(std::size_t first, Sweep const& sweep, ExchangeOf<Sweep> const& exchange, Launches const& top) const {
-            space.peers_.meet_next(space.stream_);
-            turn(first, sweep, exchange, &top.tree.stages_.back());
-            ++turns_shared;
-        }
-        template <class Sweep>
-        void climb_runs(Sweep const& sweep) const {
-            auto const runs = static_cast<std::int64_t>(tree.runs_.size());
-            if constexpr (dca::takes_whole_runs<Sweep>)
-                if (kernels::go_by_teams<Sweep>(runs))
-                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
-            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
-                   sweep);
-        }
-        template <class Sweep>
-        void descend_runs(Sweep const& sweep) const {
-            auto const runs = static_cast<std::int64_t>(tree.runs_.size());
-            if constexpr (dca::takes_whole_runs<Sweep>)
-                if (kernels::go_by_teams<Sweep>(runs))
-                    return launch(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
-            launch(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
-                   sweep);
-        }
-
-      private:
-        template <class Sweep>
-        static Grid grid_of(Tree::StageHere const& stage, int planned_threads, int most_threads, Sweep const&) {
-            int const of_block = kernels::threads_for<Sweep>(planned_threads, most_threads);
-            return {stage.view.blocks, static_cast<unsigned>(of_block),
-                    sizeof(double) * static_cast<std::size_t>(kernels::BlockOfStage<Sweep>::size(stage.view, of_block))};
-        }
-        /// `top`: null where nothing is above.
-        template <class Sweep, class Exchange>
-        void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Tree::StageHere const* top) const {
-            bool const together = first + 1 < stages();
-            launch(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top),
-                   together ? tree.stages_[first].view : kernels::DeviceStage{}, tree.stages_.back().view,
-                   top ? top->view : kernels::DeviceStage{}, together ? tree.turn_.letters() : kernels::TurnLetters{}, exchange, sweep);
-            if (together) ++turns_together;
-        }
-        /// While it waits for other ranks, there is room for what they meet in besides (arrived_beads.cu).
-        template <class Exchange, class Sweep>
-        bool runs_at_once(std::size_t first, Sweep const& sweep, Tree::StageHere const* top) const {
-            return tree.turn_ && tree.turn_.fits(kernels::turn<Sweep, Exchange>, grid_of_turn(first, sweep, top), top ? 1 : 0);
-        }
-        template <class Sweep>
-        Grid grid_of_turn(std::size_t first, Sweep const& sweep, Tree::StageHere const* top) const {
-            Tree::StageHere const &lower = tree.stages_[first], &upper = tree.stages_.back();
-            int const planned = std::max({lower.threads, upper.threads, top ? kernels::threads_among_ranks<Sweep> : 0});
-            auto const of = [&](Tree::StageHere const& stage) { return grid_of(stage, planned, kernels::threads_of_turn<Sweep>, sweep); };
-            Grid grid = of(upper);
-            if (top) grid.shared_bytes += of(*top).shared_bytes;
-            if (first + 1 == stages()) return grid;
-            Grid const below = of(lower);
-            grid.blocks += below.blocks;
-            grid.shared_bytes = std::max(grid.shared_bytes, below.shared_bytes);
-            grid.all_at_once = true;
-            return grid;
-        }
-        template <class... Parameters>
-        void launch(void (*kernel)(Parameters...), Grid const& grid, std::type_identity_t<Parameters> const&... arguments) const {
-            allow_shared(kernel, grid.shared_bytes);
-            cuda::launch(grid, space.stream(), kernel, arguments...);
-        }
-        template <class Sweep>
-        void launch(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
-            launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_.data(), grid.runs, sweep);
-        }
-    };
-    StageWalk<Launches> walk(Tree const& tree) const { return StageWalk<Launches>({*this, tree}); }
+    template <class AnyTree, class Sweep, class Numbers>
+    bool turn_shared_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree, AnyTree const& top,
+                        Sweep const& sweep) const {
+        return tree.turn_shared(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top, stream());
+    }
 
     std::shared_ptr<Stream> stream_;
     std::shared_ptr<Buffer<unsigned long long>> answer_;  // of largest()

@@ -294,12 +294,12 @@ __device__ inline bool all_lanes(int lane, bool says) {
 }
 /// A warp with another run among its own has a thread take each.
 template <class Sweep>
-__global__ void __launch_bounds__(32) climb_runs_by_teams(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+__global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
     wait_for_launch();
     int const lane = static_cast<int>(threadIdx.x) % 32;
     std::int64_t const wanted = thread() / lanes_of_team;
-    HingeTeam team(lane, wanted < count);
-    dca::Run const run = runs[wanted < count ? wanted : count - 1];
+    HingeTeam team(lane, wanted < runs.count);
+    dca::Run const run = runs[wanted < runs.count ? wanted : runs.count - 1];
     if (all_lanes(lane, run.count == dca::longest_run && sweep.takes(run))) {
         dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
         BodiesOfTeam<BodyAhead> const bodies(shared_numbers, lane);
@@ -318,12 +318,12 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(dca::Run const* runs, 
 }
 /// What is wanted of every body is found one after the other: by a thread.
 template <class Sweep>
-__global__ void __launch_bounds__(32) descend_runs_by_teams(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+__global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep sweep) {
     wait_for_launch();
     int const lane = static_cast<int>(threadIdx.x) % 32;
     std::int64_t const wanted = thread() / lanes_of_team;
-    HingeTeam const team(lane, wanted < count);
-    dca::Run const run = runs[wanted < count ? wanted : count - 1];
+    HingeTeam const team(lane, wanted < runs.count);
+    dca::Run const run = runs[wanted < runs.count ? wanted : runs.count - 1];
     bool const whole = run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run);
     if (all_lanes(lane, whole)) {
         dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, sweep.goes_by_all());

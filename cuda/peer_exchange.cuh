@@ -177,7 +177,7 @@ __global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, N
     __syncthreads();
     exchange_by_block(call, numbers, beside);
 }
-/// As kernels turn() and turn_shared_scan() want it.
+/// Of kernels turn() and turn_shared_scan().
 template <class Numbers>
 struct ExchangeByBlock {
     PeerCall call;
@@ -187,4 +187,18 @@ struct ExchangeByBlock {
 };
 
 }  // namespace kernels
+
+/// For a launch that is yet to come on a stream: next(), just before it, lets that one wait for its turn (Meetings).
+template <class Numbers>
+struct ExchangeInTurn {
+    Peers const& peers;
+    std::shared_ptr<Stream> const& stream;
+    kernels::ExchangeByBlock<Numbers> exchange;
+
+    kernels::ExchangeByBlock<Numbers> const& next() const {
+        peers.meet_next(stream);
+        return exchange;
+    }
+};
+
 }  // namespace catena::cuda

@@ -4,6 +4,7 @@
 
 #include "cuda/bodies_ahead.cuh"
 #include "cuda/quick.cuh"
+#include "cuda/runs_view.hpp"
 
 namespace catena::cuda::kernels {
 
@@ -114,7 +115,7 @@ using NodesOfParts = PackedRecords<typename Sweep::Sweeps::Node, PackedRecords<t
 /// threads of a block must come here, and there is one for every part; `memory`: for a segment a thread; `part`: what a thread read of its
 /// bodies. `nodes_stay`: a sweep that keeps nodes has those between parts there, for the way down in the same launch, and not among all joints.
 template <bool nodes_stay, class Sweep, class Take>
-__device__ void climb_some_runs(dca::Run const* runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
+__device__ void climb_some_runs(RunsView const& runs, std::int64_t first, std::int64_t end, Sweep const& sweep, double* memory,
                                 typename Sweep::Part& part, Take const& take) {
     using Segment = typename Sweep::Segment;
     PackedRecords<Segment> const parts{memory};
@@ -253,7 +254,7 @@ constexpr std::size_t numbers_of_descent(int threads) {
 /// those after it. `memory`: for a segment a thread, or numbers_of_descent() where it is `roomy`, as it is where registers are not; `part`:
 /// as climb_some_runs left it, or null. `nodes_stay`: so does `memory`.
 template <bool unroll, bool nodes_stay, bool roomy, class Sweep, class OfFirst, class OfNext>
-__device__ void descend_some_runs(dca::Run const* runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
+__device__ void descend_some_runs(RunsView const& runs, std::int64_t first_run, std::int64_t end, Sweep const& sweep, double* memory,
                                   typename Sweep::Part const* part, OfFirst const& of_first, OfNext const& of_next) {
     using State = typename Sweep::Sweeps::State;
     PackedRecords<State> const at_part{memory};

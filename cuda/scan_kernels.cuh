@@ -6,6 +6,7 @@
 
 #include "cuda/cluster.cuh"
 #include "cuda/run_parts.cuh"
+#include "cuda/runs_view.hpp"
 #include "dca/stages.hpp"
 
 namespace catena::cuda::kernels {
@@ -16,7 +17,7 @@ using dca::most_of_scan;
 struct DeviceScanStage {
     unsigned blocks = 0;
     int levels = 0, width = 0;
-    dca::Run const* runs = nullptr;  // the items; null where they are none
+    RunsView runs = {};  // the items; none where they are not
     std::int32_t const* slot = nullptr;
     dca::ScanMerge const* merges = nullptr;
     dca::ScanTop const* tops = nullptr;

@@ -5,12 +5,12 @@
 #include <cstdint>
 
 #include "cuda/scan_kernels.cuh"
+#include "cuda/shared_turn.hpp"
 
 namespace catena::cuda {
 
-/// `Launches`: stages(), blocks() of the first stage; climb(i, scan), turn(i, scan) and descend(i, scan) of stage i; whether
-/// turn_then(scan, count, action) was launched; whether it can_turn_shared(scan, above...), and turn_shared() of the last stage and what is
-/// above it.
+/// `Launches`: stages() and blocks(i) of stage i; climb(i, scan), turn(i, scan) and descend(i, scan) of it; whether
+/// turn_then(scan, count, action) was launched; turn_shared(scan, exchange, top) of the last stage, what ranks show each other and `top`.
 template <class Launches>
 class ScanWalk {
   public:
@@ -34,16 +34,16 @@ class ScanWalk {
     /// And then action(k) for k < count, if one launch does all; else nothing is done.
     template <class Scan, class Action>
     bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
-        return launches_.stages() == 1 && launches_.blocks() == 1 && launches_.turn_then(scan, count, action);
+        return launches_.stages() == 1 && launches_.blocks(0) == 1 && launches_.turn_then(scan, count, action);
     }
 
     /// As StageWalk::turn_shared.
-    template <class Scan, class... Above>
-    bool turn_shared(Scan const& scan, Above const&... above) const {
-        if (launches_.stages() == 0 || !launches_.can_turn_shared(scan, above...)) return false;
+    template <class Scan, class Exchange>
+    bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {
+        if (!turns_in_a_block(launches_, top)) return false;
         std::size_t const last = launches_.stages() - 1;
         climb_below(last, scan);
-        launches_.turn_shared(scan, above...);
+        launches_.turn_shared(scan, exchange, top);
         descend_below(last, scan);
         return true;
     }

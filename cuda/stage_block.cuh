@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cuda/merge_teams.cuh"
+#include "cuda/runs_view.hpp"
 #include "dca/stage_words.hpp"
 
 namespace catena::cuda::kernels {
@@ -14,7 +15,7 @@ struct DeviceStage {
     unsigned blocks = 0;
     int forces = 0;  // places of a block
     dca::StageLayout layout;
-    dca::Run const* runs = nullptr;  // the items; null where they are none
+    RunsView runs = {};  // the items; none where they are not
     dca::StageWord const* words = nullptr;
     dca::StageRoot const* roots = nullptr;
     double* kept = nullptr;  // of every block, its segments' memory: StageRecords::kept numbers a place

@@ -52,7 +52,7 @@ __global__ void __launch_bounds__(threads_of_turn<Sweep>)
     constexpr bool among_ranks = !std::is_same_v<Exchange, NoExchange>;
     bool const by_letters = lower.blocks > 0, is_upper = blockIdx.x >= lower.blocks, has_top = among_ranks && is_upper;
     if constexpr (lets_next_start<Sweep>)
-        if (by_letters && !has_top) let_next_launch_start();
+        if (by_letters && !has_top) let_next_launch_start();  // which would else take the room of what other ranks wait for
     // Alone, a stage that gathers has nothing to do: all that it would is in its slots.
     int const begin = has_top && !by_letters && upper.gathers ? 1 : 0, end = has_top ? 2 : 1;
     auto const with_block = [&](bool is_top, auto const& action) {
@@ -143,42 +143,42 @@ __device__ void climb_whole(Sweep const& sweep, dca::Run const& run) {
     }
 }
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_runs(RunsView runs, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     if constexpr (whole_runs<Sweep>) {
-        if (std::int64_t const i = thread(); i < count) climb_whole(sweep, runs[i]);
+        if (std::int64_t const i = thread(); i < runs.count) climb_whole(sweep, runs[i]);
     } else {
         typename Sweep::Part part;
-        climb_some_runs<false>(runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers,
-                               part, [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
+        climb_some_runs<false>(runs, static_cast<std::int64_t>(blockIdx.x) * (blockDim.x / dca::parts_of_run), runs.count, sweep,
+                               shared_numbers, part,
+                               [&](std::int64_t i, typename Sweep::Segment const& segment) { sweep.store(runs[i].slot, segment); });
     }
 }
 /// From the last block to the first: what the way up read last is still near.
 template <class Sweep>
-__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_runs(dca::Run const* runs, std::int64_t count, Sweep sweep) {
+__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_runs(RunsView runs, Sweep sweep) {
     if constexpr (lets_next_start<Sweep>) let_next_launch_start();
     wait_for_launch();
     std::int64_t const block = gridDim.x - 1 - blockIdx.x;
     if constexpr (dca::takes_whole_runs<Sweep>) {
-        if (std::int64_t const i = block * blockDim.x + threadIdx.x; i < count) descend_run(sweep, runs[i]);
+        if (std::int64_t const i = block * blockDim.x + threadIdx.x; i < runs.count) descend_run(sweep, runs[i]);
     } else {
         descend_some_runs<true, false, true>(
-            runs, block * (blockDim.x / dca::parts_of_run), count, sweep, shared_numbers, nullptr,
+            runs, block * (blockDim.x / dca::parts_of_run), runs.count, sweep, shared_numbers, nullptr,
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
     }
 }
 
 struct RunsGrid {
-    std::int64_t runs = 0;
     unsigned blocks = 0, threads = 0;
     std::size_t shared_bytes = 0;
 };
 /// Threads of whole groups of 32 runs, which walk side by side.
 inline RunsGrid grid_of_runs(std::int64_t runs, int threads_of_run, int threads_of_block) {
     std::int64_t const wanted = (runs + 31) / 32 * 32 * threads_of_run;
-    return {runs, static_cast<unsigned>((wanted + threads_of_block - 1) / threads_of_block), static_cast<unsigned>(threads_of_block), 0};
+    return {static_cast<unsigned>((wanted + threads_of_block - 1) / threads_of_block), static_cast<unsigned>(threads_of_block), 0};
 }
 /// Threads of a block of whole runs: a warp, so that few runs spread over a GPU.
 template <class Sweep>

@@ -3,13 +3,14 @@
 
 #include <cstddef>
 
+#include "cuda/shared_turn.hpp"
 #include "cuda/stage_kernels.cuh"
 
 namespace catena::cuda {
 
-/// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers() and stage i takes_runs(i); climb(i, sweep)
-/// and descend(i, sweep) of stage i; turn(i, sweep, above...) of stage i and the one after it, if any, where can_turn() says so;
-/// climb_runs(sweep) and descend_runs(sweep). It can turn the last stage with nothing above.
+/// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers(), blocks(i) of stage i and whether it
+/// takes_runs(i); climb(i, sweep) and descend(i, sweep) of stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one
+/// after it, if any, where can_turn() says so; climb_runs(sweep) and descend_runs(sweep). It can turn the last stage alone.
 template <class Launches>
 class StageWalk {
   public:
@@ -31,14 +32,16 @@ class StageWalk {
         turn_stages(sweep);
         descend_runs(sweep);
     }
-    /// The same with what is `above` a tree that ranks share, if one launch turns it with the last stages; else nothing is done.
-    template <class Sweep, class... Above>
-    bool turn_shared(Sweep const& sweep, Above const&... above) const {
+    /// The same with what ranks show each other and the `top` that they share, if one launch turns it with the last stages; else nothing is
+    /// done.
+    template <class Sweep, class Exchange>
+    bool turn_shared(Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
+        if (!turns_in_a_block(launches_, top)) return false;
         std::size_t const stages = launches_.stages();
         for (std::size_t const turned : {std::size_t{2}, std::size_t{1}})
-            if (stages >= turned && !goes_apart<Sweep>(stages - turned) && launches_.can_turn(stages - turned, sweep, above...)) {
+            if (stages >= turned && !goes_apart<Sweep>(stages - turned) && launches_.can_turn(stages - turned, sweep, exchange, top)) {
                 climb_runs(sweep);
-                turn_from(stages - turned, sweep, above...);
+                turn_from(stages - turned, sweep, exchange, top);
                 descend_runs(sweep);
                 return true;
             }
@@ -65,10 +68,10 @@ class StageWalk {
             }
         turn_from(first, sweep);
     }
-    template <class Sweep, class... Above>
-    void turn_from(std::size_t first, Sweep const& sweep, Above const&... above) const {
+    template <class Sweep, class... Shared>
+    void turn_from(std::size_t first, Sweep const& sweep, Shared const&... exchange_and_top) const {
         climb_stages(first, sweep);
-        launches_.turn(first, sweep, above...);
+        launches_.turn(first, sweep, exchange_and_top...);
         descend_stages(first, sweep);
     }
     /// Of the first `stages` stages.

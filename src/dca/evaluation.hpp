@@ -142,9 +142,9 @@ struct Evaluation {
 
     /// Runs on hinges go by their inertias.
     CATENA_HD bool takes(Run const& run) const {
-        std::int64_t const end = run.body + run.count;
-        bool hinges = run.count > 1 && !has_jointed_tip(s.leaf.group(), end - 1);
-        for (std::int64_t k = run.body + 1; k < end; ++k) hinges = hinges && s.restricted[k] == K;
+        bool hinges = run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
+        CATENA_UNROLL
+        for (int i = 1; i < longest_run; ++i) hinges = hinges & (i >= run.count || s.restricted[run.body + i] == K);  // asked for together
         return hinges;
     }
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {

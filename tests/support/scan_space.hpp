@@ -43,8 +43,8 @@ class ScanSpace : public HostSpace {
             most_stages = std::max(most_stages, plan_.size());
             for (dca::ScanStage const& stage : plan_)
                 stages_.push_back({static_cast<unsigned>(stage.blocks.size()), stage.levels, static_cast<int>(stage.width),
-                                   stage.of_runs ? runs.data() : nullptr, stage.slot.data(), stage.merges.data(), stage.tops.data(),
-                                   stage.blocks.data(), stage.level_end.data()});
+                                   stage.of_runs ? cuda::view_of(runs, runs.data()) : cuda::RunsView{}, stage.slot.data(),
+                                   stage.merges.data(), stage.tops.data(), stage.blocks.data(), stage.level_end.data()});
         }
 
       private:
@@ -85,7 +85,7 @@ class ScanSpace : public HostSpace {
         ScanTree const& tree;
 
         std::size_t stages() const { return tree.stages_.size(); }
-        unsigned blocks() const { return tree.stages_.front().blocks; }
+        unsigned blocks(std::size_t i) const { return tree.stages_[i].blocks; }
         template <class Scan>
         void climb(std::size_t i, Scan const& scan) const {
             launch(cuda::kernels::climb_scan<Scan>, i, scan);
@@ -106,10 +106,6 @@ class ScanSpace : public HostSpace {
             cuda_on_host::launch({blocks, cuda::kernels::most_of_scan, numbers<Scan>(stage), blocks},
                                  cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count, action);
             return true;
-        }
-        template <class Scan, class Exchange>
-        bool can_turn_shared(Scan const&, Exchange const&, Launches const& top) const {
-            return tree.stages_.back().blocks == 1 && top.stages() == 1 && top.blocks() == 1;
         }
         template <class Scan, class Exchange>
         void turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top) const {

@@ -56,7 +56,7 @@ class StageSpace : public HostSpace {
       public:
         Tree(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
              std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
-            : runs_(runs), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
+            : runs_(cuda::view_of(runs, runs.data())), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             sizes_.runs_apart = records.whole_runs;
             plan_ = dca::plan_stages(runs, levels, roots, slots, restricted, sizes_);
@@ -80,7 +80,7 @@ class StageSpace : public HostSpace {
 
       private:
         friend class StageSpace;
-        std::span<dca::Run const> runs_;
+        cuda::RunsView runs_;
         dca::StageSizes sizes_;
         int threads_;
         std::size_t shared_bytes_ = gpu.shared_bytes;
@@ -129,7 +129,7 @@ class StageSpace : public HostSpace {
         return {static_cast<unsigned>(stage.blocks()),
                 static_cast<int>(stage.forces),
                 dca::layout_of(stage),
-                stage.of_runs ? tree.runs_.data() : nullptr,
+                stage.of_runs ? tree.runs_ : cuda::RunsView{},
                 tree.words_[which].data(),
                 stage.roots.data(),
                 tree.kept_[which].data(),
@@ -151,6 +151,7 @@ class StageSpace : public HostSpace {
         std::size_t stages() const { return tree.plan_.stages.size(); }
         bool runs_apart() const { return tree.plan_.runs_apart; }
         bool gathers() const { return !tree.plan_.stages.empty() && tree.plan_.stages.back().gathers; }
+        unsigned blocks(std::size_t i) const { return static_cast<unsigned>(stage(i).blocks()); }
         bool takes_runs(std::size_t i) const { return stage(i).of_runs; }
         template <class Sweep>
         void climb(std::size_t i, Sweep const& sweep) const {
@@ -173,11 +174,10 @@ class StageSpace : public HostSpace {
                 ++seen.turns_alone;
             turn(first, sweep, kernels::NoExchange{}, nullptr);
         }
-        /// As DeviceSpace's.
+        /// As DeviceTree's.
         template <class Sweep, class Exchange>
         bool can_turn(std::size_t first, Sweep const& sweep, Exchange const&, Launches const& top) const {
-            return tree.plan_.stages.back().blocks() == 1 && top.stages() == 1 && top.stage(0).blocks() == 1 && can_turn(first, sweep) &&
-                   grid_of_turn<Sweep>(first, &top).numbers <= cuda_on_host::most_shared_bytes / sizeof(double);
+            return can_turn(first, sweep) && grid_of_turn<Sweep>(first, &top).numbers <= cuda_on_host::most_shared_bytes / sizeof(double);
         }
         template <class Sweep, class Exchange>
         void turn(std::size_t first, Sweep const& sweep, Exchange const& exchange, Launches const& top) const {
@@ -186,7 +186,7 @@ class StageSpace : public HostSpace {
         }
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
-            std::int64_t const runs = std::ssize(tree.runs_);
+            std::int64_t const runs = tree.runs_.count;
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
                     ++seen.teams;
@@ -196,7 +196,7 @@ class StageSpace : public HostSpace {
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
-            std::int64_t const runs = std::ssize(tree.runs_);
+            std::int64_t const runs = tree.runs_.count;
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
                     return over_runs(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
@@ -253,9 +253,8 @@ class StageSpace : public HostSpace {
             cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
         }
         template <class Sweep>
-        void over_runs(void (*kernel)(dca::Run const*, std::int64_t, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
-            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_.data(), grid.runs,
-                                 sweep);
+        void over_runs(void (*kernel)(cuda::RunsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
+            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_, sweep);
         }
     };
     static cuda::StageWalk<Launches> walk(Tree const& tree) { return cuda::StageWalk<Launches>({tree}); }
