@@ -20,5 +20,7 @@ inline std::atomic<std::int64_t> short_launches = 0;
 inline std::atomic<std::int64_t> turns_together = 0;
 /// Sweeps' and scans' launches so far in which ranks met between the ways up and down.
 inline std::atomic<std::int64_t> turns_shared = 0, scans_shared = 0;
+/// Sweeps' launches so far in which warps joined groups of runs (cuda/run_groups.hpp).
+inline std::atomic<std::int64_t> launches_by_groups = 0;
 
 }  // namespace catena::cuda

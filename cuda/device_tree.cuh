@@ -26,7 +26,12 @@ class DeviceTree {
                std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
         : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
         dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
-        dca::StagePlan const plan = dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
+        std::vector<dca::Run> groups;
+        if (go_by_groups(records)) groups = groups_of(runs, levels, fewest_groups);
+        if (!groups.empty()) group_list_ = Buffer<dca::Run>(groups);
+        groups_ = view_of_groups(groups, group_list_.data());
+        dca::StagePlan const plan = groups.empty() ? dca::plan_stages(runs, levels, roots, slots, restricted, sizes)
+                                                   : plan_above(groups, levels, roots, slots, restricted, sizes);
         runs_apart_ = plan.runs_apart;
         gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
         dca::StagesTogether const together(plan, sizes);
@@ -130,8 +135,10 @@ class DeviceTree {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
                     return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
-            launch(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
-                   sweep);
+            kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_));
+            if constexpr (kernels::by_groups<Sweep>)
+                if (tree.groups_) return launch(kernels::climb_groups<Sweep>, grid, sweep);
+            launch(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
@@ -139,8 +146,10 @@ class DeviceTree {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
                     return launch(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
-            launch(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_)),
-                   sweep);
+            kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_));
+            if constexpr (kernels::by_groups<Sweep>)
+                if (tree.groups_) return launch(kernels::descend_groups<Sweep>, grid, sweep);
+            launch(kernels::descend_runs<Sweep>, grid, sweep);
         }
 
       private:
@@ -184,6 +193,11 @@ class DeviceTree {
             cuda::launch(grid, stream, kernel, arguments...);
         }
         template <class Sweep>
+        void launch(void (*kernel)(RunsView, GroupsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
+            launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_, tree.groups_, sweep);
+            ++launches_by_groups;
+        }
+        template <class Sweep>
         void launch(void (*kernel)(RunsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
             launch(kernel, Grid{grid.blocks, grid.threads, grid.shared_bytes}, tree.runs_, sweep);
         }
@@ -193,6 +207,8 @@ class DeviceTree {
     int most_shared_bytes_ = 0;  // of a block
     Buffer<dca::Run> run_list_;
     RunsView runs_;
+    Buffer<dca::Run> group_list_;
+    GroupsView groups_;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
     TurnLaunch turn_;

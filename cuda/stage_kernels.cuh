@@ -1,6 +1,7 @@
 // A sweep's stages (dca/stages.hpp) on a GPU. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
+#include "cuda/run_groups.cuh"
 #include "cuda/stage_block.cuh"
 
 namespace catena::cuda::kernels {
@@ -169,6 +170,34 @@ __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_run
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.body); },
             [&](dca::Run const& run, std::int64_t) { return sweep.s.forces.load(run.next); });
     }
+}
+
+/// The same with the levels above that join groups of runs, a block a group.
+template <class Sweep>
+constexpr bool by_groups = go_by_groups(Sweep::Sweeps::in_stage);
+static_assert(threads == runs_of_group * dca::parts_of_run);
+template <class Sweep>
+__global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_groups(RunsView runs, GroupsView groups, Sweep sweep) {
+    using Segment = typename Sweep::Segment;
+    constexpr std::size_t any_gpu_shares = 48 << 10;
+    static_assert(sizeof(double) * PackedRecords<Segment>::size(threads) <= any_gpu_shares);  // so that blocks are no smaller
+    if constexpr (lets_next_start<Sweep>) let_next_launch_start();
+    wait_for_launch();
+    typename Sweep::Part part;
+    Segment own = Segment::zero();
+    climb_some_runs<false>(runs, std::int64_t{blockIdx.x} * runs_of_group, runs.count, sweep, shared_numbers, part,
+                           [&](std::int64_t, Segment const& segment) { own = segment; });
+    if (threadIdx.x < runs_of_group) GroupOfRuns(groups, runs, blockIdx.x).climb(sweep, own);
+}
+template <class Sweep>
+__global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_groups(RunsView runs, GroupsView groups, Sweep sweep) {
+    if constexpr (lets_next_start<Sweep>) let_next_launch_start();
+    wait_for_launch();
+    std::int64_t const group = gridDim.x - 1 - blockIdx.x;
+    auto const ends = GroupOfRuns(groups, runs, group).descend(sweep);
+    descend_some_runs<true, false, true>(
+        runs, group * runs_of_group, runs.count, sweep, shared_numbers, nullptr, [&](dca::Run const&, std::int64_t) { return ends.first; },
+        [&](dca::Run const&, std::int64_t) { return ends.next; });
 }
 
 struct RunsGrid {

@@ -143,8 +143,12 @@ struct Evaluation {
     /// Runs on hinges go by their inertias.
     CATENA_HD bool takes(Run const& run) const {
         bool hinges = run.count > 1 && !has_jointed_tip(s.leaf.group(), run.body + run.count - 1);
+        if (run.count == longest_run) {  // asked for together
         CATENA_UNROLL
-        for (int i = 1; i < longest_run; ++i) hinges = hinges & (i >= run.count || s.restricted[run.body + i] == K);  // asked for together
+            for (int i = 1; i < longest_run; ++i) hinges &= s.restricted[run.body + i] == K;
+            return hinges;
+        }
+        for (int i = 1; i < run.count; ++i) hinges &= s.restricted[run.body + i] == K;
         return hinges;
     }
     CATENA_HD_IN_PLACE Segment climb(Run const& run) const {

@@ -32,7 +32,7 @@ struct NamedGpu {
     std::string name;
     StagedGpu gpu;
 };
-char const* const h100 = "an H100";
+char const *const h100 = "an H100", *const joins_groups = "that joins runs in groups where they are few";
 StagedGpu of_h100(dca::StageRecords const& records) {
     StagedGpu gpu{dca::stage_sizes(records, cuda_on_host::most_shared_bytes, 132)};
     gpu.short_chains = true;
@@ -53,7 +53,11 @@ std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
         each.gpu.ranks_reach_each_other = true;
         return each;
     };
+    NamedGpu grouping{joins_groups, of_h100(records)};
+    grouping.gpu.short_chains = false;
+    grouping.gpu.fewest_groups = 1;
     return {small,
+            grouping,
             with(32, 2, 0, false),
             among_ranks(with(64, 4, 3, true)),
             with(64, 12, 0, false),
@@ -76,7 +80,7 @@ class StageKernels : public ::testing::Test {
             for (auto const& group : make_groups(scene, axes, handles, false, testing::world())) {
                 std::vector<NamedSolver> solvers;
                 for (NamedGpu const& each : gpus(records_of(*group))) {
-                    if (h100_alone_ && each.name != h100) continue;
+                    if (only_ ? each.name != only_ : each.name == joins_groups) continue;
                     StageSpace::gpu = each.gpu;
                     StageSpace::ranks = each.gpu.ranks_reach_each_other ? &testing::world() : nullptr;
                     solvers.push_back({each.name, make_stage_solver(*group, *executor_, testing::world())});
@@ -101,7 +105,7 @@ class StageKernels : public ::testing::Test {
     /// Several ranks share chains, and what is above; the rest is said once.
     static bool alone() { return testing::world().size() == 1; }
     std::unique_ptr<Executor> executor_ = serial_executor(SimdLevel::off);
-    bool h100_alone_ = false;
+    char const* only_ = nullptr;  // of gpus(); else all but one for a test of its own
     std::set<int> directions_;
 };
 
@@ -119,7 +123,7 @@ TEST_F(StageKernels, EveryKindAndSize) {
 /// Ranks whose last stage but one has several blocks: what they speak of is with one above them.
 TEST_F(StageKernels, UnitsOfSeveralBlocks) {
     if (alone()) return;
-    h100_alone_ = true;
+    only_ = h100;
     for (RandomJoints const joints : {RandomJoints::planar, RandomJoints::spherical, RandomJoints::revolute}) {
         StageSpace::seen = {};
         std::size_t const bodies = joints == RandomJoints::revolute ? 20000 : 6000;
@@ -190,7 +194,7 @@ TEST_F(StageKernels, BlocksThatTurnTogether) {
 /// One launch by itself up to eight thousand bodies.
 TEST_F(StageKernels, ShortChains) {
     if (!alone()) return;
-    h100_alone_ = true;
+    only_ = h100;
     for (std::size_t const bodies : {1, 4, 5, 16, 17, 127, 128, 129, 500, 1024, 2000, 4096, 4097, 8191, 8192, 8193})
         for (Base const base : {Base::fixed, Base::free}) {
             if (bodies > 2000 && (bodies % 2 == 0) == (base == Base::free)) continue;
@@ -227,7 +231,7 @@ TEST_F(StageKernels, RunsOnHinges) {
 /// More than a block of stages that lanes of a warp climb together has: the first one is narrow then, and keeps its nodes for the way down.
 TEST_F(StageKernels, ManyRunsOnHinges) {
     if (!alone()) return;
-    h100_alone_ = true;
+    only_ = h100;
     expect_same(scene_of({random_chain(5, {.bodies = 9000, .joints = RandomJoints::revolute, .base = Base::fixed})}));
     EXPECT_GT(StageSpace::seen.most_stages, 1U);
 }
@@ -235,7 +239,7 @@ TEST_F(StageKernels, ManyRunsOnHinges) {
 /// What quick quotients and roots leave to others.
 TEST_F(StageKernels, ShortChainsThatAreNotQuick) {
     if (!alone()) return;
-    h100_alone_ = true;
+    only_ = h100;
     auto const expect_short = [&](ChainSpec const& chain) {
         StageSpace::seen = {};
         expect_same(scene_of({chain}));
@@ -273,10 +277,50 @@ TEST_F(StageKernels, MatricesThatAreNotPositiveDefinite) {
         }
 }
 
+/// The lowest five levels by the warps that have the runs.
+TEST_F(StageKernels, GroupsOfRuns) {
+    only_ = joins_groups;
+    auto const expect_groups = [&](std::vector<ChainSpec> const& chains, bool several) {
+        StageSpace::seen = {};
+        expect_same(scene_of(chains));
+        EXPECT_EQ(StageSpace::seen.groups > 1, several);
+    };
+    // Several blocks above them.
+    if (expect_groups({random_bead_chain(1, 40000, Base::fixed)}, true); !alone() || HasFailure()) return;
+    EXPECT_FALSE(StageSpace::seen.blocks_that_turn.empty());
+    for (std::size_t const bodies : {257, 512, 513, 1000, 1100, 5000})
+        for (Base const base : {Base::fixed, Base::free}) {
+            SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
+            ChainSpec const beads = random_bead_chain(bodies, bodies, base);
+            expect_groups({beads}, bodies > 512);
+            expect_groups({beads, random_bead_chain(3, bodies, base)}, bodies == 512);  // where the second one's runs begin a group
+            if (HasFailure()) return;
+        }
+    expect_groups({random_linked_chain(5, 1300, Base::fixed, Tip::jointed)}, true);
+    expect_groups({closed(random_bead_chain(6, 1030, Base::free))}, true);
+    ChainSpec light = random_bead_chain(1, 1500, Base::fixed);
+    light.beads.mass[272] = -1e-3;  // no positive definite matrix where runs of a group meet
+    expect_groups({light}, true);
+}
+/// So many groups that blocks above them are wider, so that they run at once.
+TEST(Groups, AreJoinedInOneLaunch) {
+    for (std::int64_t const bodies : {std::int64_t{1} << 21, std::int64_t{6000000}}) {
+        dca::Schedule const schedule = dca::make_schedule(dca::Partition({bodies}, false, 1), 0);
+        dca::StageSizes const sizes = of_h100(dca::stage_records(1, true)).sizes;
+        auto const groups = cuda::groups_of(schedule.runs, schedule.levels, cuda::fewest_groups);
+        EXPECT_EQ(std::ssize(groups), (bodies - 1) / cuda::bodies_of_group + 1);
+        dca::StagePlan const plan = cuda::plan_above(groups, schedule.levels, schedule.roots, schedule.slots, {}, sizes);
+        EXPECT_TRUE(plan.runs_apart);
+        EXPECT_EQ(plan.stages.size(), 2U);
+        EXPECT_TRUE(dca::StagesTogether(plan, sizes));
+        EXPECT_EQ(plan.stages.front().width, bodies > 5000000 ? 128 : 64);
+    }
+}
+
 /// So many that launches of their own do them.
 TEST_F(StageKernels, VeryManyRuns) {
     if (!alone()) return;
-    h100_alone_ = true;
+    only_ = h100;
     expect_same(
         scene_of("{count: 8500, generator: {freely_jointed: {beads: 17, length: 0.38}}}, "
                  "{base: fixed, generator: {random: {bodies: 3000, joint: link, seed: 3}}}"));

@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "cuda/clusters.hpp"
+#include "cuda/run_groups.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "report/solution.hpp"
@@ -71,6 +72,18 @@ TEST_P(GpuExchange, OfLongChains) { expect_the_bits_of_the_hosts(scene_of({GetPa
 TEST_P(GpuExchange, OfTwoKinds) {
     std::string const other = GetParam() == std::string("link") ? "spherical" : GetParam();
     expect_the_bits_of_the_hosts(scene_of({"link", other}, 50021), true, false);
+}
+/// Of so many links on each rank warps join those of 32 runs.
+class GpuExchangeOfGroups : public ::testing::Test {
+  protected:
+    void SetUp() override { need_gpu(world_); }
+    void TearDown() override { ::unsetenv("CATENA_GPU_EXCHANGE"); }
+    Communicator const& world_ = catena::testing::world();
+};
+TEST_F(GpuExchangeOfGroups, HasTheBitsOfTheHosts) {
+    std::int64_t const before = cuda::launches_by_groups, of_rank = cuda::fewest_groups * 9 / 8 * cuda::bodies_of_group;
+    expect_the_bits_of_the_hosts(scene_of({"link"}, static_cast<int>(world_.size() * of_rank + 300)), true, false);
+    EXPECT_TRUE(IsSkipped() || cuda::launches_by_groups > before);
 }
 /// A sweep of matrices, and one of biases.
 TEST_P(GpuExchange, InSweepsApart) {

@@ -6,6 +6,7 @@
 
 #include "cuda/clusters.hpp"
 #include "cuda/memory.hpp"
+#include "cuda/run_groups.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
@@ -194,6 +195,16 @@ TEST_F(Gpu, AMillionAndOne) {
         expect_same(scene_of(std::string("{base: fixed, generator: {random: {bodies: 1000001, joint: ") + joint + ", seed: 1}}}",
                              Handles::projected));
     expect_same(scene_of("{base: fixed, generator: {random: {bodies: 300001, joint: revolute, seed: 1}}}", Handles::articulated));
+}
+/// Of so many links warps join 32 runs each: up and down in sweeps of matrices, of biases and of both.
+TEST_F(Gpu, GroupsOfRuns) {
+    std::int64_t const before = cuda::launches_by_groups;
+    int const bodies = static_cast<int>(cuda::fewest_groups * cuda::runs_of_group * dca::longest_run + 300);
+    expect_same(scene_of(random_chain_of(bodies, "link"), Handles::projected));
+    EXPECT_GE(cuda::launches_by_groups, before + 3);
+    for (char const* const joint : {"link", "link, rigid: 0.3"})
+        for (char const* const base : {"base: fixed", "base: free"}) expect_same_at_once(random_chain_of(bodies, joint, base), Axes::joint);
+    EXPECT_GE(cuda::launches_by_groups, before + 3 + 4 * 2);
 }
 
 TEST_F(Gpu, ManyChainsAndTips) {

@@ -25,6 +25,7 @@ struct StagedGpu {
     bool short_chains = false;             // by themselves
     bool ranks_reach_each_other = false;
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
+    std::int64_t fewest_groups = cuda::fewest_groups;
 };
 /// In launches so far.
 struct StagesSeen {
@@ -32,7 +33,7 @@ struct StagesSeen {
     std::size_t most_stages = 0;
     std::set<unsigned> blocks_of_short_chains;
     std::set<unsigned> blocks_that_turn_shared;  // below the one that speaks to other ranks
-    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0;
+    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0, groups = 0;
 };
 
 class StageSpace : public HostSpace {
@@ -59,8 +60,11 @@ class StageSpace : public HostSpace {
             : runs_(cuda::view_of(runs, runs.data())), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             sizes_.runs_apart = records.whole_runs;
-            plan_ = dca::plan_stages(runs, levels, roots, slots, restricted, sizes_);
-            if (gpu.runs_apart && !runs.empty()) {
+            if (cuda::go_by_groups(records)) groups_ = cuda::groups_of(runs, levels, gpu.fewest_groups);
+            plan_ = groups_.empty() ? dca::plan_stages(runs, levels, roots, slots, restricted, sizes_)
+                                    : cuda::plan_above(groups_, levels, roots, slots, restricted, sizes_);
+            seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
+            if (groups_.empty() && gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
@@ -81,6 +85,7 @@ class StageSpace : public HostSpace {
       private:
         friend class StageSpace;
         cuda::RunsView runs_;
+        std::vector<dca::Run> groups_;
         dca::StageSizes sizes_;
         int threads_;
         std::size_t shared_bytes_ = gpu.shared_bytes;
@@ -192,7 +197,10 @@ class StageSpace : public HostSpace {
                     ++seen.teams;
                     return over_runs(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
                 }
-            over_runs(kernels::climb_runs<Sweep>, kernels::grid_of_climb<Sweep>(runs, tree.shared_bytes_), sweep);
+            kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, tree.shared_bytes_);
+            if constexpr (kernels::by_groups<Sweep>)
+                if (!tree.groups_.empty()) return over_runs(kernels::climb_groups<Sweep>, grid, sweep);
+            over_runs(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
@@ -200,7 +208,10 @@ class StageSpace : public HostSpace {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
                     return over_runs(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
-            over_runs(kernels::descend_runs<Sweep>, kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_), sweep);
+            kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_);
+            if constexpr (kernels::by_groups<Sweep>)
+                if (!tree.groups_.empty()) return over_runs(kernels::descend_groups<Sweep>, grid, sweep);
+            over_runs(kernels::descend_runs<Sweep>, grid, sweep);
         }
 
       private:
@@ -251,6 +262,11 @@ class StageSpace : public HostSpace {
             int const threads = kernels::threads_for<Sweep>(threads_for(stage), kernels::threads_of<Sweep>);
             auto const here = view(tree, stage);
             cuda_on_host::launch({here.blocks, static_cast<unsigned>(threads), numbers<Sweep>(here, threads)}, kernel, here, sweep);
+        }
+        template <class Sweep>
+        void over_runs(void (*kernel)(cuda::RunsView, cuda::GroupsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
+            cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double)}, kernel, tree.runs_,
+                                 cuda::view_of_groups(tree.groups_, tree.groups_.data()), sweep);
         }
         template <class Sweep>
         void over_runs(void (*kernel)(cuda::RunsView, Sweep), kernels::RunsGrid const& grid, Sweep const& sweep) const {
