@@ -26,12 +26,10 @@ class DeviceTree {
                std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
         : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
         dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
-        std::vector<dca::Run> groups;
-        if (go_by_groups(records)) groups = groups_of(runs, levels, fewest_groups);
+        std::vector<dca::Run> const groups = groups_of(runs, levels, records, fewest_groups);
         if (!groups.empty()) group_list_ = Buffer<dca::Run>(groups);
         groups_ = view_of_groups(groups, group_list_.data());
-        dca::StagePlan const plan = groups.empty() ? dca::plan_stages(runs, levels, roots, slots, restricted, sizes)
-                                                   : plan_above(groups, levels, roots, slots, restricted, sizes);
+        dca::StagePlan const plan = plan_stages(runs, groups, levels, roots, slots, restricted, sizes);
         runs_apart_ = plan.runs_apart;
         gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
         dca::StagesTogether const together(plan, sizes);

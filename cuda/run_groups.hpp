@@ -23,8 +23,8 @@ constexpr bool go_by_groups(dca::StageRecords const& records) { return records.s
 /// As if they were runs. None where the tree's lowest levels do not join the first 32 runs, the next ones and so on, and nothing else, as
 /// where chains begin in between, or where there are fewer than `fewest`.
 inline std::vector<dca::Run> groups_of(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels,
-                                       std::int64_t fewest) {
-    if (std::ssize(runs) <= (fewest - 1) * runs_of_group || levels.size() < levels_of_group) return {};
+                                       dca::StageRecords const& records, std::int64_t fewest) {
+    if (!go_by_groups(records) || std::ssize(runs) <= (fewest - 1) * runs_of_group || levels.size() < levels_of_group) return {};
     std::vector<dca::Run> parts = runs;
     for (std::size_t i = 0; i < runs.size(); ++i)
         if (runs[i].body != static_cast<std::int64_t>(i) * dca::longest_run) return {};
@@ -58,10 +58,11 @@ inline GroupsView view_of_groups(std::vector<dca::Run> const& groups, dca::Run c
     return view;
 }
 
-/// Stages above them. Blocks are as narrow as one launch that takes all up and down again allows.
-inline dca::StagePlan plan_above(std::vector<dca::Run> const& groups, std::vector<std::vector<dca::Merge>> const& levels,
-                                 std::vector<dca::Root> const& roots, std::int64_t slots, std::span<std::uint8_t const> restricted,
-                                 dca::StageSizes sizes) {
+/// Stages of runs; above their groups, where there are any, with blocks as narrow as one launch that takes all up and down again allows.
+inline dca::StagePlan plan_stages(std::vector<dca::Run> const& runs, std::vector<dca::Run> const& groups,
+                                  std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
+                                  std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageSizes sizes) {
+    if (groups.empty()) return dca::plan_stages(runs, levels, roots, slots, restricted, sizes);
     std::int64_t const most = sizes.threads;
     sizes.runs_apart = true;
     for (sizes.threads = 32; sizes.threads < most && std::ssize(groups) > 2 * sizes.threads * sizes.together;) sizes.threads *= 2;

@@ -306,10 +306,11 @@ TEST_F(StageKernels, GroupsOfRuns) {
 TEST(Groups, AreJoinedInOneLaunch) {
     for (std::int64_t const bodies : {std::int64_t{1} << 21, std::int64_t{6000000}}) {
         dca::Schedule const schedule = dca::make_schedule(dca::Partition({bodies}, false, 1), 0);
-        dca::StageSizes const sizes = of_h100(dca::stage_records(1, true)).sizes;
-        auto const groups = cuda::groups_of(schedule.runs, schedule.levels, cuda::fewest_groups);
+        dca::StageRecords const records = dca::stage_records(1, true);
+        dca::StageSizes const sizes = of_h100(records).sizes;
+        auto const groups = cuda::groups_of(schedule.runs, schedule.levels, records, cuda::fewest_groups);
         EXPECT_EQ(std::ssize(groups), (bodies - 1) / cuda::bodies_of_group + 1);
-        dca::StagePlan const plan = cuda::plan_above(groups, schedule.levels, schedule.roots, schedule.slots, {}, sizes);
+        dca::StagePlan const plan = cuda::plan_stages(schedule.runs, groups, schedule.levels, schedule.roots, schedule.slots, {}, sizes);
         EXPECT_TRUE(plan.runs_apart);
         EXPECT_EQ(plan.stages.size(), 2U);
         EXPECT_TRUE(dca::StagesTogether(plan, sizes));

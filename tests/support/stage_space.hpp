@@ -60,9 +60,8 @@ class StageSpace : public HostSpace {
             : runs_(cuda::view_of(runs, runs.data())), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             sizes_.runs_apart = records.whole_runs;
-            if (cuda::go_by_groups(records)) groups_ = cuda::groups_of(runs, levels, gpu.fewest_groups);
-            plan_ = groups_.empty() ? dca::plan_stages(runs, levels, roots, slots, restricted, sizes_)
-                                    : cuda::plan_above(groups_, levels, roots, slots, restricted, sizes_);
+            groups_ = cuda::groups_of(runs, levels, records, gpu.fewest_groups);
+            plan_ = cuda::plan_stages(runs, groups_, levels, roots, slots, restricted, sizes_);
             seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
             if (groups_.empty() && gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
