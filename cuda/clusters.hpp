@@ -14,7 +14,7 @@ bool knows_clusters();
 int multiprocessors();
 int blocks_at_once();
 
-/// Launches so far that took a short chain up and down its tree (cuda/short_launch.cuh).
+/// Launches so far that took a short chain up and down its tree (cuda/short_chain.cuh).
 inline std::atomic<std::int64_t> short_launches = 0;
 /// And those whose blocks waited for the block above them (cuda/turn_launch.cuh).
 inline std::atomic<std::int64_t> turns_together = 0;
@@ -22,5 +22,7 @@ inline std::atomic<std::int64_t> turns_together = 0;
 inline std::atomic<std::int64_t> turns_shared = 0, scans_shared = 0;
 /// Sweeps' launches so far in which warps joined groups of runs (cuda/run_groups.hpp).
 inline std::atomic<std::int64_t> launches_by_groups = 0;
+/// And those of one cluster that took the tree above such groups up and down (cuda/group_lanes.cuh).
+inline std::atomic<std::int64_t> groups_turned = 0;
 
 }  // namespace catena::cuda

@@ -7,12 +7,14 @@
 #include <type_traits>
 #include <vector>
 
+#include "cuda/cluster_launch.cuh"
 #include "cuda/clusters.hpp"
+#include "cuda/group_lanes.cuh"
 #include "cuda/hinge_teams.cuh"
 #include "cuda/launch.cuh"
 #include "cuda/owners.hpp"
 #include "cuda/peer_exchange.cuh"
-#include "cuda/short_launch.cuh"
+#include "cuda/short_chain.cuh"
 #include "cuda/stage_walk.cuh"
 #include "cuda/turn_launch.cuh"
 #include "dca/stages.hpp"
@@ -26,17 +28,26 @@ class DeviceTree {
                std::int64_t slots, std::span<std::uint8_t const> restricted, dca::StageRecords const& records)
         : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
         dca::StageSizes const sizes = sizes_here(records, most_shared_bytes_);
-        std::vector<dca::Run> const groups = groups_of(runs, levels, records, fewest_groups);
-        if (!groups.empty()) group_list_ = Buffer<dca::Run>(groups);
-        groups_ = view_of_groups(groups, group_list_.data());
-        dca::StagePlan const plan = plan_stages(runs, groups, levels, roots, slots, restricted, sizes);
+        PlanByGroups const by_groups = plan_by_groups(runs, levels, roots, slots, restricted, records, sizes, fewest_groups_below_stages);
+        dca::StagePlan const& plan = by_groups.stages;
+        stages_above_groups_ = by_groups.stages_above_groups;
         runs_apart_ = plan.runs_apart;
         gathers_ = !plan.stages.empty() && plan.stages.back().gathers;
         dca::StagesTogether const together(plan, sizes);
         for (dca::Stage const& stage : plan.stages)
             stages_.emplace_back(stage, together, stage.of_runs ? runs_ : RunsView{}, sizes, records);
         if (together) turn_ = TurnLaunch(together, records, most_shared_bytes_);
-        if (knows_clusters()) short_ = ShortLaunch(kernels::short_chain_of(runs, levels, roots), most_shared_bytes_);
+        auto const one_chain = [&](std::int64_t bodies_of_lane) {
+            return ClusterLaunch(knows_clusters() ? kernels::one_chain_of(runs, levels, roots, bodies_of_lane) : kernels::OneChain{},
+                                 most_shared_bytes_);
+        };
+        short_ = one_chain(dca::part_length);
+        // Where stages take the runs as well, there are fewer launches.
+        if (runs_apart_ && !by_groups.groups.empty()) above_groups_ = one_chain(bodies_of_group);
+        if (stages_above_groups_ || above_groups_) {
+            group_list_ = Buffer<dca::Run>(by_groups.groups);
+            groups_ = view_of_groups(by_groups.groups, group_list_.data());
+        }
     }
 
     template <class Sweep>
@@ -51,7 +62,11 @@ class DeviceTree {
     void climb_and_descend(Sweep const& sweep, cudaStream_t stream) const {
         if (stages_.empty()) return;
         if constexpr (Sweep::goes_short)
-            if (short_(sweep, stream)) return;
+            if (Grid const& grid = short_.grid<kernels::ShortWarp<Sweep>>(kernels::turn_short<Sweep>); grid.blocks > 0) {
+                short_.launch(grid, stream, kernels::turn_short<Sweep>, sweep);
+                ++short_launches;
+                return;
+            }
         walk(stream).climb_and_descend(sweep);
     }
     /// As StageWalk::turn_shared.
@@ -120,7 +135,7 @@ class DeviceTree {
         bool can_turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const&, Launches const& top) const {
             Stage const& above = top.tree.stages_.back();
             if (first + 1 < stages()) return runs_at_once<kernels::ExchangeByBlock<Numbers>>(first, sweep, &above);
-            return grid_of_turn(first, sweep, &above).shared_bytes <= static_cast<std::size_t>(tree.most_shared_bytes_);
+            return grid_of_turn(first, sweep, &above).shared_bytes <= shared_bytes();
         }
         template <class Sweep, class Numbers>
         void turn(std::size_t first, Sweep const& sweep, ExchangeInTurn<Numbers> const& exchange, Launches const& top) const {
@@ -133,9 +148,7 @@ class DeviceTree {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
                     return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
-            kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_));
-            if constexpr (kernels::by_groups<Sweep>)
-                if (tree.groups_) return launch(kernels::climb_groups<Sweep>, grid, sweep);
+            kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, shared_bytes());
             launch(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
@@ -144,13 +157,34 @@ class DeviceTree {
             if constexpr (dca::takes_whole_runs<Sweep>)
                 if (kernels::go_by_teams<Sweep>(runs))
                     return launch(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
-            kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, static_cast<std::size_t>(tree.most_shared_bytes_));
-            if constexpr (kernels::by_groups<Sweep>)
-                if (tree.groups_) return launch(kernels::descend_groups<Sweep>, grid, sweep);
+            kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, shared_bytes());
             launch(kernels::descend_runs<Sweep>, grid, sweep);
+        }
+        bool stages_above_groups() const { return tree.stages_above_groups_; }
+        template <class Sweep>
+        void climb_groups(Sweep const& sweep) const {
+            launch(kernels::climb_groups<Sweep>, kernels::grid_of_climb<Sweep>(tree.runs_.count, shared_bytes()), sweep);
+        }
+        template <class Sweep>
+        void descend_groups(Sweep const& sweep) const {
+            launch(kernels::descend_groups<Sweep>, kernels::grid_of_descent<Sweep>(tree.runs_.count, shared_bytes()), sweep);
+        }
+        template <class Sweep>
+        bool can_turn_groups() const {
+            return grid_above_groups<Sweep>().blocks > 0;
+        }
+        template <class Sweep>
+        void turn_groups(Sweep const& sweep) const {
+            tree.above_groups_.launch(grid_above_groups<Sweep>(), stream, kernels::turn_groups<Sweep>, tree.groups_, sweep);
+            ++groups_turned;
         }
 
       private:
+        std::size_t shared_bytes() const { return static_cast<std::size_t>(tree.most_shared_bytes_); }  // of a block at most
+        template <class Sweep>
+        Grid const& grid_above_groups() const {
+            return tree.above_groups_.grid<kernels::GroupLanes<Sweep>>(kernels::turn_groups<Sweep>);
+        }
         template <class Sweep>
         static Grid grid_of(Stage const& stage, int planned_threads, int most_threads, Sweep const&) {
             int const of_block = kernels::threads_for<Sweep>(planned_threads, most_threads);
@@ -206,11 +240,12 @@ class DeviceTree {
     Buffer<dca::Run> run_list_;
     RunsView runs_;
     Buffer<dca::Run> group_list_;
-    GroupsView groups_;
+    GroupsView groups_;  // none where no launch goes by them
+    bool stages_above_groups_ = false;
     std::vector<Stage> stages_;
     bool runs_apart_ = false, gathers_ = false;
     TurnLaunch turn_;
-    ShortLaunch short_;
+    ClusterLaunch short_, above_groups_;
 };
 
 }  // namespace catena::cuda

@@ -8,6 +8,10 @@
 
 namespace catena::cuda::kernels {
 
+/// Sweeps that have such launches.
+template <class Sweep>
+constexpr bool by_groups = go_by_groups(Sweep::Sweeps::in_stage);
+
 class GroupOfRuns {
   public:
     /// `group`: which of them.

@@ -17,6 +17,7 @@ class ShortTeams {
     using State = typename Sweep::Sweeps::State;
     using Team = MergeTeam<Sweep>;
     using Records = typename Team::Segments;
+    static constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
     static constexpr int teams_of_warp = lanes_of_warp / Team::lanes;
     /// Places of what a lane joins: its i-th body's, and after all bodies' what it holds.
     static constexpr int of_parts = dca::part_length * lanes_of_warp, places = of_parts + lanes_of_warp;
@@ -33,7 +34,7 @@ class ShortTeams {
     static constexpr std::size_t numbers(int joining, int warps) {
         return 2 + Records::size(warps) + of_top_words + static_cast<std::size_t>(joining) * of_group;
     }
-    __device__ ShortTeams(ShortChain const& chain, Sweep const& sweep, double* memory)
+    __device__ ShortTeams(OneChain const& chain, Sweep const& sweep, double* memory)
         : chain_(chain),
           sweep_(sweep),
           is_(chain, true),
@@ -48,7 +49,7 @@ class ShortTeams {
 
     /// While the launch before may still go on: nothing is read here that a launch writes.
     __device__ void open() {
-        if (threadIdx.x == 0) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        if (threadIdx.x == 0 && !is_alone()) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
         arrive_at_cluster();
         if (is_.beside >= 0)
@@ -107,7 +108,7 @@ class ShortTeams {
     using Turning = typename BodiesOf<Sweep>::Turning;
     using Gains = PackedRecords<Square>;
     /// Whole numbers, two a double.
-    static constexpr std::size_t of_top_words = most_warps_of_short / 2, of_bodies_words = of_parts / 2;
+    static constexpr std::size_t of_top_words = most_warps_of_chain / 2, of_bodies_words = of_parts / 2;
     static constexpr std::size_t of_group =
         Records::size(places) + Gains::size(of_parts) + PackedRecords<Ends>::size(lanes_of_warp) + of_bodies_words;
     static constexpr int steps_of_parts = dca::parts_of_run - 1,
@@ -232,7 +233,7 @@ class ShortTeams {
         if (is_.warp < chain_.warps)
             send_to_all<numbers_of<Segment>>(inbox_, is_.lane, records_.record(of_parts), [&](int n) { return &top_.number(is_.warp, n); });
         if (is_.group > 0) return;
-        inbox_.wait();
+        if (!is_alone()) inbox_.wait();
         join_steps(
             levels_of_top(), [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
             [&](int level, int i) { return of_warps(level, i); });
@@ -276,7 +277,7 @@ class ShortTeams {
         ends.first = dca::either(exists && own >= middle, there, ends.first);
     }
 
-    ShortChain const& chain_;
+    OneChain const& chain_;
     Sweep const& sweep_;
     ShortThread is_;
     int own_;  // team of the warp

@@ -173,8 +173,6 @@ __global__ void __launch_bounds__(threads, blocks_of_descent<Sweep>) descend_run
 }
 
 /// The same with the levels above that join groups of runs, a block a group.
-template <class Sweep>
-constexpr bool by_groups = go_by_groups(Sweep::Sweeps::in_stage);
 static_assert(threads == runs_of_group * dca::parts_of_run);
 template <class Sweep>
 __global__ void __launch_bounds__(threads, blocks_of_climb<Sweep>) climb_groups(RunsView runs, GroupsView groups, Sweep sweep) {

@@ -3,14 +3,17 @@
 
 #include <cstddef>
 
+#include "cuda/group_lanes.cuh"
 #include "cuda/shared_turn.hpp"
 #include "cuda/stage_kernels.cuh"
 
 namespace catena::cuda {
 
 /// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers(), blocks(i) of stage i and whether it
-/// takes_runs(i); climb(i, sweep) and descend(i, sweep) of stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one
-/// after it, if any, where can_turn() says so; climb_runs(sweep) and descend_runs(sweep). It can turn the last stage alone.
+/// takes_runs(i), and whether all stages_above_groups() of runs (run_groups.hpp); climb(i, sweep) and descend(i, sweep) of
+/// stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one after it, if any, where can_turn() says so;
+/// climb_runs(sweep) and descend_runs(sweep), likewise climb_groups and descend_groups, and turn_groups(sweep), in place of all stages,
+/// where can_turn_groups<Sweep>(). It can turn the last stage alone.
 template <class Launches>
 class StageWalk {
   public:
@@ -28,6 +31,12 @@ class StageWalk {
     /// Precondition: there are stages.
     template <class Sweep>
     void climb_and_descend(Sweep const& sweep) const {
+        if constexpr (kernels::turns_groups<Sweep>)
+            if (launches_.template can_turn_groups<Sweep>()) {
+                launches_.climb_groups(sweep);
+                launches_.turn_groups(sweep);
+                return launches_.descend_groups(sweep);
+            }
         climb_runs(sweep);
         turn_stages(sweep);
         descend_runs(sweep);
@@ -100,10 +109,14 @@ class StageWalk {
     }
     template <class Sweep>
     void climb_runs(Sweep const& sweep) const {
+        if constexpr (kernels::by_groups<Sweep>)
+            if (launches_.stages_above_groups()) return launches_.climb_groups(sweep);
         if (launches_.runs_apart()) launches_.climb_runs(sweep);
     }
     template <class Sweep>
     void descend_runs(Sweep const& sweep) const {
+        if constexpr (kernels::by_groups<Sweep>)
+            if (launches_.stages_above_groups()) return launches_.descend_groups(sweep);
         if (launches_.runs_apart()) launches_.descend_runs(sweep);
     }
 

@@ -32,7 +32,8 @@ struct NamedGpu {
     std::string name;
     StagedGpu gpu;
 };
-char const *const h100 = "an H100", *const joins_groups = "that joins runs in groups where they are few";
+char const *const h100 = "an H100", *const joins_groups = "that joins runs in groups where they are few",
+                  *const turns_groups = "whose one cluster turns what is above groups";
 StagedGpu of_h100(dca::StageRecords const& records) {
     StagedGpu gpu{dca::stage_sizes(records, cuda_on_host::most_shared_bytes, 132)};
     gpu.short_chains = true;
@@ -55,9 +56,14 @@ std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
     };
     NamedGpu grouping{joins_groups, of_h100(records)};
     grouping.gpu.short_chains = false;
-    grouping.gpu.fewest_groups = 1;
+    grouping.gpu.fewest_groups_below_stages = 1;
+    NamedGpu turning{turns_groups, of_h100(records)};
+    turning.gpu.short_chains = false;
+    turning.gpu.lanes_above_groups = true;
+    turning.gpu.most_blocks_of_cluster = 2;  // so that a block has several warps
     return {small,
             grouping,
+            turning,
             with(32, 2, 0, false),
             among_ranks(with(64, 4, 3, true)),
             with(64, 12, 0, false),
@@ -80,7 +86,7 @@ class StageKernels : public ::testing::Test {
             for (auto const& group : make_groups(scene, axes, handles, false, testing::world())) {
                 std::vector<NamedSolver> solvers;
                 for (NamedGpu const& each : gpus(records_of(*group))) {
-                    if (only_ ? each.name != only_ : each.name == joins_groups) continue;
+                    if (only_ ? each.name != only_ : each.name == joins_groups || each.name == turns_groups) continue;
                     StageSpace::gpu = each.gpu;
                     StageSpace::ranks = each.gpu.ranks_reach_each_other ? &testing::world() : nullptr;
                     solvers.push_back({each.name, make_stage_solver(*group, *executor_, testing::world())});
@@ -105,7 +111,7 @@ class StageKernels : public ::testing::Test {
     /// Several ranks share chains, and what is above; the rest is said once.
     static bool alone() { return testing::world().size() == 1; }
     std::unique_ptr<Executor> executor_ = serial_executor(SimdLevel::off);
-    char const* only_ = nullptr;  // of gpus(); else all but one for a test of its own
+    char const* only_ = nullptr;  // of gpus(); else all but those for tests of their own
     std::set<int> directions_;
 };
 
@@ -302,15 +308,41 @@ TEST_F(StageKernels, GroupsOfRuns) {
     light.beads.mass[272] = -1e-3;  // no positive definite matrix where runs of a group meet
     expect_groups({light}, true);
 }
+/// And all above them in one launch of one cluster.
+TEST_F(StageKernels, GroupsOfOneChain) {
+    if (!alone()) return;
+    only_ = turns_groups;
+    auto const expect_blocks = [&](std::set<unsigned> const& blocks, ChainSpec const& chain) {
+        SCOPED_TRACE(chain.beads.size());
+        StageSpace::seen = {};
+        expect_same(scene_of({chain}));
+        EXPECT_EQ(StageSpace::seen.blocks_above_groups, blocks);
+    };
+    for (std::size_t const bodies : {257, 513, 1024, 5000, 16384, 16385, 40000})
+        for (Base const base : {Base::fixed, Base::free}) {
+            if (bodies > 5000 && (bodies % 2 == 0) == (base == Base::free)) continue;
+            expect_blocks({bodies > 16384 ? 2U : 1U}, random_bead_chain(bodies, bodies, base));
+            if (HasFailure()) return;
+        }
+    expect_blocks({1}, random_linked_chain(5, 1300, Base::fixed));
+    expect_blocks({}, random_bead_chain(5, 1300, Base::fixed, Tip::jointed));
+    for (std::size_t const bead : {272, 512, 1024, 16384}) {  // within a group, and where groups and warps meet
+        ChainSpec light = random_bead_chain(1, bead < 10000 ? 1500 : 17000, Base::fixed);
+        light.beads.mass[bead] = -1e-3;  // no positive definite matrix there
+        expect_blocks({bead < 10000 ? 1U : 2U}, light);
+    }
+}
 /// So many groups that blocks above them are wider, so that they run at once.
 TEST(Groups, AreJoinedInOneLaunch) {
     for (std::int64_t const bodies : {std::int64_t{1} << 21, std::int64_t{6000000}}) {
         dca::Schedule const schedule = dca::make_schedule(dca::Partition({bodies}, false, 1), 0);
         dca::StageRecords const records = dca::stage_records(1, true);
         dca::StageSizes const sizes = of_h100(records).sizes;
-        auto const groups = cuda::groups_of(schedule.runs, schedule.levels, records, cuda::fewest_groups);
-        EXPECT_EQ(std::ssize(groups), (bodies - 1) / cuda::bodies_of_group + 1);
-        dca::StagePlan const plan = cuda::plan_stages(schedule.runs, groups, schedule.levels, schedule.roots, schedule.slots, {}, sizes);
+        cuda::PlanByGroups const by_groups = cuda::plan_by_groups(schedule.runs, schedule.levels, schedule.roots, schedule.slots, {},
+                                                                  records, sizes, cuda::fewest_groups_below_stages);
+        EXPECT_EQ(std::ssize(by_groups.groups), (bodies - 1) / cuda::bodies_of_group + 1);
+        EXPECT_TRUE(by_groups.stages_above_groups);
+        dca::StagePlan const& plan = by_groups.stages;
         EXPECT_TRUE(plan.runs_apart);
         EXPECT_EQ(plan.stages.size(), 2U);
         EXPECT_TRUE(dca::StagesTogether(plan, sizes));

@@ -81,7 +81,7 @@ class GpuExchangeOfGroups : public ::testing::Test {
     Communicator const& world_ = catena::testing::world();
 };
 TEST_F(GpuExchangeOfGroups, HasTheBitsOfTheHosts) {
-    std::int64_t const before = cuda::launches_by_groups, of_rank = cuda::fewest_groups * 9 / 8 * cuda::bodies_of_group;
+    std::int64_t const before = cuda::launches_by_groups, of_rank = cuda::fewest_groups_below_stages * 9 / 8 * cuda::bodies_of_group;
     expect_the_bits_of_the_hosts(scene_of({"link"}, static_cast<int>(world_.size() * of_rank + 300)), true, false);
     EXPECT_TRUE(IsSkipped() || cuda::launches_by_groups > before);
 }

@@ -29,12 +29,12 @@ void expect_same_bits(Accelerations const& a, Accelerations const& b) {
 class Gpu : public ::testing::Test {
   protected:
     void SetUp() override { need_gpu(); }
-    /// Matrices and biases apart, and then so many times at once; several times without a host between them, too.
-    Accelerations solve(Scene scene, Backend backend, Axes axes, int at_once = 0) const {
+    /// Matrices and biases `apart`, and then so many times at once; several times without a host between them, too.
+    Accelerations solve(Scene scene, Backend backend, Axes axes, int at_once = 0, bool apart = true) const {
         scene.solver.backend = backend;
         ChainSystem system(scene, axes, *communicator_);
         EXPECT_EQ(system.backend(), backend);
-        system.evaluate();
+        if (apart) system.evaluate();
         for (int i = 0; i < at_once; ++i) system.evaluate(false);
         if (at_once > 1)
             system.absolute().empty() ? system.joint().front()->time_at_once(at_once, 1)
@@ -62,21 +62,23 @@ class Gpu : public ::testing::Test {
         expect_same_bits(device, solve(scene, Backend::segments, axes, times));
     }
     /// Chains too long for that: a launch's blocks wait for the one above them. Several times in a row.
-    void expect_same_together(std::string const& chains, Axes axes = Axes::joint) const {
+    void expect_same_together(std::string const& chains, Axes axes = Axes::joint, bool above_groups = false) const {
         SCOPED_TRACE(chains);
         Scene scene = scene_of(chains, Handles::projected);
         scene.solver.simd = SimdLevel::off;
-        std::int64_t const before = cuda::turns_together;
+        bool const by_cluster = above_groups && cuda::knows_clusters();
+        std::atomic<std::int64_t> const& launches = by_cluster ? cuda::groups_turned : cuda::turns_together;
+        std::int64_t const before = launches;
         Accelerations const device = solve(scene, Backend::cuda, axes, 3);
-        EXPECT_GE(cuda::turns_together, before + (cuda::blocks_at_once() > 0 ? 4 : 0));
+        EXPECT_GE(launches, before + (by_cluster || cuda::blocks_at_once() > 0 ? 4 : 0));
         expect_same_bits(device, solve(scene, Backend::segments, axes, 3));
     }
-    /// Matrices and biases in one sweep, of any number of bodies.
+    /// Matrices and biases in one sweep, of any number of bodies; it finds nothing of others before it.
     void expect_same_at_once(std::string const& chain, Axes axes) const {
         SCOPED_TRACE(chain);
         Scene scene = scene_of(chain, Handles::projected);
         scene.solver.simd = SimdLevel::off;
-        expect_same_bits(solve(scene, Backend::cuda, axes, 2), solve(scene, Backend::segments, axes, 2));
+        expect_same_bits(solve(scene, Backend::cuda, axes, 2, false), solve(scene, Backend::segments, axes, 2, false));
     }
     static std::string random_chain_of(int bodies, std::string const& joint, std::string const& rest = "base: fixed") {
         return "{" + rest + ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint + ", seed: 2}}}";
@@ -133,7 +135,7 @@ TEST_F(Gpu, ShortChainsInARow) {
 TEST_F(Gpu, BlocksThatTurnTogether) {
     for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute", "helical"})
         for (int const bodies : {8193, 20011, 131072, 270001}) {
-            expect_same_together(random_chain_of(bodies, joint));
+            expect_same_together(random_chain_of(bodies, joint), Axes::joint, bodies == 270001 && joint == std::string("link"));
             if (HasFailure()) return;
         }
     for (int const bodies : {16384, 131072}) expect_same_together(random_chain_of(bodies, "spherical"), Axes::world);
@@ -199,12 +201,33 @@ TEST_F(Gpu, AMillionAndOne) {
 /// Of so many links warps join 32 runs each: up and down in sweeps of matrices, of biases and of both.
 TEST_F(Gpu, GroupsOfRuns) {
     std::int64_t const before = cuda::launches_by_groups;
-    int const bodies = static_cast<int>(cuda::fewest_groups * cuda::runs_of_group * dca::longest_run + 300);
+    int const bodies = static_cast<int>(cuda::fewest_groups_below_stages * cuda::runs_of_group * dca::longest_run + 300);
     expect_same(scene_of(random_chain_of(bodies, "link"), Handles::projected));
     EXPECT_GE(cuda::launches_by_groups, before + 3);
     for (char const* const joint : {"link", "link, rigid: 0.3"})
         for (char const* const base : {"base: fixed", "base: free"}) expect_same_at_once(random_chain_of(bodies, joint, base), Axes::joint);
     EXPECT_GE(cuda::launches_by_groups, before + 3 + 4 * 2);
+}
+/// Of one chain of fewer, sweeps of both take the tree above these in one cluster.
+TEST_F(Gpu, GroupsOfOneChain) {
+    for (int const bodies : {270001, 524288, 524289, 1048576, 1048577})
+        for (char const* const base : {"base: fixed", "base: free"}) {
+            std::int64_t const before = cuda::groups_turned, together = cuda::turns_together;
+            expect_same_at_once(random_chain_of(bodies, "link", base), Axes::joint);
+            bool const by_cluster = bodies <= 1048576 && cuda::knows_clusters();
+            EXPECT_EQ(cuda::groups_turned > before, by_cluster);
+            EXPECT_EQ(cuda::turns_together > together, !by_cluster && cuda::blocks_at_once() > 0);
+            if (HasFailure()) return;
+        }
+    std::int64_t const before = cuda::groups_turned;
+    expect_same_at_once(random_chain_of(300000, "link, rigid: 0.3"), Axes::joint);
+    EXPECT_EQ(cuda::groups_turned > before, cuda::knows_clusters());
+}
+/// For the checkers.
+TEST_F(Gpu, GroupsInARow) {
+    std::int64_t const before = cuda::groups_turned;
+    expect_same_at_once(random_chain_of(270001, "link"), Axes::joint);
+    EXPECT_EQ(cuda::groups_turned > before, cuda::knows_clusters());
 }
 
 TEST_F(Gpu, ManyChainsAndTips) {

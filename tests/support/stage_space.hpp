@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <set>
@@ -25,7 +26,9 @@ struct StagedGpu {
     bool short_chains = false;             // by themselves
     bool ranks_reach_each_other = false;
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
-    std::int64_t fewest_groups = cuda::fewest_groups;
+    std::int64_t fewest_groups_below_stages = cuda::fewest_groups_below_stages;
+    bool lanes_above_groups = false;  // one cluster, wherever it can
+    int most_blocks_of_cluster = kernels::most_blocks_of_chain;
 };
 /// In launches so far.
 struct StagesSeen {
@@ -33,6 +36,7 @@ struct StagesSeen {
     std::size_t most_stages = 0;
     std::set<unsigned> blocks_of_short_chains;
     std::set<unsigned> blocks_that_turn_shared;  // below the one that speaks to other ranks
+    std::set<unsigned> blocks_above_groups;
     int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0, groups = 0;
 };
 
@@ -60,14 +64,19 @@ class StageSpace : public HostSpace {
             : runs_(cuda::view_of(runs, runs.data())), sizes_(gpu.sizes), threads_(static_cast<int>(gpu.threads)) {
             sizes_.threads = std::min<std::int64_t>(sizes_.threads, records.threads);
             sizes_.runs_apart = records.whole_runs;
-            groups_ = cuda::groups_of(runs, levels, records, gpu.fewest_groups);
-            plan_ = cuda::plan_stages(runs, groups_, levels, roots, slots, restricted, sizes_);
-            seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
-            if (groups_.empty() && gpu.runs_apart && !runs.empty()) {
+            cuda::PlanByGroups plan =
+                cuda::plan_by_groups(runs, levels, roots, slots, restricted, records, sizes_, gpu.fewest_groups_below_stages);
+            plan_ = std::move(plan.stages);
+            groups_ = std::move(plan.groups);
+            stages_above_groups_ = plan.stages_above_groups;
+            if (stages_above_groups_) seen.groups = std::max(seen.groups, static_cast<int>(groups_.size()));
+            if (!stages_above_groups_ && gpu.runs_apart && !runs.empty()) {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
-            if (gpu.short_chains) short_ = kernels::short_chain_of(runs, levels, roots);
+            if (gpu.short_chains) short_ = kernels::one_chain_of(runs, levels, roots, dca::part_length);
+            if (gpu.lanes_above_groups && !groups_.empty())
+                above_groups_ = kernels::one_chain_of(runs, levels, roots, cuda::bodies_of_group);
             together_.emplace(plan_, sizes_);
             for (dca::Stage const& stage : plan_.stages) {
                 words_.push_back(dca::words_of(stage, *together_));
@@ -85,11 +94,13 @@ class StageSpace : public HostSpace {
         friend class StageSpace;
         cuda::RunsView runs_;
         std::vector<dca::Run> groups_;
+        bool stages_above_groups_ = false;
         dca::StageSizes sizes_;
         int threads_;
         std::size_t shared_bytes_ = gpu.shared_bytes;
+        int most_blocks_of_cluster_ = gpu.most_blocks_of_cluster;
         dca::StagePlan plan_;
-        kernels::ShortChain short_;
+        kernels::OneChain short_, above_groups_;
         std::optional<dca::StagesTogether> together_;
         std::vector<std::vector<dca::StageWord>> words_;  // of every stage
         mutable std::vector<std::vector<double>> kept_;
@@ -109,8 +120,9 @@ class StageSpace : public HostSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.plan_.stages.empty()) return;
+        if constexpr (Sweep::goes_short) forget_earlier_sweeps(tree, sweep);
         if constexpr (Sweep::goes_short)
-            if (tree.short_.warps > 0 && turn_short(tree.short_, sweep)) return;
+            if (tree.short_.warps > 0 && turn_short(tree, sweep)) return;
         walk(tree).climb_and_descend(sweep);
     }
 
@@ -128,6 +140,21 @@ class StageSpace : public HostSpace {
             if (threadIdx.x == 0) direct(numbers);
         }
     };
+    /// What is not written anew is seen.
+    template <class Sweep>
+    static void forget_earlier_sweeps(Tree const& tree, Sweep const& sweep) {
+        auto const unknown = [](auto value) {
+            std::memset(static_cast<void*>(&value), 0xff, sizeof(value));  // NaN
+            return value;
+        };
+        for (std::int64_t i = 0; i < tree.runs_.count; ++i) {
+            dca::Run const run = tree.runs_[i];
+            for (std::int64_t k = run.body; k < run.body + run.count; ++k) {
+                sweep.keep(k, unknown(typename Sweep::Node{}));
+                sweep.s.forces.store(k, unknown(typename Sweep::Sweeps::State{}));
+            }
+        }
+    }
     static kernels::DeviceStage view(Tree const& tree, dca::Stage const& stage) {
         auto const which = static_cast<std::size_t>(&stage - tree.plan_.stages.data());
         return {static_cast<unsigned>(stage.blocks()),
@@ -140,13 +167,17 @@ class StageSpace : public HostSpace {
                 stage.gathers};
     }
     template <class Sweep>
-    static bool turn_short(kernels::ShortChain const& chain, Sweep const& sweep) {
-        kernels::ShortGrid const grid = kernels::grid_of_short<Sweep>(chain, kernels::most_blocks_of_short);
-        if (grid.shared_bytes > cuda_on_host::most_shared_bytes) return false;
-        seen.blocks_of_short_chains.insert(grid.blocks);
-        cuda_on_host::launch({grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks}, kernels::turn_short<Sweep>,
-                             chain, sweep);
+    static bool turn_short(Tree const& tree, Sweep const& sweep) {
+        cuda_on_host::Launch const cluster = cluster_of<kernels::ShortWarp<Sweep>>(tree, tree.short_);
+        if (cluster.numbers > cuda_on_host::most_shared_bytes / sizeof(double)) return false;
+        seen.blocks_of_short_chains.insert(cluster.blocks);
+        cuda_on_host::launch(cluster, kernels::turn_short<Sweep>, tree.short_, sweep);
         return true;
+    }
+    template <class Warp>
+    static cuda_on_host::Launch cluster_of(Tree const& tree, kernels::OneChain const& chain) {
+        kernels::ClusterGrid const grid = kernels::grid_of_cluster<Warp>(chain, tree.most_blocks_of_cluster_);
+        return {grid.blocks, grid.threads, grid.shared_bytes / sizeof(double), grid.blocks};
     }
     /// Of StageWalk.
     struct Launches {
@@ -197,8 +228,6 @@ class StageSpace : public HostSpace {
                     return over_runs(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
                 }
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, tree.shared_bytes_);
-            if constexpr (kernels::by_groups<Sweep>)
-                if (!tree.groups_.empty()) return over_runs(kernels::climb_groups<Sweep>, grid, sweep);
             over_runs(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
@@ -208,9 +237,27 @@ class StageSpace : public HostSpace {
                 if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
                     return over_runs(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
             kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_);
-            if constexpr (kernels::by_groups<Sweep>)
-                if (!tree.groups_.empty()) return over_runs(kernels::descend_groups<Sweep>, grid, sweep);
             over_runs(kernels::descend_runs<Sweep>, grid, sweep);
+        }
+        bool stages_above_groups() const { return tree.stages_above_groups_; }
+        template <class Sweep>
+        void climb_groups(Sweep const& sweep) const {
+            over_runs(kernels::climb_groups<Sweep>, kernels::grid_of_climb<Sweep>(tree.runs_.count, tree.shared_bytes_), sweep);
+        }
+        template <class Sweep>
+        void descend_groups(Sweep const& sweep) const {
+            over_runs(kernels::descend_groups<Sweep>, kernels::grid_of_descent<Sweep>(tree.runs_.count, tree.shared_bytes_), sweep);
+        }
+        template <class Sweep>
+        bool can_turn_groups() const {
+            return tree.above_groups_.warps > 0;
+        }
+        template <class Sweep>
+        void turn_groups(Sweep const& sweep) const {
+            cuda_on_host::Launch const cluster = cluster_of<kernels::GroupLanes<Sweep>>(tree, tree.above_groups_);
+            seen.blocks_above_groups.insert(cluster.blocks);
+            cuda_on_host::launch(cluster, kernels::turn_groups<Sweep>, tree.above_groups_,
+                                 cuda::view_of_groups(tree.groups_, tree.groups_.data()), sweep);
         }
 
       private:
