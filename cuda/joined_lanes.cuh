@@ -83,7 +83,7 @@ class JoinedLanes {
 
     /// By all threads of the cluster, before any joins: these ask for what the top is joined by.
     __device__ void open(bool joins) {
-        if (threadIdx.x == 0 && !is_alone()) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        if (threadIdx.x == 0 && !is_alone(chain_)) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
         arrive_at_cluster();
         CATENA_UNROLL
@@ -103,7 +103,7 @@ class JoinedLanes {
         int const place = lane_ % in_row;  // in the row
         auto const of_levels = nodes_of_levels<levels_of_warp>(own_, in_row);
         auto const of_row = nodes_of<in_row - 1>(own_, [second = lane_ - place + 1](int i) { return second + i; });
-        if (!is_alone()) inbox_.wait();
+        if (!is_alone(chain_)) inbox_.wait();
         Ends ends = solve_top();
         go_down(ends, of_levels, warp_ * lanes_of_warp, of_lane);
         Ends own = ends;
@@ -200,7 +200,7 @@ class JoinedLanes {
             for (int n = 0; n < numbers_of<Segment>; ++n) letter[n] = values[n];
         }
         __syncwarp();
-        send_to_all<numbers_of<Segment>>(inbox_, lane_, letter, [&](int n) { return segments_ + n * chain_.warps + warp_; });
+        send_to_all<numbers_of<Segment>>(chain_, inbox_, lane_, letter, [&](int n) { return segments_ + n * chain_.warps + warp_; });
         __syncwarp();  // the top's nodes come there
     }
     __device__ Segment given(int warp) const {

@@ -52,16 +52,16 @@ __device__ inline int joining_warps(OneChain const& chain) {
     return (chain.warps + static_cast<int>(gridDim.x) - 1) / static_cast<int>(gridDim.x);
 }
 
-/// Alone in its cluster a block has one warp that joins, which keeps what it gives: NVIDIA's checker of memory refuses messages of a block
+/// One warp that joins keeps what it gives: its block is alone in its cluster, and NVIDIA's checker of memory refuses messages of a block
 /// to itself there.
-__device__ inline bool is_alone() { return gridDim.x == 1; }
+__device__ inline bool is_alone(OneChain const& chain) { return chain.warps == 1; }
 
 /// A record of `numbers` numbers to all blocks of the cluster, by a warp: its number n to at(n).
 template <int numbers, class At>
-__device__ void send_to_all(Inbox const& inbox, int lane, double const* record, At const& at) {
+__device__ void send_to_all(OneChain const& chain, Inbox const& inbox, int lane, double const* record, At const& at) {
     constexpr int lanes_of_block = numbers <= lanes_of_warp / 4 ? lanes_of_warp / 4 : lanes_of_warp,
                   at_once = lanes_of_warp / lanes_of_block;
-    if (is_alone()) {
+    if (is_alone(chain)) {
         for (int n = lane; n < numbers; n += lanes_of_warp) *at(n) = record[n];
         __syncwarp();
         return;

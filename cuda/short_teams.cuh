@@ -49,7 +49,7 @@ class ShortTeams {
 
     /// While the launch before may still go on: nothing is read here that a launch writes.
     __device__ void open() {
-        if (threadIdx.x == 0 && !is_alone()) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        if (threadIdx.x == 0 && !is_alone(chain_)) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
         __syncwarp();
         arrive_at_cluster();
         if (is_.beside >= 0)
@@ -231,9 +231,9 @@ class ShortTeams {
             [](int step) { return step < steps_of_parts ? lanes_of_warp / dca::parts_of_run : lanes_of_warp / (2 * dca::parts_of_run << (step - steps_of_parts)); },
             [&](int step, int i) { return of_lanes(step, i); });
         if (is_.warp < chain_.warps)
-            send_to_all<numbers_of<Segment>>(inbox_, is_.lane, records_.record(of_parts), [&](int n) { return &top_.number(is_.warp, n); });
+            send_to_all<numbers_of<Segment>>(chain_, inbox_, is_.lane, records_.record(of_parts), [&](int n) { return &top_.number(is_.warp, n); });
         if (is_.group > 0) return;
-        if (!is_alone()) inbox_.wait();
+        if (!is_alone(chain_)) inbox_.wait();
         join_steps(
             levels_of_top(), [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
             [&](int level, int i) { return of_warps(level, i); });

@@ -75,10 +75,10 @@ TEXT
 
 # wait_for SECONDS WHAT COMMAND...
 wait_for() {
-    local end=$((SECONDS + $1)) what=$2
+    local seconds=$1 end=$((SECONDS + $1)) what=$2
     shift 2
     until "$@"; do
-        [ $SECONDS -lt $end ] || { echo "FAILED: no sign of $what after $1 s"; exit 1; }
+        [ $SECONDS -lt $end ] || { echo "FAILED: no sign of $what after $seconds s"; exit 1; }
         sleep 1
     done
 }
@@ -90,12 +90,19 @@ cat >"$work/scene.yaml" <<'TEXT'
 title: a run that outlasts its time limit
 chains:
   - {name: beads, velocities: thermal, generator: {freely_jointed: {beads: 2000, length: 0.38}}}
-dynamics: {integrator: g-baoab, step: 0.002, steps: 50000, friction: 1, seed: 5}
-output: {every: 1000, checkpoint_every: 100000}
+dynamics: {integrator: g-baoab, step: 0.002, steps: 20000, friction: 1, seed: 5}
+output: {every: 1000}
 TEXT
 
 start_slurm
 cd "$work"
+# So many steps that it takes some 200 s here: more than the job's minute on two ranks as well, and less than what is waited for.
+"$CATENA_PROGRAM" run scene.yaml --output pace --quiet
+steps=$("$python" -c 'import json
+print(int(json.load(open("pace/summary.json"))["speed"]["steps_per_second_of_second_half"] / 5) * 1000)')
+sed -i "s/steps: 20000,/steps: $steps,/" scene.yaml
+grep -q "steps: $steps," scene.yaml
+echo "-- $steps steps"
 echo "-- a job of one minute, told 50 s before its end at the latest"
 number=$(sbatch --parsable --nodes=1 --ntasks=2 --time=1 --signal=B:USR1@50 --output="$work/long.out" "$root/jobs/slurm-one-node.sh" scene.yaml long)
 wait_for 90 "the requeued job" is "$number" Restarts 1

@@ -212,10 +212,11 @@ TEST_F(Gpu, GroupsOfRuns) {
 TEST_F(Gpu, GroupsOfOneChain) {
     for (int const bodies : {270001, 524288, 524289, 1048576, 1048577})
         for (char const* const base : {"base: fixed", "base: free"}) {
-            std::int64_t const before = cuda::groups_turned, together = cuda::turns_together;
+            std::int64_t const before = cuda::groups_turned, together = cuda::turns_together, by_groups = cuda::launches_by_groups;
             expect_same_at_once(random_chain_of(bodies, "link", base), Axes::joint);
             bool const by_cluster = bodies <= 1048576 && cuda::knows_clusters();
             EXPECT_EQ(cuda::groups_turned > before, by_cluster);
+            EXPECT_EQ(cuda::launches_by_groups > by_groups, by_cluster);
             EXPECT_EQ(cuda::turns_together > together, !by_cluster && cuda::blocks_at_once() > 0);
             if (HasFailure()) return;
         }
