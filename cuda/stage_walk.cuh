@@ -10,10 +10,10 @@
 namespace catena::cuda {
 
 /// `Launches`: stages() and runs_apart() of a tree (StagePlan), whether its last stage gathers(), blocks(i) of stage i and whether it
-/// takes_runs(i), and whether all stages_above_groups() of runs (run_groups.hpp); climb(i, sweep) and descend(i, sweep) of
-/// stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one after it, if any, where can_turn() says so;
-/// climb_runs(sweep) and descend_runs(sweep), likewise climb_groups and descend_groups, and turn_groups(sweep), in place of all stages,
-/// where can_turn_groups<Sweep>(). It can turn the last stage alone.
+/// takes_runs(i); climb(i, sweep) and descend(i, sweep) of stage i; turn(i, sweep) or turn(i, sweep, exchange, top) of stage i and the one
+/// after it, if any, where can_turn() says so; climb_runs(sweep) and descend_runs(sweep). It can turn the last stage alone. Groups of runs
+/// (run_groups.hpp): climb_groups(sweep) and descend_groups(sweep), in the place of the runs' where there are stages_above_groups(); where
+/// it can_turn_groups<Sweep>(), turn_groups(sweep) between these stands for all stages.
 template <class Launches>
 class StageWalk {
   public:

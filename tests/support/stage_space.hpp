@@ -120,9 +120,10 @@ class StageSpace : public HostSpace {
     template <class Sweep>
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         if (tree.plan_.stages.empty()) return;
-        if constexpr (Sweep::goes_short) forget_earlier_sweeps(tree, sweep);
-        if constexpr (Sweep::goes_short)
+        if constexpr (Sweep::goes_short) {
+            forget_earlier_sweeps(tree, sweep);
             if (tree.short_.warps > 0 && turn_short(tree, sweep)) return;
+        }
         walk(tree).climb_and_descend(sweep);
     }
 
