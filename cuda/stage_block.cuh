@@ -128,7 +128,7 @@ class BlockOfStage {
                 segments_.store(i, sweep_.load(item.own_slot()));
         });
         // Neighbouring threads take neighbouring items, as many numbers of an item as there are threads left.
-        constexpr int at_once = 8;
+        constexpr int at_once = Segments::numbers > 16 ? 16 : 8;  // memory is far
         auto const all = static_cast<int>(blockDim.x), own = static_cast<int>(threadIdx.x);
         int side_by_side = 32;
         while (side_by_side < items && side_by_side < all) side_by_side *= 2;
@@ -168,10 +168,7 @@ class BlockOfStage {
     }
     __device__ void close() const {
         dca::BlockHead const& head = words_.head();
-        each_of(head.roots, [&](int i) {
-            dca::StageRoot const closed = stage_.roots[head.first_root + i];
-            sweep_.close(closed.root, segments_.load(closed.place));
-        });
+        each_of(head.roots, [&](int i) { close(i == 0 ? head.root : stage_.roots[head.first_root + i]); });
     }
     /// Between a climb and a descent of their own.
     __device__ void put_nodes() const {
@@ -249,6 +246,13 @@ class BlockOfStage {
                 [&](dca::Run const&, std::int64_t i) { return forces_.load(place(i)); },
                 [&](dca::Run const&, std::int64_t i) { return forces_.load(words_.next_of_run(place(i))); });
         }
+    }
+    __device__ void close(dca::StageRoot const& closed) const {
+        Segment const whole = segments_.load(closed.place);
+        if constexpr (takes_factors<Sweep>)
+            if (closed.root.tip == dca::TipTo::nothing)
+                return sweep_.close_free({closed.root.first, closed.restricted}, whole, QuickFactors<false>{});
+        sweep_.close(closed.root, whole);
     }
     __device__ void take_force(dca::BlockHanded const& down) const { forces_.store(down.place, sweep_.s.forces.load(down.at)); }
     __device__ void join(dca::BlockMerge const& m) const {

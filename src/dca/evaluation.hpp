@@ -302,16 +302,19 @@ struct Evaluation {
         Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;
         s.close(root, s.fasten(root, floating.matrix, held.matrix), held.bias);
     }
+    /// The same of a chain whose tip is free. `factors`: as factorize(), always.
+    template <class Factors>
+    CATENA_HD void close_free(JointAt const& first, Segment const& floating, Factors const& factors) const {
+        static_assert(!Factors::may_fail);
+        Joint joint{};
+        s.forces.store(first.k, first_force(first, floating, factors, joint.factor));
+        s.joints.store(first.k, joint);
+    }
     /// Of a whole chain whose tip is free, at its first joint: as close().
     template <class Factors = dca::Factors>
     CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factors const& factors = {}) const {
-        Lost found;
-        auto const factor = factors(floating.matrix.z11, at.restricted);
-        s.watch(at, factor, found);
-        if constexpr (Factors::may_fail)
-            if (!found.none()) return first_force(at, floating);
-        s.note(found);
-        return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
+        Symmetric<double, K> factor;
+        return first_force(at, floating, factors, factor);
     }
 
     CATENA_HD Node node(std::int64_t joint) const { return s.node(joint); }
@@ -410,6 +413,17 @@ struct Evaluation {
     }
 
   private:
+    template <class Factors>
+    CATENA_HD Directions first_force(JointAt const& at, Segment const& floating, Factors const& factors,
+                                     Symmetric<double, K>& factor) const {
+        Lost found;
+        factor = factors(floating.matrix.z11, at.restricted);
+        s.watch(at, factor, found);
+        if constexpr (Factors::may_fail)
+            if (!found.none()) return first_force(at, floating, dca::Factors{}, factor);
+        s.note(found);
+        return solve_upper(factor, solve_lower(factor, -floating.bias.b1));
+    }
     template <class Passages>
     static constexpr bool turnings_kept = requires { requires std::remove_reference_t<Passages>::keeps_turnings; };
     template <class Passages>

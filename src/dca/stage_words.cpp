@@ -41,7 +41,8 @@ std::vector<StageWord> words_of(Stage const& stage, StagesTogether const& togeth
         StageBlock const& block = blocks[b];
         auto const count = [](Range const& range) { return static_cast<std::int32_t>(range.end - range.begin); };
         put(words, 0, 0,
-            BlockHead{block.item.begin, block.root.begin, count(block.item), count(block.root), count(block.up), count(block.down)});
+            BlockHead{block.item.begin, block.root.begin, count(block.item), count(block.root), count(block.up), count(block.down),
+                      count(block.root) > 0 ? stage.roots[static_cast<std::size_t>(block.root.begin)] : StageRoot{}});
         each(block.merge, [&](std::int64_t i, std::size_t m) {
             StageMerge const& merge = stage.merges[m];
             auto const place = [](std::int32_t p) { return static_cast<std::uint16_t>(p); };

@@ -15,6 +15,7 @@ struct alignas(16) StageWord {
 struct alignas(16) BlockHead {
     std::int64_t first_item = 0, first_root = 0;
     std::int32_t items = 0, roots = 0, ups = 0, downs = 0;
+    StageRoot root;  // the first one: a chain alone has no other, and would wait for it
 };
 /// As StageMerge. Places find room: a block has fewer than that.
 struct alignas(16) BlockMerge {

@@ -185,10 +185,10 @@ class Planner {
             Range& range = s.merge[static_cast<std::size_t>(joined.block * s.levels + l)];
             if (range.begin == range.end) range.begin = range.end = std::ssize(s.merges);
             ++range.end;
-            std::int32_t const restricted = restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(m.joint)];
-            s.merges.push_back({inboard.place, outboard.place, outboard.next_place, restricted, m.joint});
+            s.merges.push_back({inboard.place, outboard.place, outboard.next_place, restricted_at(m.joint), m.joint});
         }
     }
+    std::int32_t restricted_at(std::int64_t joint) const { return restricted_.empty() ? 0 : restricted_[static_cast<std::size_t>(joint)]; }
     static void sort_by_block(Stage& s) {
         std::vector<StageMerge> sorted;
         sorted.reserve(s.merges.size());
@@ -222,7 +222,7 @@ class Planner {
                 Node const& top = of(slot);
                 std::int64_t const closed = root_of_[static_cast<std::size_t>(slot)];
                 if (closed >= 0)
-                    s.roots.push_back({top.place, roots_[static_cast<std::size_t>(closed)]});
+                    s.roots.push_back({top.place, restricted_at(top.joint), roots_[static_cast<std::size_t>(closed)]});
                 else
                     s.segments_up.push_back({top.place, slot});
                 down.push_back({top.place, top.joint});
@@ -374,7 +374,7 @@ std::vector<std::int32_t> level_ends_of(Stage const& stage) {
 StageSizes stage_sizes(StageRecords const& records, std::int64_t shared_bytes, std::int64_t at_once) {
     StageSizes sizes{records.threads, 2, std::max<std::int64_t>(0, at_once - 1), records.whole_runs, records.at_once};
     auto const bytes = [&](std::int64_t items) {
-        constexpr std::int64_t words = 10, heads = 16;  // of a merge, of an item, of what is handed over; of all
+        constexpr std::int64_t words = 10, heads = 24;  // of a merge, of an item, of what is handed over; of all
         return 8 * (packed_numbers(records.segment, items) + 2 * packed_numbers(records.state, items) + words * items + heads);
     };
     while (bytes(2 * sizes.most) <= shared_bytes) sizes.most *= 2;

@@ -30,7 +30,7 @@ struct StageMerge {
     std::int64_t joint = 0;
 };
 struct StageRoot {
-    std::int32_t place = 0;
+    std::int32_t place = 0, restricted = 0;  // directions of its first joint
     Root root;
 };
 /// A segment or a force that comes from or goes to another stage.

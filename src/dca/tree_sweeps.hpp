@@ -9,7 +9,8 @@
 // are read one by one (body_at), join_bodies() or join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(),
 // accelerate() or accelerate_turned(), and nobody reads its joints, forces or slots afterwards: not all of them are written then. One that
 // has matrices() and biases() may leave stages with runs to these, one after the other (cuda/stage_walk.cuh); one that takes factors has
-// joined(..., factors), down(..., passages, factors) and PassagesHere, instead of which there may be others (cuda/run_parts.cuh).
+// joined(..., factors), close_free(), down(..., passages, factors) and PassagesHere, instead of which there may be others
+// (cuda/run_parts.cuh).
 #pragma once
 
 #include "dca/closure.hpp"

@@ -71,7 +71,17 @@ class Walk {
         StagesTogether const together(plan_, sizes_);
         for (std::int32_t const item : together.places.segment) EXPECT_TRUE(!together || item >= 0);
         for (Stage const& stage : plan_.stages) {
-            EXPECT_EQ(std::ssize(words_of(stage, together)), stage.blocks() * layout_of(stage).words());
+            std::vector<StageWord> const words = words_of(stage, together);
+            StageLayout const layout = layout_of(stage);
+            EXPECT_EQ(std::ssize(words), stage.blocks() * layout.words());
+            for (std::size_t b = 0; b < stage.root.size(); ++b) {
+                if (stage.root[b].begin == stage.root[b].end) continue;
+                StageRoot const& closed = stage.roots[index(stage.root[b].begin)];
+                StageRoot const& first = BlockWords(layout, words.data() + b * index(layout.words())).head().root;
+                EXPECT_EQ(first.place, closed.place);
+                EXPECT_EQ(first.restricted, closed.restricted);
+                EXPECT_EQ(first.root.first, closed.root.first);
+            }
             EXPECT_LE(stage.width, sizes.most);
             EXPECT_LE(stage.forces, 2 * stage.width);
         }
@@ -122,6 +132,7 @@ class Walk {
         each(stage.root[b], [&](std::size_t i) {
             StageRoot const& closed = stage.roots[i];
             EXPECT_EQ(own.at(index(closed.place)).first, closed.root.first);
+            EXPECT_EQ(closed.restricted, closed.root.first % 251);
             EXPECT_EQ(own.at(index(closed.place)).next, closed.root.next);
             ++closed_;
         });
@@ -238,7 +249,8 @@ TEST(Stages, BlocksFindRoomInSmallSharedMemories) {
             ASSERT_TRUE(stage.of_runs);
             std::int64_t const threads = threads_for(stage, sizes);
             EXPECT_GE(threads, parts_of_run * stage.width);
-            EXPECT_LE(8 * (records.segment * (threads + stage.width) + 2 * records.state * stage.width), shared_bytes)
+            std::int64_t const of_words = layout_of(stage).words() * static_cast<std::int64_t>(sizeof(StageWord));
+            EXPECT_LE(of_words + 8 * (records.segment * (threads + stage.width) + 2 * records.state * stage.width), shared_bytes)
                 << records.segment << " numbers";
         }
 }
