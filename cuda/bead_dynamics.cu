@@ -4,8 +4,9 @@
 
 namespace catena::cuda {
 
-std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Communicator const& communicator) {
-    DeviceSpace const space(communicator);
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const& group, Scene const& scene, Executor const& on_host,
+                                                     Communicator const& communicator) {
+    DeviceSpace const space(on_host, communicator);
     return std::make_unique<BeadDynamics<DeviceSpace>>(group, scene, space, communicator, make_device_solver(group, space, communicator));
 }
 

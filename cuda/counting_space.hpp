@@ -244,6 +244,9 @@ class CountingSpace : public HostAccess {
     void write(Directions&, DirectionsField const&) const {}
     template <int D, class Edit>
     void edit(FieldOf<D>&, Edit const&) const {}
+    template <int D, class Set>
+    void set(FieldOf<D>&, Set const&) const {}
+    static Executor const& on_host() { return this_thread(); }
     template <int D>
     struct Mirror {};
     template <int D>

@@ -21,13 +21,15 @@ namespace catena::cuda {
 class DeviceSpace {
   public:
     static constexpr bool answers_at_once = false;
-    /// Copies share the stream and the places for answers: one thread at a time asks largest() or get().
-    DeviceSpace()
-        : stream_(std::make_shared<Stream>()),
+    /// Copies share the stream and the places for answers: one thread at a time asks largest() or get(). The executor must outlive them.
+    explicit DeviceSpace(Executor const& on_host)
+        : on_host_(&on_host),
+          stream_(std::make_shared<Stream>()),
           answer_(std::make_shared<Buffer<unsigned long long>>(1)),
           letter_(std::make_shared<PinnedBuffer<double>>(most_of_a_body)) {}
     /// With ways to other ranks' GPUs, where there are any. Collective.
-    explicit DeviceSpace(Communicator const& communicator) : DeviceSpace() { peers_ = Peers(communicator); }
+    DeviceSpace(Executor const& on_host, Communicator const& communicator) : DeviceSpace(on_host) { peers_ = Peers(communicator); }
+    Executor const& on_host() const { return *on_host_; }
     cudaStream_t stream() const { return stream_->get(); }
 
     template <class T>
@@ -197,10 +199,11 @@ class DeviceSpace {
     }
     template <int D, class Edit>
     void edit(DeviceField<D>& field, Edit const& change) const {
-        Field<D> host = read(field);
-        change(host.view());
-        field.upload(std::as_const(host).view(), stream());
-        wait();
+        give_back(field, read(field), change);
+    }
+    template <int D, class Set>
+    void set(DeviceField<D>& field, Set const& all) const {
+        give_back(field, Field<D>(field.size()), all);
     }
     template <int D>
     struct Mirror {
@@ -272,6 +275,12 @@ class DeviceSpace {
     }
     static unsigned blocks(std::int64_t count) { return static_cast<unsigned>((count + kernels::threads - 1) / kernels::threads); }
     void set_answer(int byte) const { check(cudaMemsetAsync(answer_->data(), byte, sizeof(unsigned long long), stream()), "be asked"); }
+    template <int D, class Change>
+    void give_back(DeviceField<D>& field, Field<D> host, Change const& change) const {
+        change(host.view());
+        field.upload(std::as_const(host).view(), stream());
+        wait();
+    }
     static void started() { check(cudaGetLastError(), "start a kernel"); }
     template <class AnyTree, class Sweep, class Numbers>
     bool turn_shared_by(kernels::ExchangeByBlock<Numbers> const& exchange, AnyTree const& tree, AnyTree const& top,
@@ -279,6 +288,7 @@ class DeviceSpace {
         return tree.turn_shared(sweep, ExchangeInTurn<Numbers>{peers_, stream_, exchange}, top, stream());
     }
 
+    Executor const* on_host_;
     std::shared_ptr<Stream> stream_;
     std::shared_ptr<Buffer<unsigned long long>> answer_;  // of largest()
     std::shared_ptr<PinnedBuffer<double>> letter_;        // of get()

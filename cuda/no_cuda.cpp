@@ -24,13 +24,13 @@ int blocks_at_once() { throw ComputationError(why_not()); }
 std::int64_t stacks(std::int64_t) { throw ComputationError(why_not()); }
 std::unique_ptr<dca::LevelPart> make_levels(ChainGroup const&, dca::LevelWork const&) { throw ComputationError(why_not()); }
 
-std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
+std::unique_ptr<AbsoluteDynamics> make_bead_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&) {
     throw ComputationError(why_not());
 }
-std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
+std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&) {
     throw ComputationError(why_not());
 }
-std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Communicator const&) {
+std::unique_ptr<JointDynamics> make_joint_dynamics(ChainGroup const&, Scene const&, Executor const&, Communicator const&) {
     throw ComputationError(why_not());
 }
 

@@ -214,18 +214,17 @@ void allocate(ChainGroup& group) {
     if (group.has_screws) group.screw = Field<3>(n);
 }
 
-void fill(ChainGroup& group, Scene const& scene) {
+void fill(ChainGroup& group, Scene const& scene, Executor const& executor) {
+    each_local_body(group, executor, [&](dca::Piece const& piece, std::int64_t i) {
+        ChainSpec const& spec = scene.chains[group.chain[piece.chain]];
+        std::int64_t const k = piece.local + i, body = piece.body + i;
+        group.joint[k] = joint_type(spec, body);
+        group.is_first[k] = body == 0;
+        group.is_last[k] = body + 1 == static_cast<std::int64_t>(spec.size());
+        group.beads ? fill_bead(group, spec, body, k) : group.linked ? fill_linked(group, spec, body, k) : fill_body(group, spec, body, k);
+    });
     for (dca::Piece const& piece : group.pieces) {
         ChainSpec const& spec = scene.chains[group.chain[piece.chain]];
-        for (std::int64_t i = 0; i < piece.count; ++i) {
-            std::int64_t const k = piece.local + i, body = piece.body + i;
-            group.joint[k] = joint_type(spec, body);
-            group.is_first[k] = body == 0;
-            group.is_last[k] = body + 1 == static_cast<std::int64_t>(spec.size());
-            group.beads    ? fill_bead(group, spec, body, k)
-            : group.linked ? fill_linked(group, spec, body, k)
-                           : fill_body(group, spec, body, k);
-        }
         for (DrivenJoint const& driven : spec.bodies.driven)
             if (driven.body >= piece.body && driven.body < piece.body + piece.count)
                 group.drives.push_back({piece.local + driven.body - piece.body, driven.course[0], driven.course[1]});
@@ -339,7 +338,7 @@ ChainGroup make_group(Scene const& scene, std::vector<int> const& chains, Axes a
     group.tips_in_scene = std::any_of(tips.begin(), tips.end(), [](dca::TipTo t) { return t != dca::TipTo::nothing; });
     if (group.tips_in_scene) group.jointed_tip.assign(static_cast<std::size_t>(group.size), -1);
     allocate(group);
-    fill(group, scene);
+    fill(group, scene, options.executor);
     if (!group.beads) fill_carried(group, scene);
     fill_restricted(group, scene, options.implicit);
     find_neighbours(group, communicator.rank());
@@ -386,7 +385,7 @@ std::vector<std::unique_ptr<ChainGroup>> make_groups(Scene const& scene, Axes ax
         bool const of_resisting =
             options.implicit && std::any_of(members.begin(), members.end(), [&](int c) { return scene::resists(scene.chains[c]); });
         groups.push_back(std::make_unique<ChainGroup>(make_group(scene, members, axes, of_resisting ? Handles::full : handles, pairwise,
-                                                                 communicator, {of_resisting, options.shares})));
+                                                                 communicator, {of_resisting, options.shares, options.executor})));
     }
     return groups;
 }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "chain/group_view.hpp"
+#include "dca/executor.hpp"
 #include "dca/shares.hpp"
 #include "dca/tree.hpp"
 #include "mpi/communicator.hpp"
@@ -115,6 +116,8 @@ struct ChainGroup {
     bool is_implicit(std::int64_t k) const { return !implicit_joint.empty() && implicit_joint[static_cast<std::size_t>(k)] != 0; }
     /// Restricted directions of local body k's inboard joint, of those that the handles carry.
     int restricted(std::int64_t k) const;
+    /// Of `pieces`: the one that local body k is in.
+    std::size_t index_of_piece(std::int64_t k) const;
     /// Global body index over the scene of local body k.
     std::int64_t scene_index(std::int64_t k) const;
     /// Index in the scene of the chain that local body k belongs to.
@@ -220,11 +223,24 @@ std::vector<Value> gather_shared_units(Communicator const& communicator, ChainGr
     return all;
 }
 
+/// action(piece, i) for body i of every piece, on the executor's threads.
+template <class Action>
+void each_local_body(ChainGroup const& group, Executor const& executor, Action const& action) {
+    executor.for_ranges(group.size, 1, [&](std::int64_t begin, std::int64_t end) {
+        std::size_t p = group.index_of_piece(begin);
+        for (std::int64_t k = begin; k < end; ++k) {
+            while (k >= group.pieces[p].local + group.pieces[p].count) ++p;
+            action(group.pieces[p], k - group.pieces[p].local);
+        }
+    });
+}
+
 struct GroupOptions {
     /// Joints with springs or dampers carry all six directions, along the free ones what these do to the matrices; their chains have full
     /// handles.
     bool implicit = false;
-    dca::Shares shares;  // of the bodies of every group, rank by rank
+    dca::Shares shares;                        // of the bodies of every group, rank by rank
+    Executor const& executor = this_thread();  // for loops over bodies
 };
 /// Groups the scene's chains by the smallest handle kind that holds them (full handles: by what they consist of). `pairwise` chooses
 /// the chapter's tree.

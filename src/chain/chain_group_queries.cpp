@@ -5,13 +5,6 @@
 #include "scene/freedom.hpp"
 
 namespace catena {
-namespace {
-
-dca::Piece const& piece_of(std::vector<dca::Piece> const& pieces, std::int64_t k) {
-    return *(std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; }) - 1);
-}
-
-}  // namespace
 
 char const* ChainGroup::kind() const { return scene::name_of(static_cast<scene::HandleKind>(smallest_directions - 1)); }
 
@@ -27,8 +20,14 @@ std::vector<std::int64_t> last_bodies(std::vector<LocalTip> const& tips) {
     return bodies;
 }
 
+std::size_t ChainGroup::index_of_piece(std::int64_t k) const {
+    auto const after =
+        std::upper_bound(pieces.begin(), pieces.end(), k, [](std::int64_t body, dca::Piece const& p) { return body < p.local; });
+    return static_cast<std::size_t>(after - pieces.begin()) - 1;
+}
+
 std::int64_t ChainGroup::scene_index(std::int64_t k) const {
-    dca::Piece const& piece = piece_of(pieces, k);
+    dca::Piece const& piece = pieces[index_of_piece(k)];
     return first_in_scene[piece.chain] + piece.body + (k - piece.local);
 }
 
@@ -60,7 +59,7 @@ bool ChainGroup::sweeps_read_inertias() const {
     return handles == Handles::articulated || (!beads && !linked && directions == 5 && !has_screws);
 }
 
-int ChainGroup::scene_chain(std::int64_t k) const { return chain[piece_of(pieces, k).chain]; }
+int ChainGroup::scene_chain(std::int64_t k) const { return chain[pieces[index_of_piece(k)].chain]; }
 
 std::vector<LocalUnit> local_units(ChainGroup const& group) {
     std::vector<LocalUnit> units;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "clock.hpp"
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "command/stop_signals.hpp"
@@ -12,6 +13,8 @@
 
 namespace catena::command {
 namespace {
+
+double const program_start = seconds_now();
 
 std::string output_folder(Scene const& scene, RunRequest const& request) {
     if (!request.output.empty()) return request.output;
@@ -59,6 +62,8 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
     if (speed.contains("ns_per_day")) rate += fmt::format(", {:.4g} ns/day", number(speed, "ns_per_day"));
     if (auto const later = speed.find("steps_per_second_of_second_half"); later != speed.end())
         rate += fmt::format(", in the second half {:.4g} steps/s", later->get<double>());
+    if (auto const begun = speed.find("seconds_to_first_step"); begun != speed.end())
+        rate += fmt::format("; the first one done {} after the program's start", duration_text(begun->get<double>()));
     text.entry("time", rate);
     if (auto const inner = s.find("inner_steps"); inner != s.end())
         text.entry("inner steps",
@@ -132,6 +137,7 @@ Outcome run_scene(Scene given, Communicator const& communicator, RunRequest cons
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;
+    options.begun = program_start;
     options.stop = StopSignals::noted;
     Outcome outcome;
     auto const choose = [&](Scene const& scene, std::string const& no_gpu) { return plan::choose(scene, axes, communicator, no_gpu); };

@@ -32,6 +32,8 @@ class Executor {
 };
 
 std::unique_ptr<Executor> serial_executor(SimdLevel = best_simd_level());
+/// One of those, for as long as the program runs.
+Executor const& this_thread();
 /// `threads` OpenMP threads. Throws "built without OpenMP" where it is absent.
 std::unique_ptr<Executor> openmp_executor(int threads, SimdLevel = best_simd_level());
 bool openmp_is_built();

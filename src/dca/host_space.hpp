@@ -221,6 +221,11 @@ class HostSpace : public HostAccess {
     void edit(Field<D>& field, Edit const& change) const {
         change(field.view());
     }
+    /// The same where it sets all bodies and nobody wants what was there, nor in the halo.
+    template <int D, class Set>
+    void set(Field<D>& field, Set const& all) const {
+        all(field.view());
+    }
     /// A view for the host of what a field holds now; `mirror` may hold it.
     template <int D>
     struct Mirror {};
@@ -246,6 +251,8 @@ class HostSpace : public HostAccess {
     /// Until everything asked for so far is done.
     void wait() const {}
     int threads() const { return executor_->threads(); }
+    /// What the host does besides: for loops over what it read or is to write.
+    Executor const& on_host() const { return *executor_; }
     SimdLevel simd() const { return executor_->simd(); }
     /// action(begin, end) on ranges that together cover [0, count); they may run side by side.
     template <class Action>
@@ -260,9 +267,7 @@ class HostSpace : public HostAccess {
 /// Gives a field of a space the values of the host's.
 template <class Space, class FieldOfSpace, int D>
 void fill(Space const& space, FieldOfSpace& field, Field<D> const& host) {
-    space.edit(field, [&](View<D> view) {
-        for (std::int64_t k = 0; k < host.size(); ++k) view.store(k, host[k]);
-    });
+    space.edit(field, [&](View<D> view) { space.on_host().for_each(host.size(), [&](std::int64_t k) { view.store(k, host[k]); }); });
 }
 
 }  // namespace catena

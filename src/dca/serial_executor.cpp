@@ -16,4 +16,9 @@ class SerialExecutor final : public Executor {
 
 std::unique_ptr<Executor> serial_executor(SimdLevel simd) { return std::make_unique<SerialExecutor>(simd); }
 
+Executor const& this_thread() {
+    static SerialExecutor const executor(best_simd_level());
+    return executor;
+}
+
 }  // namespace catena

@@ -141,16 +141,18 @@ std::unique_ptr<AbsoluteDynamics> make_rigid_dynamics(ChainGroup const&, Scene c
 StateArray const& array_named(std::vector<StateArray> const&, std::string const& name);
 
 template <int D>
-StateArray to_array(std::string const& name, ConstView<D> field) {
+StateArray to_array(std::string const& name, ConstView<D> field, Executor const& executor) {
     StateArray a{name, D, std::vector<double>(static_cast<std::size_t>(field.size * D))};
-    for (std::int64_t k = 0; k < field.size; ++k)
+    executor.for_each(field.size, [&](std::int64_t k) {
         for (int i = 0; i < D; ++i) a.values[static_cast<std::size_t>(k * D + i)] = field.at(k, i);
+    });
     return a;
 }
 template <int D>
-void from_array(StateArray const& a, View<D> field) {
-    for (std::int64_t k = 0; k < field.size; ++k)
+void from_array(StateArray const& a, View<D> field, Executor const& executor) {
+    executor.for_each(field.size, [&](std::int64_t k) {
         for (int i = 0; i < D; ++i) field.at(k, i) = a.values[static_cast<std::size_t>(k * D + i)];
+    });
 }
 
 }  // namespace catena

@@ -8,21 +8,20 @@ std::vector<std::uint8_t> links_of(ChainGroup const& group) {
     return links;
 }
 
-Field<1> halves_over(Field<1> const& length) {
+Field<1> halves_over(Field<1> const& length, Executor const& executor) {
     Field<1> halves(length.size());
-    for (std::int64_t k = 0; k < length.size(); ++k)
+    executor.for_each(length.size(), [&](std::int64_t k) {
         if (double const l = length[k][0]; l > 0) halves.set(k, {{0.5 / l}});
+    });
     return halves;
 }
 
-void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity) {
-    for (dca::Piece const& piece : group.pieces) {
+void place_beads(ChainGroup const& group, Scene const& scene, View<3> position, View<3> velocity, Executor const& executor) {
+    each_local_body(group, executor, [&](dca::Piece const& piece, std::int64_t i) {
         BeadArrays const& beads = scene.chains[group.chain[piece.chain]].beads;
-        for (std::int64_t i = 0; i < piece.count; ++i) {
-            position.store(piece.local + i, beads.position[piece.body + i]);
-            velocity.store(piece.local + i, beads.velocity[piece.body + i]);
-        }
-    }
+        position.store(piece.local + i, beads.position[piece.body + i]);
+        velocity.store(piece.local + i, beads.velocity[piece.body + i]);
+    });
 }
 
 /// On bead k by its outboard link, backwards.

@@ -14,7 +14,7 @@ namespace catena {
 /// Links of the group's chains on this rank.
 std::vector<std::uint8_t> links_of(ChainGroup const&);
 /// Where they start.
-void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity);
+void place_beads(ChainGroup const&, Scene const&, View<3> position, View<3> velocity, Executor const&);
 
 /// What the last evaluate() of bead chains found, on the host.
 struct BeadSolution {
@@ -28,7 +28,7 @@ struct BeadSolution {
 };
 
 /// 0 where there is no link.
-Field<1> halves_over(Field<1> const& length);
+Field<1> halves_over(Field<1> const& length, Executor const&);
 
 template <class Space>
 class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
@@ -44,7 +44,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
           solver_(std::move(solver)),
           gravity_(scene.forces.gravity),
           links_(links_of(group)),
-          halves_(halves_over(group.length)),
+          halves_(halves_over(group.length, space.on_host())),
           piece_(local_pieces(group, scene)),
           tip_(held_tips(group, [&](std::int64_t k) { return scene.chains[group.scene_chain(k)].beads.position.back(); })),
           is_first_(group.is_first),
@@ -68,8 +68,8 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
           tip_bias_(group.has_tips() ? group.size : 0, group.directions),
           tip_force_(group.has_tips() ? group.size : 0, group.directions),
           ring_ends_(group, space, communicator) {
-        space_.edit(position_, [&](View<3> position) {
-            space_.edit(velocity_, [&](View<3> velocity) { place_beads(group, scene, position, velocity); });
+        space_.set(position_, [&](View<3> position) {
+            space_.set(velocity_, [&](View<3> velocity) { place_beads(group, scene, position, velocity, space_.on_host()); });
         });
     }
 
@@ -161,16 +161,18 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
 
     std::vector<StateArray> state() const override {
         solver_->check();
-        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view())};
+        return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
+                to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host())};
     }
     void set_state(std::vector<StateArray> const& arrays) override {
         put_at_step_ = never;
-        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
-        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
+        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view, space_.on_host()); });
+        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view, space_.on_host()); });
     }
     std::vector<StateArray> observed_state() const override {
         solver_->check();
-        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(observed_).view())};
+        return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
+                to_array<3>("velocity", space_.read(observed_).view(), space_.on_host())};
     }
 
     void evaluate() override {

@@ -87,7 +87,8 @@ ChainSystem::ChainSystem(Scene const& scene, Axes axes, Communicator const& comm
     bool const threads = backend_ == Backend::openmp || (uses_gpu(backend_) && openmp_is_built());
     SimdLevel const simd = choose_simd_level(scene, communicator);
     executor_ = threads ? openmp_executor(choose_threads(scene, communicator), simd) : serial_executor(simd);
-    groups_ = make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, {implicit_step > 0, shares});
+    groups_ =
+        make_groups(scene, axes, scene.solver.handles, scene.solver.pairwise(), communicator, {implicit_step > 0, shares, *executor_});
     if (scene.solver.handles == Handles::articulated)
         for (auto const& group : groups_) refuse_articulated(*group, implicit_step > 0);
     if (uses_gpu(backend_)) require_gpu_memory();
@@ -124,13 +125,13 @@ void ChainSystem::make_current() {
 std::unique_ptr<AbsoluteDynamics> ChainSystem::make_absolute(ChainGroup const& group) const {
     if (backend_ == Backend::cuda) {
         auto const make = group.beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics;
-        return make(group, scene_, communicator_);
+        return make(group, scene_, *executor_, communicator_);
     }
     if (group.beads) return make_bead_dynamics(group, scene_, *executor_, communicator_, make_solver(group));
     return make_rigid_dynamics(group, scene_, *executor_, communicator_, make_solver(group), implicit_step_);
 }
 std::unique_ptr<JointDynamics> ChainSystem::make_joint(ChainGroup const& group) const {
-    if (backend_ == Backend::cuda) return cuda::make_joint_dynamics(group, scene_, communicator_);
+    if (backend_ == Backend::cuda) return cuda::make_joint_dynamics(group, scene_, *executor_, communicator_);
     return make_joint_dynamics(group, scene_, *executor_, communicator_, make_solver(group), implicit_step_);
 }
 std::unique_ptr<ChainSolver> ChainSystem::make_solver(ChainGroup const& group) const {

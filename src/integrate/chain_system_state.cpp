@@ -255,7 +255,7 @@ ChainSystem::Accelerations ChainSystem::accelerations() {
         ChainGroup const& group = joint_[i]->group();
         add(group, found[absolute_.size() + i]);
         JointRates const rates = joint_[i]->rates();
-        gather_to_scene(communicator_, group, 3, to_array<3>("", rates.qdd.view()).values, joint);
+        gather_to_scene(communicator_, group, 3, to_array<3>("", rates.qdd.view(), *executor_).values, joint);
         gather_to_scene(communicator_, group, 3, at_starts(group, rates.base_acceleration), base);
     }
     return {triples(joint), triples(body), bead_forces(), triples(alpha), triples(base), joint_forces(found), tip_forces(found)};
@@ -292,8 +292,8 @@ ChainSystem::OwnState ChainSystem::own_state() const {
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         JointState const s = dynamics->state();
-        add_part(group, to_array<4>("", s.q.view()).values, 4, "q", own);
-        add_part(group, to_array<3>("", s.qd.view()).values, 3, "qd", own);
+        add_part(group, to_array<4>("", s.q.view(), *executor_).values, 4, "q", own);
+        add_part(group, to_array<3>("", s.qd.view(), *executor_).values, 3, "qd", own);
         add_part(group, at_starts(group, s.base_position), 3, "base_position", own);
         add_part(group, at_starts(group, s.base_velocity), 3, "base_velocity", own);
     }
@@ -301,7 +301,7 @@ ChainSystem::OwnState ChainSystem::own_state() const {
 }
 
 void ChainSystem::add_rates(ChainGroup const& group, JointRates const& rates, OwnState& own) const {
-    add_part(group, to_array<3>("", rates.qdd.view()).values, 3, "qdd", own);
+    add_part(group, to_array<3>("", rates.qdd.view(), *executor_).values, 3, "qdd", own);
     add_part(group, at_starts(group, rates.base_acceleration), 3, "base_acceleration", own);
 }
 
@@ -335,7 +335,7 @@ std::vector<JointRates> ChainSystem::own_rates(std::map<std::string, std::vector
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         JointRates rates{Field<3>(group.size), of_starts(group, triples(base_acceleration[index_of(group)]))};
-        from_array<3>({"qdd", 3, std::move(qdd[index_of(group)])}, rates.qdd.view());
+        from_array<3>({"qdd", 3, std::move(qdd[index_of(group)])}, rates.qdd.view(), *executor_);
         all.push_back(std::move(rates));
     }
     return all;
@@ -375,8 +375,8 @@ void ChainSystem::set_state(std::map<std::string, std::vector<double>> const& ar
         }
     };
     using Own = std::vector<double>;
-    set("q", 4, [](JointState& s, ChainGroup const&, Own own) { from_array<4>({"q", 4, std::move(own)}, s.q.view()); });
-    set("qd", 3, [](JointState& s, ChainGroup const&, Own own) { from_array<3>({"qd", 3, std::move(own)}, s.qd.view()); });
+    set("q", 4, [this](JointState& s, ChainGroup const&, Own own) { from_array<4>({"q", 4, std::move(own)}, s.q.view(), *executor_); });
+    set("qd", 3, [this](JointState& s, ChainGroup const&, Own own) { from_array<3>({"qd", 3, std::move(own)}, s.qd.view(), *executor_); });
     set("base_position", 3,
         [](JointState& s, ChainGroup const& group, Own const& own) { s.base_position = of_starts(group, triples(own)); });
     set("base_velocity", 3,

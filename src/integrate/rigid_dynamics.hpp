@@ -167,23 +167,27 @@ class RigidDynamics final : public AbsoluteDynamics {
 
     std::vector<StateArray> state() const override {
         solver_->check();
-        std::vector<StateArray> all{
-            to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(velocity_).view()),
-            to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(omega_).view())};
-        if (of_stiffness_ > 0) all.push_back(to_array<3>("rotor", space_.read(rotor_).view()));  // also on ranks that have none
+        std::vector<StateArray> all{to_array<3>("position", space_.read(position_).view(), space_.on_host()),
+                                    to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host()),
+                                    to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
+                                    to_array<3>("omega", space_.read(omega_).view(), space_.on_host())};
+        if (of_stiffness_ > 0)
+            all.push_back(to_array<3>("rotor", space_.read(rotor_).view(), space_.on_host()));  // also on ranks that have none
         return all;
     }
     void set_state(std::vector<StateArray> const& arrays) override {
-        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view); });
-        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view); });
-        space_.edit(orientation_, [&](View<4> view) { from_array<4>(array_named(arrays, "orientation"), view); });
-        space_.edit(omega_, [&](View<3> view) { from_array<3>(array_named(arrays, "omega"), view); });
-        if (rotors() > 0) space_.edit(rotor_, [&](View<3> view) { from_array<3>(array_named(arrays, "rotor"), view); });
+        space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view, space_.on_host()); });
+        space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view, space_.on_host()); });
+        space_.edit(orientation_, [&](View<4> view) { from_array<4>(array_named(arrays, "orientation"), view, space_.on_host()); });
+        space_.edit(omega_, [&](View<3> view) { from_array<3>(array_named(arrays, "omega"), view, space_.on_host()); });
+        if (rotors() > 0) space_.edit(rotor_, [&](View<3> view) { from_array<3>(array_named(arrays, "rotor"), view, space_.on_host()); });
     }
     std::vector<StateArray> observed_state() const override {
         solver_->check();
-        return {to_array<3>("position", space_.read(position_).view()), to_array<3>("velocity", space_.read(observed_velocity_).view()),
-                to_array<4>("orientation", space_.read(orientation_).view()), to_array<3>("omega", space_.read(observed_omega_).view())};
+        return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
+                to_array<3>("velocity", space_.read(observed_velocity_).view(), space_.on_host()),
+                to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
+                to_array<3>("omega", space_.read(observed_omega_).view(), space_.on_host())};
     }
 
     void evaluate() override {

@@ -42,7 +42,8 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         if (!empty && !appends_ && !options.overwrite)
             throw InputError("the output folder exists", folder_,
                              "name another with --output" + go_on + ", or replace it with --overwrite");
-        for (char const* name : {"checkpoint.h5.writing", "checkpoint.previous.h5.writing"}) fs::remove(fs::path(folder_) / name, ignored);
+        for (char const* name : {"checkpoint.h5.writing", "checkpoint.previous.h5.writing", "topology.pdb.writing", "topology.cif.writing"})
+            fs::remove(fs::path(folder_) / name, ignored);
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name, ignored);
         make_output_folder(folder_);
@@ -122,11 +123,9 @@ void RunFolder::put_topology(Frame const& part, Executor const& executor) {
 }
 
 void RunFolder::end_topology() {
-    on_first_rank(communicator_, [&] {
-        throw_kept();
-        topology_files_ = topology_->finish();
-        topology_.reset();
-    });
+    if (communicator_.rank() > 0) return;
+    keeping_failure([&] { topology_->finish(); });
+    topology_.reset();
 }
 
 void RunFolder::begin(std::int64_t step, double time) {

@@ -1,5 +1,5 @@
 // The folder a run writes, on rank 0; frames and checkpoints may be all ranks' together. What fails there (a full disk) ends all ranks in
-// good order: every call is collective.
+// good order: calls are collective, but for those that keep what fails for check().
 #pragma once
 
 #include <exception>
@@ -23,7 +23,7 @@ class RunFolder {
     RunFolder(Scene const&, Communicator const&, RunOptions const&, std::int64_t first_step);
 
     void open(Topology const&, std::vector<std::string> const& columns);
-    /// Whether the topology's files are wanted: the first state's parts, and the end of it.
+    /// Whether the topology's files are wanted: the first state's parts, and the end of it. What fails there is kept for check().
     bool wants_topology() const { return !appends_; }
     void put_topology(Frame const& part, Executor const&);
     void end_topology();
@@ -34,7 +34,7 @@ class RunFolder {
     void begin(std::int64_t step, double time);
     void put(std::span<Frame const> parts);
     void end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables);
-    /// Throws what failed since begin(), where that is not collective. Collective.
+    /// Throws what was kept of failures: of the topology, and of frames that are not written together. Collective.
     void check();
     /// With the arrays of bodies that ranks have of the system.
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
@@ -44,7 +44,6 @@ class RunFolder {
     void finish(std::string const& summary, std::string const& timeline);
 
     std::string path(std::string const& name) const { return folder_ + "/" + name; }
-    std::vector<std::string> const& topology_files() const { return topology_files_; }
 
   private:
     /// What a restart can begin with; empty: nothing.
@@ -73,7 +72,6 @@ class RunFolder {
     FileWay frames_way_, checkpoints_way_;
     std::unique_ptr<TrajectoryWriter> trajectory_;
     std::unique_ptr<ObservablesWriter> observables_;
-    std::vector<std::string> topology_files_;
     std::exception_ptr failure_;
     std::int64_t step_ = 0;
     double time_ = 0;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <future>
 #include <nlohmann/json.hpp>
 #include <system_error>
@@ -46,17 +48,18 @@ class Run {
           options_(options),
           root_(communicator.rank() == 0),
           last_(options.steps.value_or(scene_.dynamics.steps)),
-          sites_(root_ ? Sites(scene_) : Sites()),
           axes_(uses_joint_coordinates(scene_.dynamics.integrator) ? Axes::joint : Axes::world),
           implicit_step_(is_implicit(scene_.dynamics.integrator) ? scene_.dynamics.step : 0.0),
           from_(options_.restart.empty() ? std::nullopt : std::optional(read_start())),
           shares_(shares()),
+          sites_of_scene_(root_ ? std::async([this] { return Sites(scene_); }) : std::future<Sites>()),
           system_(scene_, axes_, communicator, implicit_step_, shares_) {
         Integrator const integrator = scene_.dynamics.integrator;
         if (scene_.solver.refine > 0 && !is_refined(integrator))
             throw InputError("solutions under integrator " + std::string(name_of(integrator)) + " are not refined", "solver.refine",
                              "leave it out, or take rk4, dormand-prince or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
+        if (root_) sites_ = sites_of_scene_.get();
         warn_of_shared_gpus();
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
@@ -72,6 +75,7 @@ class Run {
         std::int64_t const rounds = communicator_.rounds();
         StopAgreement stop(communicator_, options_.stop, first);
         for (std::int64_t n = first;; ++n) {
+            if (frame_.valid() && frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) end_frame();  // it may have failed
             bool const writes = n % scene_.output.every == 0;
             bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
             bool const looks =
@@ -99,6 +103,10 @@ class Run {
             at_step(n, [&] { stepper_->step(n, timeline); });
             of_step += chains_traffic() - prepared;
             if (n > first && !renews) count_messages(of_step);  // others may evaluate once more
+            if (n == first) {
+                system_.wait();
+                first_step_after_ = seconds_now() - options_.begun;
+            }
             progress.update(n + 1);
             pace_.note(n + 1, first + (last_ - first + 1) / 2, seconds_now());
         }
@@ -133,8 +141,15 @@ class Run {
         folder_->open(sites_.topology(), observables_->columns());
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
+        bool const has_frame = n % scene_.output.every == 0;
+        topology_is_due_ = has_frame && may_write_beside() && options_.topology_beside.value_or(uses_gpu(system_.backend()));
+        if (topology_is_due_) return;
         at_start_->bodies = own_bodies();
-        system_.pass_bodies(*at_start_->bodies, [&](ChainSystem::Bodies const& bodies) {
+        write_topology(*at_start_->bodies);
+        folder_->check();
+    }
+    void write_topology(ChainSystem::OwnBodies const& at_start) {
+        system_.pass_bodies(at_start, [&](ChainSystem::Bodies const& bodies) {
             folder_->put_topology(sites_.part(bodies, false, system_.executor()), system_.executor());
         });
         folder_->end_topology();
@@ -156,14 +171,16 @@ class Run {
         Observed now;
         std::vector<Vector<double, 6>> at_tips;
     };
-    /// On one rank, of many bodies, the frame is written by a thread of its own while steps go on, until something else is to be written.
+    bool may_write_beside() const { return communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside; }
+    /// On one rank, of many bodies, the frame, and with the first one a topology that is due, is written by a thread of its own while steps
+    /// go on, until something else is to be written.
     void output(std::int64_t n, double error) {
         end_frame();
         pending_ = {n, error, at_start_ ? std::move(*at_start_) : observed(), {}};
         if (!pending_->now.bodies) pending_->now.bodies = own_bodies();
         if (scene_.output.joint_forces)
             for (TipForce const& tip : system_.tip_forces()) pending_->at_tips.push_back(tip.wrench);
-        if (communicator_.size() == 1 && scene_.bodies() >= options_.bodies_beside && write_beside()) return;
+        if (may_write_beside() && write_beside()) return;
         write(*pending_);
         pending_.reset();
         folder_->check();
@@ -187,6 +204,7 @@ class Run {
     }
     /// Collective; on one rank no message is sent.
     void write(PendingFrame const& frame) {
+        if (std::exchange(topology_is_due_, false)) write_topology(*frame.now.bodies);
         folder_->begin(frame.step, time(frame.step));
         observables_->begin();
         bool const together = folder_->frames_way().collective;
@@ -340,6 +358,7 @@ class Run {
         if (json const inner = stepper_->inner_steps(); !inner.is_null()) s["inner_steps"] = inner;
         if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
+        if (first_step_after_ > 0) s["speed"]["seconds_to_first_step"] = first_step_after_;
         if (double const rate = pace_.steps_per_second(); rate > 0) s["speed"]["steps_per_second_of_second_half"] = rate;
         if (!scene_.si) s["speed"]["ns_per_day"] = seconds_ > 0 ? steps * scene_.dynamics.step * 1e-3 * 86400 / seconds_ : 0.0;
         s["parallel"] = {{"ranks", communicator_.size()},
@@ -382,6 +401,8 @@ class Run {
         for (char const* name :
              {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
             s["files"][name] = folder_->path(name);
+        if (std::error_code ignored; root_ && std::filesystem::exists(folder_->path("topology.cif"), ignored))
+            s["files"]["topology.cif"] = folder_->path("topology.cif");
         return s;
     }
 
@@ -408,7 +429,8 @@ class Run {
     double implicit_step_;
     std::optional<Checkpoint> from_;  // until it is restored
     bool shares_are_stored_ = false;
-    dca::Shares shares_;  // empty: equal
+    dca::Shares shares_;                 // empty: equal
+    std::future<Sites> sites_of_scene_;  // found while the system is made; after ranks have measured their speeds
     ChainSystem system_;
     std::unique_ptr<Stepper> stepper_;
     std::vector<StepMessages> messages_;  // one a group
@@ -418,9 +440,11 @@ class Run {
     std::vector<StepTimeline> timelines_;
     std::vector<double> last_row_;
     std::optional<Observed> at_start_;  // what the topology and the first frame show
+    bool topology_is_due_ = false;      // true: it is written with the first frame
     std::vector<std::string> notes_;
     SweepWatch watch_;
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
+    double first_step_after_ = 0;  // seconds; 0: there was none
     Pace pace_;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;
     int stopped_by_ = 0;

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "clock.hpp"
 #include "integrate/balance.hpp"
 #include "integrate/stop_agreement.hpp"
 #include "mpi/communicator.hpp"
@@ -22,6 +23,8 @@ struct RunOptions {
     StopAgreement::Wish stop;             // the run ends after the step that is under way, with a checkpoint and what it has
     std::string command_line;             // for the summary
     std::int64_t bodies_beside = 100000;  // in the scene, from which on frames on one rank are written beside the steps that follow
+    std::optional<bool> topology_beside;  // the topology's files with the first frame, where that is; none: where a GPU does the steps
+    double begun = seconds_now();         // when whoever runs it took it up: what a run takes to its first step counts from there
     MeasureOwnCosts own_costs = measure_own_costs;  // what solver.balance goes by
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <future>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -154,11 +155,16 @@ struct TopologyWriter::Files {
             for (std::int64_t part = first; part < last; ++part)
                 format(positions, count * part / parts, count * (part + 1) / parts, lines[static_cast<std::size_t>(part)]);
         });
-        for (std::int64_t part = 0; part < parts; ++part) {
-            Lines const& of_part = lines[static_cast<std::size_t>(part)];
-            pdb.write({of_part.pdb.data(), of_part.pdb.size()});
-            if (cif) cif->write({of_part.cif.data(), of_part.cif.size()});
-        }
+        auto const write = [&](AtomicFile& file, fmt::memory_buffer Lines::* text) {
+            for (std::int64_t part = 0; part < parts; ++part) {
+                fmt::memory_buffer const& of_part = lines[static_cast<std::size_t>(part)].*text;
+                file.write({of_part.data(), of_part.size()});
+            }
+        };
+        std::future<void> beside;
+        if (cif) beside = std::async([&] { write(*cif, &Lines::cif); });
+        write(pdb, &Lines::pdb);
+        if (cif) beside.get();
         next += count;
     }
 

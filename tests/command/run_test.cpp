@@ -46,6 +46,16 @@ TEST(Run, WritesItsFolderBesideTheWorkingFolderAndGoesOn) {
     EXPECT_EQ(lines_of(made + "observables.csv").size(), 1U + 2);
 }
 
+TEST(Run, NamesTheTopologyOfManySites) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "chain.yaml") << "chains: [{generator: {freely_jointed: {beads: 1e5, length: 1}}}]\n"
+                                            "dynamics: {integrator: rattle, step: 1e-3, steps: 1}\n";
+    expect_good(catena({"run", "chain.yaml", "--quiet"}, folder.path()));
+    auto const files = nlohmann::json::parse(std::ifstream(folder / "chain-run/summary.json")).at("files");
+    EXPECT_EQ(files.size(), 8U);
+    for (auto const& file : files) EXPECT_TRUE(fs::exists(fs::path(folder.path()) / file.get<std::string>())) << file;
+}
+
 /// As many frames as steps, whatever the inner steps.
 TEST(Run, TellsItsInnerSteps) {
     TemporaryFolder const folder;

@@ -110,7 +110,7 @@ class GpuAbsolute : public ::testing::TestWithParam<AbsoluteScene> {
         auto solver = make_tree_solver(*groups_[0], *executor_, *communicator_);
         host_ = beads ? make_bead_dynamics(*groups_[0], scene_, *executor_, *communicator_, std::move(solver))
                       : make_rigid_dynamics(*groups_[0], scene_, *executor_, *communicator_, std::move(solver));
-        device_ = (beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics)(*groups_[0], scene_, *communicator_);
+        device_ = (beads ? cuda::make_bead_dynamics : cuda::make_rigid_dynamics)(*groups_[0], scene_, *executor_, *communicator_);
     }
     template <class Operation>
     void both(char const* name, Operation const& operation) {

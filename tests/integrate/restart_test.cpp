@@ -84,6 +84,7 @@ TEST_P(Restart, WithFramesBesideTheSteps) {
     auto const beside = [] {
         RunOptions options;
         options.bodies_beside = 1;
+        options.topology_beside = true;
         return options;
     };
     auto const beside_steps = [](nlohmann::json const& summary) { return summary["parallel"]["frames_beside_steps"].get<int>(); };
@@ -101,8 +102,28 @@ TEST_P(Restart, WithFramesBesideTheSteps) {
             << name;
         EXPECT_EQ(text_of(folder_ / (std::string(name) + "/observables.csv")), text_of(folder_ / "one-after-the-other/observables.csv"))
             << name;
+        EXPECT_EQ(text_of(folder_ / (std::string(name) + "/topology.pdb")), text_of(folder_ / "one-after-the-other/topology.pdb")) << name;
         EXPECT_EQ(bits_of(folder_ / (std::string(name) + "/trajectory.h5md")), bits_of(folder_ / "one-after-the-other/trajectory.h5md"))
             << name;
+    }
+}
+
+TEST_P(Restart, ATopologyThatCannotBeWrittenEndsTheRun) {
+    for (bool const beside : {false, true}) {
+        std::string const output = beside ? "beside" : "before", made = folder_ / output;
+        std::filesystem::create_directories(made + "/topology.pdb/in-the-way");
+        RunOptions options;
+        options.overwrite = true;
+        options.bodies_beside = 1;
+        options.topology_beside = beside;
+        try {
+            run(options, output, 1000);
+            ADD_FAILURE() << output;
+        } catch (ComputationError const& error) {
+            EXPECT_NE(std::string(error.what()).find("topology.pdb"), std::string::npos) << error.what();
+        }
+        EXPECT_FALSE(std::filesystem::exists(made + "/topology.pdb.writing")) << output;
+        EXPECT_FALSE(std::filesystem::exists(made + "/checkpoint.h5")) << output;
     }
 }
 
