@@ -219,6 +219,7 @@ class CountingSpace : public HostAccess {
     void climb_and_descend(ScanTree const&, Scan const&, std::int64_t, Action const&) const {}
     template <class Scan, class T, class Action>
     void climb_and_descend(ScanTree const&, Scan const&, List<T> const&, Action const&) const {}
+    static bool has_threads_for_bodies(ScanTree const&) { return false; }
     static bool has_threads_to_spare(std::int64_t) { return false; }
     template <class Value>
     double largest(std::int64_t, Value const&) const {

@@ -38,6 +38,8 @@ class DeviceScan {
     bool at_once(Scan const& scan, std::int64_t count, Action const& action, cudaStream_t stream) const {
         return walk(stream).at_once(scan, count, action);
     }
+    /// Whether at_once() would, and goes_by_steps.
+    bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
     /// As ScanWalk::turn_shared.
     template <class Scan, class Numbers>
     bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, cudaStream_t stream) const {
@@ -91,9 +93,11 @@ class DeviceScan {
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
             if (!tree.has_clusters_) return false;
             kernels::DeviceScanStage const& stage = tree.stages_.front().view;
-            unsigned const blocks = kernels::blocks_of_turn(count);
-            cuda::launch({blocks, kernels::most_of_scan, bytes<Scan>(stage), blocks}, stream, kernels::turn_scan_then<Scan, Action>, stage,
-                         scan, count, action);
+            unsigned const blocks = kernels::blocks_of_turn<Scan>(stage, count);
+            std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(stage, blocks);
+            auto* const kernel = kernels::turn_scan_then<Scan, Action>;
+            allow_shared(kernel, shared);
+            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, stage, scan, count, action);
             return true;
         }
         template <class Scan, class Numbers>

@@ -113,6 +113,7 @@ class DeviceSpace {
     void climb_and_descend(Tree const& tree, Sweep const& sweep) const {
         tree.climb_and_descend(sweep, stream());
     }
+    static bool has_threads_for_bodies(ScanTree const& tree) { return tree.has_threads_for_bodies(); }
     static bool has_threads_to_spare(std::int64_t items) { return items <= most_items_with_threads_to_spare; }
     template <class Value>
     double largest(std::int64_t count, Value const& value) const {

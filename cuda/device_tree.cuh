@@ -145,18 +145,16 @@ class DeviceTree {
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            if constexpr (dca::takes_whole_runs<Sweep>)
-                if (kernels::go_by_teams<Sweep>(runs))
-                    return launch(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { launch(kernel, grid, sweep); };
+            if (kernels::climb_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams)) return;
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, shared_bytes());
             launch(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            if constexpr (dca::takes_whole_runs<Sweep>)
-                if (kernels::go_by_teams<Sweep>(runs))
-                    return launch(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { launch(kernel, grid, sweep); };
+            if (kernels::descend_by_teams<Sweep>(kernels::lanes_of_teams(runs), runs, by_teams)) return;
             kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, shared_bytes());
             launch(kernels::descend_runs<Sweep>, grid, sweep);
         }

@@ -1,7 +1,7 @@
-// Runs on hinges by four lanes of a warp each: where runs are few, a GPU has more threads than that. What does not wait for other bodies
+// Runs on hinges by several lanes of a warp each: where runs are few, a GPU has more threads than that. What does not wait for other bodies
 // the lanes find of a body each, and leave in shared memory; then, on the way up, all have the inertia and each one or two of the six
-// wrenches (inertia_run.hpp). They leave the bits of one thread's climb_hinges() and descend_hinges(). A host compiler takes it too, where
-// tests/support/cuda_on_host.hpp stands before it.
+// wrenches (inertia_run.hpp), and in the end a row of the segment. They leave the bits of one thread's climb_hinges() and
+// descend_hinges(). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
 #include "cuda/stage_kernels.cuh"
@@ -9,97 +9,121 @@
 
 namespace catena::cuda::kernels {
 
-constexpr int lanes_of_team = 4;
-constexpr std::int64_t most_runs_of_teams = 8192;  // more keep a GPU busy with a thread each
+constexpr int lanes_of_narrow_team = 4, lanes_of_broad_team = 16;
+// More runs than the first have fewer lanes each, more than the second a thread: they keep a GPU busy with that.
+constexpr std::int64_t most_runs_of_broad_teams = 2048, most_runs_of_teams = 8192;
 
-/// Bodies of a run, for each of a warp's teams: in T::slots, of which body i has T::slot(i).
-template <class T>
-class BodiesOfTeam {
-    static constexpr int teams = 32 / lanes_of_team;
+/// Something for each of a warp's teams: in so many slots.
+template <class T, int lanes, int slots>
+class SlotsOfTeam {
+    static constexpr int teams = 32 / lanes;
     using Records = PackedRecords<T, numbers_of<T>>;
 
   public:
-    static constexpr std::size_t numbers = Records::size(teams * T::slots);
-    __device__ BodiesOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes_of_team) {}
-    __device__ void put(int i, T const& of_body) const { records_.store(T::slot(i) * teams + team_, of_body); }
-    __device__ T get(int i) const { return records_.load(T::slot(i) * teams + team_); }
+    static constexpr std::size_t size = Records::size(teams * slots);
+    __device__ SlotsOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes) {}
+    __device__ void put(int slot, T const& value) const { records_.store(slot * teams + team_, value); }
+    __device__ T get(int slot) const { return records_.load(slot * teams + team_); }
+    __device__ double& number(int slot, int n) const { return records_.number(slot * teams + team_, n); }
 
   private:
     Records records_;
     int team_;
 };
+constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run), bodies_within = bodies_of_whole_run - 2;
 /// What a run needs of a body to go on to it. All are found before what the way up needs takes the registers; not those of the first and
 /// the last, so that eight warps have room.
-struct BodyAhead : dca::LoadedBodyInRun<double> {
+struct BodyAhead {
+    Vec3 axis, across;    // BodyInRun
     double torque_about;  // the hinge, where that is in no body's own
-    static constexpr int slots = static_cast<int>(dca::longest_run) - 2;
-    __device__ static int slot(int i) { return i - 1; }
+    dca::AddedBody<double> body;
+    dca::Wrench<double> load;  // about handle 2
 };
-/// And to come back from it: some in turn.
+template <int lanes>
+using BodiesAhead = SlotsOfTeam<BodyAhead, lanes, bodies_within>;
+/// And to come back from it, where the force at the run's first joint is known.
 struct HingeBehind {
-    static constexpr int slots = 8;
-    static_assert(slots % lanes_of_team == 0 && dca::longest_run % slots == 0);
-    __device__ static int slot(int i) { return i % slots; }
-    dca::ReleasedHinge<double> hinge;
+    dca::PushedHinge<double> hinge;
     dca::BodyInRun<double> body;
 };
+template <class Sweep, int lanes>
+class HingesBehind {
+    using Tail = typename dca::HingesInJoints<typename Sweep::Sweeps>::Tail;
+    using Hinges = SlotsOfTeam<HingeBehind, lanes, bodies_of_whole_run - 1>;
+    using Tails = SlotsOfTeam<Tail, lanes, 1>;
+    using Frames = SlotsOfTeam<dca::HingedFrame<double>, lanes, 3>;  // of the first body and the last two
+    static_assert(lanes >= 3);
 
+  public:
+    static constexpr std::size_t size = Hinges::size + Tails::size + Frames::size;
+    __device__ HingesBehind(double* memory, int lane)
+        : hinges_(memory, lane),
+          tail_(memory + Hinges::size, lane),
+          frames_(memory + Hinges::size + Tails::size, lane),
+          own_(lane % lanes) {}
+    /// All lanes of the warp together.
+    template <class Kept, class Frame>
+    __device__ void fetch(Kept const& kept, Vector<double, 5> const& first, Frame const& frame) const {
+        if (own_ < 3) frames_.put(own_, frame(own_ == 0 ? 0 : bodies_of_whole_run - 3 + own_));
+        CATENA_NO_UNROLL
+        for (int i = 1 + own_; i < bodies_of_whole_run; i += lanes) hinges_.put(i - 1, {pushed(kept.hinge(i), first), kept.body(i)});
+        move_some<8>(own_, numbers_of<Tail>, lanes, [&](int n) { return kept.tail(n); }, [&](int n, double v) { tail_.number(0, n) = v; });
+        __syncwarp();
+    }
+    // What dca::descend_hinges() asks for.
+    __device__ dca::HingedFrame<double> frame(int i) const { return frames_.get(i == 0 ? 0 : i - (bodies_of_whole_run - 3)); }
+    __device__ dca::PushedHinge<double> hinge(int i) const { return hinges_.get(i - 1).hinge; }
+    __device__ dca::BodyInRun<double> body(int i) const { return hinges_.get(i - 1).body; }
+    __device__ dca::RunsEnd<double> end() const { return tail_.get(0).end; }
+    __device__ Mat3 axes() const { return tail_.get(0).axes; }
+    __device__ dca::BodyAcceleration<double> swing(int) const { return tail_.get(0).swing; }
+
+  private:
+    Hinges hinges_;
+    Tails tail_;
+    Frames frames_;
+    int own_;
+};
+
+/// Of whole runs (dca::longest_run). All lanes of a warp come to what it does.
+template <int lanes>
 class HingeTeam {
     using Body = dca::HingedBody<double>;
     using Wrench = dca::Wrench<double>;
-    static constexpr int bias = 5;  // wrench 0 to 4: `first`; wrench w is that of lane w % 4
+    using Swing = dca::BodyAcceleration<double>;
+    using InRun = dca::LoadedBodyInRun<double>;
+    using Ahead = BodiesAhead<lanes>;
+    using Column = Vector<double, 6>;
+    // Wrench 0 to 4: `first`, then the bias; wrench w is that of lane w % lanes.
+    static constexpr int bias = 5, wrenches = (bias + lanes) / lanes, last_wrench = wrenches - 1;
+    static constexpr int count = bodies_of_whole_run, before_last = (count - 2) % lanes;  // lane that has this body
+    static_assert(count % lanes == 0);
 
   public:
     /// `works`: else it only goes along with the warp's other teams.
-    __device__ HingeTeam(int lane, bool works) : own_(lane % lanes_of_team), leader_(lane - own_), works_(works) {}
+    __device__ HingeTeam(int lane, bool works) : own_(lane % lanes), leader_(lane - own_), works_(works) {}
     __device__ bool leads() const { return works_ && own_ == 0; }
 
-    /// As dca::climb_hinges(), of dca::longest_run bodies, where the team's first lane keeps; all lanes of the warp come to these.
-    template <class BodyOf, class Kept>
-    __device__ dca::BiasedSegment<double, 5> climb(BodyOf const& body, BodiesOfTeam<BodyAhead> const& bodies, Kept& kept) {
-        Prepared const last_one = prepare(body, bodies);
+    /// As dca::climb_hinges(). put_row(i, dca::SegmentRow): by the lane that has it.
+    template <class BodyOf, class Kept, class PutRow>
+    __device__ __forceinline__ void climb(BodyOf const& body, Ahead const& ahead, Kept& kept, PutRow const& put_row) {
+        Prepared const last_one = prepare(body, ahead, kept);
         begin(body(0));
-        go_on<dca::Undriven>(bodies, kept);
-        dca::InertiaRun<double> run = whole();
-        Body const last = body(count - 1);
-        return end(run, of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last), last,
-                   dca::Undriven{}, kept);
+        go_on<dca::Undriven>(ahead, kept);
+        dca::OutboardHandle<double> const before =
+            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last);
+        end(before, body(count - 1), dca::Undriven{}, kept, put_row);
     }
     /// The same where hinges' loads are given. `all`: as FollowedBodies.
-    template <class Leaf, class Kept>
-    __device__ dca::BiasedSegment<double, 5> climb(dca::RunWithLoads<Leaf> const& loaded, bool all, BodiesOfTeam<BodyAhead> const& bodies,
-                                                   Kept& kept) {
-        dca::FollowedState<double> const last_one = follow(loaded, all, bodies, kept);
+    template <class Leaf, class Kept, class PutRow>
+    __device__ __forceinline__ void climb(dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead, Kept& kept,
+                                          PutRow const& put_row) {
+        dca::FollowedState<double> const last_one = follow(loaded, all, ahead, kept);
         begin(loaded.first());
-        go_on<double>(bodies, kept);
-        dca::InertiaRun<double> run = whole();
+        go_on<double>(ahead, kept);
         dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(count - 2), last_one.inward};
         Body const last = loaded.last(before.axes, last_one.omega, ByLeader<Kept>{kept, leads()});
-        return end(run, before, last, loaded.torque_about(count - 1), kept);
-    }
-    /// As dca::descend_hinges(), by every lane. Precondition: not of all bodies.
-    template <class Frame, class Kept, class Accelerate, class Turn>
-    __device__ void descend(Frame const& frame, BodiesOfTeam<HingeBehind> const& bodies, Kept const& kept, Vector<double, 5> const& first,
-                            Vector<double, 5> const& next, Accelerate const& accelerate, Turn const& turn) const {
-        struct KeptHere {
-            BodiesOfTeam<HingeBehind> const& bodies;
-            Kept const& kept;
-            __device__ dca::ReleasedHinge<double> hinge(int i) const { return i == count - 1 ? kept.hinge(i) : bodies.get(i).hinge; }
-            __device__ dca::BodyInRun<double> body(int i) const { return bodies.get(i).body; }
-            __device__ dca::BodyAcceleration<double> swing(int i) const { return kept.swing(i); }
-            __device__ dca::RunsEnd<double> end() const { return kept.end(); }
-            __device__ Mat3 axes() const { return kept.axes(); }
-        } const kept_here{bodies, kept};
-        auto const at = [&](int i, dca::BodyAcceleration<double>&) {
-            constexpr int slots = HingeBehind::slots;
-            if (i != count - 2 && i % slots != slots - 1) return;
-            __syncwarp();  // the others are read
-            CATENA_NO_UNROLL
-            for (int k = i - i % slots + own_; k <= i; k += lanes_of_team)
-                if (k > 0) bodies.put(k, {kept.hinge(k), kept.body(k)});
-            __syncwarp();
-        };
-        dca::descend_hinges<double>(count, false, frame, kept_here, first, next, accelerate, at, turn);
+        end(before, last, loaded.torque_about(count - 1), kept, put_row);
     }
 
   private:
@@ -114,8 +138,6 @@ class HingeTeam {
             if (leads) kept.put_orientation(from_ground);
         }
     };
-    static constexpr int count = static_cast<int>(dca::longest_run);
-    static constexpr int before_last = (count - 2) % lanes_of_team;  // lane that has this body
 
     /// What the bodies after it want of one, as dca::BodiesOfRun::State.
     struct Prepared {
@@ -123,26 +145,19 @@ class HingeTeam {
         Vec3 inward;
     };
     /// All bodies; returns the last of the lane's own.
-    template <class BodyOf>
-    __device__ Prepared prepare(BodyOf const& body, BodiesOfTeam<BodyAhead> const& bodies) const {
-        Prepared own{};
+    template <class BodyOf, class Kept>
+    __device__ __forceinline__ Prepared prepare(BodyOf const& body, Ahead const& ahead, Kept& kept) {
+        Prepared own{Mat3::identity(), Mat3::identity(), Vec3::zero()};
+        Mat3 turn = own.turn;
+        Swing swing{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
-        for (int first = 0; first < count; first += lanes_of_team) {
+        for (int first = 0; first < count; first += lanes) {
             Body const here = body(first + own_);
-            int const before = leader_ + (own_ + lanes_of_team - 1) % lanes_of_team;
-            Mat3 const neighbours = from_lane(here.e2, before), of_others = from_last(own.axes2);
-            Mat3 const to_before = here.turn_to(own_ == 0 ? of_others : neighbours);
-            Mat3 turn = first == 0 ? Mat3::identity() : from_last(own.turn);
-            Mat3 mine = turn;
-            CATENA_NO_UNROLL
-            for (int lane = 0; lane < lanes_of_team; ++lane) {
-                if (first + lane > 0) turn = of_lane(turn * to_before, lane);
-                if (lane == own_) mine = turn;
-            }
+            Mat3 const mine =
+                along(first, turn, here.turn_to(one_before(here.e2, own.axes2)), [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
             Vec3 const inward = mine * here.inward2;
-            Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
-            BodyAhead const ahead{in_run(here, mine, own_ == 0 ? of_last : inward_before), 0.0};
-            if (int const i = first + own_; i > 0 && i < count - 1) bodies.put(i, ahead);
+            InRun const in_run = dca::in_run(here, mine, one_before(inward, own.inward));
+            put_ahead(first, in_run, 0.0, swing, ahead, kept);
             own = {mine, here.e2, inward};
         }
         __syncwarp();
@@ -150,59 +165,63 @@ class HingeTeam {
     }
     /// All bodies, as FollowedBodies; returns the last but one.
     template <class Leaf, class Kept>
-    __device__ dca::FollowedState<double> follow(dca::RunWithLoads<Leaf> const& loaded, bool all, BodiesOfTeam<BodyAhead> const& bodies,
-                                                 Kept& kept) const {
+    __device__ __forceinline__ dca::FollowedState<double> follow(dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead,
+                                                                 Kept& kept) {
+        struct Turning {
+            Vec3 axis;
+            double rate;
+        };
         dca::FollowedState<double> own{Quat::identity(), loaded.first_omega(), loaded.first_inward()};
         Vec3 const first_inward = own.inward;
         Quat turn = own.turn;
         Vec3 omega = own.omega;
+        Swing swing{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
-        for (int first = 0; first < count; first += lanes_of_team) {
+        for (int first = 0; first < count; first += lanes) {
             int const i = first + own_;
             dca::BodyOnHinge<double> const here = loaded.on_hinge(i);
-            own.turn = turn;
-            CATENA_NO_UNROLL
-            for (int lane = 0; lane < lanes_of_team; ++lane) {
-                if (first + lane > 0) turn = of_lane(turn * here.turn, lane);
-                if (lane == own_) own.turn = turn;
-            }
+            Vec3 const omega_of_last = omega;
+            own.turn = along(first, turn, here.turn, [](Quat& t, Quat const& next) { t = t * next; });
             Mat3 const mine = to_matrix_of_unit(own.turn);
-            Vec3 const axis = mine * here.axis;
-            Vec3 omega_before = omega;
-            CATENA_NO_UNROLL
-            for (int lane = 0; lane < lanes_of_team; ++lane) {
-                if (lane == own_) omega_before = omega;
-                if (first + lane > 0) omega = of_lane(plus_scaled(omega, here.rate, axis), lane);
-            }
-            dca::FollowedBody<double> const body = dca::follow(here, mine, omega_before);
+            Vec3 const after = along(first, omega, Turning{mine * here.axis, here.rate},
+                                     [](Vec3& w, Turning const& next) { w = plus_scaled(w, next.rate, next.axis); });
+            dca::FollowedBody<double> const body = dca::follow(here, mine, one_before(after, omega_of_last));
             Vec3 const inward = i == 0 ? first_inward : body.inward2;
-            int const before = leader_ + (own_ + lanes_of_team - 1) % lanes_of_team;
-            Vec3 const inward_before = from_lane(inward, before), of_last = from_last(own.inward);
-            own.inward = own_ == 0 ? of_last : inward_before;
-            BodyAhead ahead{own.go_on(body), loaded.torque_about(i)};
+            own.inward = one_before(inward, own.inward);
+            InRun in_run = own.go_on(body);
             own.inward = inward;
-            loaded.add_wrench(i, ahead);
-            if (i > 0 && i < count - 1) {
-                bodies.put(i, ahead);
-                if (works_ && (all || i == count - 2)) kept.put_omega(i, transposed_times(mine, own.omega));
-            }
+            loaded.add_wrench(i, in_run);
+            put_ahead(first, in_run, loaded.torque_about(i), swing, ahead, kept);
+            if (works_ && is_within(i) && (all || i == count - 2)) kept.put_omega(i, transposed_times(mine, own.omega));
         }
         __syncwarp();
         return of_lane(own, before_last);
     }
-    /// Of the team's last lane.
-    template <class T>
-    __device__ T from_last(T const& value) const {
-        return of_lane(value, lanes_of_team - 1);
+    __device__ static bool is_within(int i) { return i > 0 && i < count - 1; }
+    /// Of the bodies from `first` on, one a lane; `swing`: of the one before them.
+    template <class Kept>
+    __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about, Swing& swing, Ahead const& ahead,
+                                              Kept& kept) {
+        struct Swung {
+            Swing difference;
+            Vec3 across;
+        };
+        int const i = first + own_;
+        swing_ = along(first, swing, Swung{body.difference, body.across}, [](Swing& s, Swung const& next) { swing_on(s, next); });
+        if (!is_within(i)) return;
+        ahead.put(i - 1, {body.axis, body.across, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
+                          about_point(load_of(body, swing_), body.centre)});
+        if (works_) kept.put(i, body, swing_);
     }
-    __device__ void begin(Body const& body) {
+
+    __device__ __forceinline__ void begin(Body const& body) {
         all_ = inertia_of(body);
         CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) {
+        for (int s = 0; s < wrenches; ++s) {
             wrench_[s] = bias_of(body);
             CATENA_UNROLL
             for (int j = 0; j < bias; ++j)
-                if (j == own_ + s * lanes_of_team) {
+                if (j == own_ + s * lanes) {
                     wrench_[s] = first_of(body, j);
                     e_[s] = row_of_first(body, j);
                 }
@@ -212,65 +231,142 @@ class HingeTeam {
     }
     /// To all bodies but the first and the last. `Torque`: as dca::release_driven.
     template <class Torque, class Kept>
-    __device__ void go_on(BodiesOfTeam<BodyAhead> const& bodies, Kept& kept) {
+    __device__ __forceinline__ void go_on(Ahead const& ahead, Kept& kept) {
         CATENA_NO_UNROLL
         for (int i = 1; i < count - 1; ++i) {
-            BodyAhead const ahead = bodies.get(i);
-            dca::ReleasedHinge<double> const hinge = go_on<Torque>(ahead);
-            if (leads()) kept.put(i, hinge, ahead, swing_);
+            BodyAhead const next = ahead.get(i - 1);
+            dca::ReleasedHinge<double> const hinge = pass_hinge(next.axis, torque_of<Torque>(next.torque_about));
+            CATENA_UNROLL
+            for (int s = 0; s < wrenches; ++s) move_point(wrench_[s], next.across);
+            if (has_bias()) add_load(wrench_[last_wrench], next.load);
+            move_point(all_, next.across);
+            add_body(all_, next.body);
+            if (leads()) kept.put(i, hinge);
         }
     }
     template <class Torque>
-    __device__ dca::ReleasedHinge<double> go_on(BodyAhead const& body) {
-        dca::ReleasedHinge<double> h;
-        dca::Release<double> const r = release_hinge(all_, body.axis, h);
-        double along[2];
-        along[0] = release_hinge(wrench_[0], r);
-        if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
-            along[1] = release_driven(wrench_[1], r, own_ == bias % lanes_of_team ? body.torque_about : -0.0);
+    __device__ static Torque torque_of(double torque) {
+        if constexpr (std::is_same_v<Torque, double>)
+            return torque;
         else
-            along[1] = release_hinge(wrench_[1], r);
+            return {};
+    }
+    template <class Torque>
+    __device__ __forceinline__ dca::ReleasedHinge<double> pass_hinge(Vec3 const& axis, Torque const& torque) {
+        dca::ReleasedHinge<double> h;
+        dca::Release<double> const r = release_hinge(all_, axis, h);
+        double along[wrenches];
         CATENA_UNROLL
-        for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes_of_team], j % lanes_of_team);
-        h.bias = of_lane(along[bias / lanes_of_team], bias % lanes_of_team);
+        for (int s = 0; s < last_wrench; ++s) along[s] = release_hinge(wrench_[s], r);
+        if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
+            along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
+        else
+            along[last_wrench] = release_hinge(wrench_[last_wrench], r);
         CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) gain_row(h, along[s], bias - 1, row_[s], e_[s]);
-        swing_on(swing_, body);
+        for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes], j % lanes);
+        h.bias = of_lane(along[last_wrench], bias % lanes);
         CATENA_UNROLL
-        for (int s = 0; s < 2; ++s) move_point(wrench_[s], body.across);
-        Wrench const load = load_of(body, swing_);
-        if (own_ == bias % lanes_of_team) add_body(wrench_[1], load.torque, load.force, body.centre);
-        move_point(all_, body.across);
-        add_body(all_, body.mass, body.inertia, body.centre);
+        for (int s = 0; s < wrenches; ++s) gain_row(h, along[s], bias - 1, row_[s], e_[s]);
         return h;
     }
-    template <class Torque, class Kept>
-    __device__ dca::BiasedSegment<double, 5> end(dca::InertiaRun<double>& run, dca::OutboardHandle<double> const& before, Body const& last,
-                                                 Torque const& torque, Kept& kept) const {
-        dca::ReleasedHinge<double> hinge;
-        dca::RunsEnd<double> const end = end_run(run, before, last, hinge, torque);
+    /// As dca::end_run() and dca::segment_of().
+    template <class Torque, class Kept, class PutRow>
+    __device__ __forceinline__ void end(dca::OutboardHandle<double> const& before, Body const& last, Torque const& torque, Kept& kept,
+                                        PutRow const& put_row) {
+        take_difference(of_lane(swing_, before_last));
+        Mat3 const turn = transpose(before.axes);
+        turn_axes(all_, turn);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) turn_axes(wrench_[s], turn);
+        dca::ReleasedHinge<double> const hinge = pass_hinge(dca::last_axis<double>(), torque);
+        leave_hinge(all_);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) wrench_[s].torque[2] = 0;
+        if (has_bias()) wrench_[last_wrench].torque[2] = dca::left_along_hinge<double>(torque);
+        take_difference(last_difference(last, turn * before.inward));
+
+        dca::LastBody<double> const body = last_body(last);
+        Symmetric<double, 6> const factor = dca::factorize(inertia_of_end(all_, body), 6);
         if (leads()) {
             kept.put(count - 1, hinge);
-            kept.put(end);
+            kept.put(factor);
             kept.put_axes(before.axes);
         }
-        return segment_of(run, end, last);
-    }
-    /// What all lanes have together.
-    __device__ dca::InertiaRun<double> whole() const {
-        dca::InertiaRun<double> run;
-        run.inertia = all_;
-        run.swing = swing_;
-        run.bias = of_lane(wrench_[bias / lanes_of_team], bias % lanes_of_team);
+        dca::Handle<double, 5> const handle = handle2_of_end(last);
+        Column first[wrenches], second[wrenches];  // L^-1 of them; the bias's lane: of that
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) {
+            int const own = own_ + s * lanes;
+            first[s] = own == bias ? bias_of_end(wrench_[s], body) : dca::six_of(wrench_[s].force, wrench_[s].torque);
+            if (works_ && own < bias) kept.put_first(own, first[s]);
+            if (works_ && own == bias) kept.put_bias(first[s]);
+            second[s] = second_of(handle, 0);
+            CATENA_UNROLL
+            for (int j = 1; j < bias; ++j)
+                if (j == own) second[s] = second_of(handle, j);
+            first[s] = dca::solve_lower(factor, first[s]);
+            second[s] = dca::solve_lower(factor, second[s]);
+        }
+        dca::SegmentRow<double, 5> row[wrenches];
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) {
-            int const s = j / lanes_of_team, lane = j % lanes_of_team;
-            run.first[j] = of_lane(wrench_[s], lane);
-            run.e[j] = of_lane(e_[s], lane);
+            Column const first_j = of_lane(first[j / lanes], j % lanes), second_j = of_lane(second[j / lanes], j % lanes);
             CATENA_UNROLL
-            for (int i = 0; i <= j; ++i) run.z(j, i) = of_lane(row_[s][i], lane);
+            for (int s = 0; s < wrenches; ++s) {
+                row[s].z11[j] = row_[s][j] + dca::product(factor, first[s], first_j);
+                row[s].z12[j] = dca::product(factor, first[s], second_j);
+                row[s].z22[j] = dca::product(factor, second[s], second_j);
+            }
         }
-        return run;
+        Column const of_bias = of_lane(first[last_wrench], bias % lanes);
+        Vector<double, 5> const beyond = bias_beyond(handle, last);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) {
+            double own_beyond = beyond[0];
+            CATENA_UNROLL
+            for (int j = 1; j < bias; ++j)
+                if (j == own_ + s * lanes) own_beyond = beyond[j];
+            row[s].b1 = e_[s] - dca::product(factor, first[s], of_bias);
+            row[s].b2 = own_beyond - dca::product(factor, second[s], of_bias);
+            if (works_ && own_ + s * lanes < bias) put_row(own_ + s * lanes, row[s]);
+        }
+    }
+    __device__ __forceinline__ void take_difference(Swing const& d) {
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) dca::take_difference(e_[s], wrench_[s], d);
+        if (has_bias()) dca::take_difference(wrench_[last_wrench], all_, d);
+    }
+    /// Whether the lane's last wrench is the bias.
+    __device__ bool has_bias() const { return own_ == bias % lanes; }
+
+    /// step(state, value of it) for the team's lanes in turn, for the first body of all not; returns what it was after the lane's own.
+    template <class State, class T, class Step>
+    __device__ __forceinline__ State along(int first, State& state, T const& value, Step const& step) const {
+        constexpr int few = 4;  // so that what they have is under way together
+        State own = state;
+        CATENA_NO_UNROLL
+        for (int begin = 0; begin < lanes; begin += few) {
+            CATENA_UNROLL
+            for (int i = 0; i < few; ++i) {
+                int const lane = begin + i;
+                T const here = of_lane(value, lane);
+                bool const goes_on = i > 0 || first + begin > 0;
+                if constexpr (lanes == count) {
+                    if (goes_on) step(state, here);
+                    if (lane == own_) own = state;
+                } else if (goes_on && lane <= own_) {
+                    step(own, here);
+                }
+            }
+        }
+        if constexpr (lanes < count) state = of_lane(own, lanes - 1);
+        return own;
+    }
+    /// What the lane before has; `of_last`: the same of the bodies before, by the lanes that have them.
+    template <class T>
+    __device__ T one_before(T const& value, T const& of_last) const {
+        T const before = from_lane(value, leader_ + (own_ + lanes - 1) % lanes), last = of_lane(of_last, lanes - 1);
+        return dca::either(own_ > 0, before, last);
     }
     template <class T>
     __device__ T of_lane(T const& value, int lane) const {
@@ -279,10 +375,10 @@ class HingeTeam {
 
     int own_, leader_;  // lane of the team, and of the warp that is the team's first
     bool works_;
+    Swing swing_;  // of the last of the lane's own bodies
     dca::SpatialInertia<double> all_;
-    dca::BodyAcceleration<double> swing_{Vec3::zero(), Vec3::zero()};
-    Wrench wrench_[2];
-    double row_[2][bias], e_[2] = {};
+    Wrench wrench_[wrenches];
+    double row_[wrenches][bias], e_[wrenches] = {};
 };
 
 /// Whether all lanes of the warp say so.
@@ -293,64 +389,86 @@ __device__ inline bool all_lanes(int lane, bool says) {
     return all != 0;
 }
 /// A warp with another run among its own has a thread take each.
-template <class Sweep>
+template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
-    wait_for_launch();
     int const lane = static_cast<int>(threadIdx.x) % 32;
-    std::int64_t const wanted = thread() / lanes_of_team;
-    HingeTeam team(lane, wanted < runs.count);
+    std::int64_t const wanted = thread() / lanes;
+    HingeTeam<lanes> team(lane, wanted < runs.count);
     dca::Run const run = runs[wanted < runs.count ? wanted : runs.count - 1];
-    if (all_lanes(lane, run.count == dca::longest_run && sweep.takes(run))) {
+    bool const by_teams = all_lanes(lane, run.count == dca::longest_run && sweep.takes(run));
+    wait_for_launch();
+    if (by_teams) {
         dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
-        BodiesOfTeam<BodyAhead> const bodies(shared_numbers, lane);
-        typename Sweep::Segment segment;
+        BodiesAhead<lanes> const ahead(shared_numbers, lane);
+        auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) { sweep.store_row(run.slot, i, row); };
         if (sweep.follows()) {
-            segment = team.climb(sweep.with_loads(run), sweep.goes_by_all(), bodies, kept);
+            team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
         } else {
             auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
-            segment = team.climb(body, bodies, kept);
+            team.climb(body, ahead, kept, put_row);
         }
         sweep.s.note(kept.lost());
-        if (team.leads()) sweep.store(run.slot, segment);
     } else if (team.leads()) {
         climb_run(sweep, run);
     }
 }
 /// What is wanted of every body is found one after the other: by a thread.
-template <class Sweep>
+template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep sweep) {
-    wait_for_launch();
     int const lane = static_cast<int>(threadIdx.x) % 32;
-    std::int64_t const wanted = thread() / lanes_of_team;
-    HingeTeam const team(lane, wanted < runs.count);
-    dca::Run const run = runs[wanted < runs.count ? wanted : runs.count - 1];
-    bool const whole = run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run);
-    if (all_lanes(lane, whole)) {
-        dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, sweep.goes_by_all());
-        auto const frame = [&](int i) { return sweep.frame(run, kept, i); };
-        team.descend(
-            frame, BodiesOfTeam<HingeBehind>(shared_numbers, lane), kept, sweep.s.forces.load(run.body), sweep.s.forces.load(run.next),
-            [&](int i, dca::HingedFrame<double> const& of_body, dca::BodyAcceleration<double> const& a) {
-                if (team.leads()) sweep.accelerate(run, i, of_body, a);
+    std::int64_t const wanted = thread() / lanes;
+    bool const works = wanted < runs.count, leads = works && lane % lanes == 0;
+    dca::Run const run = runs[works ? wanted : runs.count - 1];
+    bool const by_teams = all_lanes(lane, run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run));
+    wait_for_launch();
+    if (by_teams) {
+        dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, false);
+        auto const first = sweep.s.forces.load(run.body), next = sweep.s.forces.load(run.next);
+        HingesBehind<Sweep, lanes> const behind(shared_numbers, lane);
+        behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
+        dca::descend_hinges<double>(
+            bodies_of_whole_run, false, [&](int i) { return behind.frame(i); }, behind, first, next,
+            [&](int i, dca::HingedFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
+                if (leads) sweep.accelerate(run, i, frame, a);
             },
+            [](int, dca::BodyAcceleration<double>&) {},
             [&](int i, double of_hinge) {
-                if (team.leads()) sweep.turn(run, i, of_hinge);
+                if (leads) sweep.turn(run, i, of_hinge);
             });
-    } else if (team.leads()) {
+    } else if (leads) {
         descend_run(sweep, run);
     }
 }
-/// Whether so many runs go by teams.
-template <class Sweep>
-bool go_by_teams(std::int64_t runs) {
-    return dca::takes_whole_runs<Sweep> && runs <= most_runs_of_teams;
-}
-/// `T`: what is kept of bodies, BodyAhead on the way up and HingeBehind downwards.
-template <class T>
-RunsGrid grid_of_teams(std::int64_t runs) {
-    RunsGrid grid = grid_of_runs(runs, lanes_of_team, 32);
-    grid.shared_bytes = sizeof(double) * BodiesOfTeam<T>::numbers;
+template <int lanes>
+RunsGrid grid_of_teams(std::int64_t runs, std::size_t numbers_of_warp) {
+    RunsGrid grid = grid_of_runs(runs, lanes, 32);
+    grid.shared_bytes = sizeof(double) * numbers_of_warp;
     return grid;
+}
+/// Of each of so many runs on hinges; none: a thread takes it alone.
+constexpr int lanes_of_teams(std::int64_t runs) {
+    return runs <= most_runs_of_broad_teams ? lanes_of_broad_team : runs <= most_runs_of_teams ? lanes_of_narrow_team : 0;
+}
+/// launch(kernel, grid), unless the runs go another way.
+template <class Sweep, class Launch>
+bool climb_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
+    if constexpr (dca::takes_whole_runs<Sweep>) {
+        constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
+        if (lanes == broad) launch(climb_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, BodiesAhead<broad>::size));
+        if (lanes == narrow) launch(climb_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, BodiesAhead<narrow>::size));
+        return lanes != 0;
+    }
+    return false;
+}
+template <class Sweep, class Launch>
+bool descend_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
+    if constexpr (dca::takes_whole_runs<Sweep>) {
+        constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
+        if (lanes == broad) launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, HingesBehind<Sweep, broad>::size));
+        if (lanes == narrow) launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, HingesBehind<Sweep, narrow>::size));
+        return lanes != 0;
+    }
+    return false;
 }
 
 }  // namespace catena::cuda::kernels

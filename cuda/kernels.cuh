@@ -21,14 +21,6 @@ __global__ void over(Item const* items, std::int64_t count, Action action) {
     if (std::int64_t const i = thread(); i < count) action(items[i]);
 }
 
-/// action(item i)
-template <class Item, class Action>
-struct OfItem {
-    Item const* items;
-    Action action;
-    __device__ void operator()(std::int64_t i) const { action(items[i]); }
-};
-
 /// Item i: number i of a body, between a field and memory that the host reaches or gave.
 struct TakeBody {
     double const* from;

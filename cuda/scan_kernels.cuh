@@ -25,6 +25,14 @@ struct DeviceScanStage {
     std::int32_t const* level_end = nullptr;
 };
 
+/// Whose runs' values come from their bodies' steps, one after the other (HingeScan); and what comes after the scan may come before it for
+/// runs that begin at the ground.
+template <class Scan>
+concept goes_by_steps = requires(Scan const& scan, dca::Run const& run) {
+    scan.step(run, 0);
+    scan.begins_at_ground(run);
+};
+
 /// A block's part of it. On the way up a joined value takes the inboard one's place and that the outboard one's, on the way down what lies
 /// before a segment takes its place.
 template <class Scan>
@@ -38,13 +46,13 @@ class BlockOfScan {
         return static_cast<int>(Values::size(stage.width)) + stage.width + (stage.levels + 1) / 2;
     }
     /// Reads the lists, and what lies before what is complete where that is `known`: nothing waits for these later. A thread an item.
-    __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory, bool known)
+    __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory, bool known, unsigned number = blockIdx.x)
         : stage_(stage),
           scan_(scan),
           values_{memory},
           merges_(reinterpret_cast<dca::ScanMerge*>(memory + Values::size(stage.width))),
           level_end_(reinterpret_cast<std::int32_t*>(merges_ + stage.width)) {
-        dca::ScanBlock const here = stage.block[blockIdx.x];
+        dca::ScanBlock const here = stage.block[number];
         std::int64_t const item = here.item.begin + threadIdx.x, merge = here.merge.begin + threadIdx.x, top = here.top.begin + threadIdx.x;
         has_item_ = item < here.item.end;
         has_top_ = top < here.top.end;
@@ -53,7 +61,7 @@ class BlockOfScan {
         if (has_top_) top_ = stage.tops[top];
         if (merge < here.merge.end) merges_[threadIdx.x] = stage.merges[merge];
         if (static_cast<int>(threadIdx.x) < stage.levels)
-            level_end_[threadIdx.x] = stage.level_end[static_cast<std::int64_t>(blockIdx.x) * stage.levels + threadIdx.x];
+            level_end_[threadIdx.x] = stage.level_end[static_cast<std::int64_t>(number) * stage.levels + threadIdx.x];
         if (known) learn();
     }
     /// What lies before what is complete.
@@ -61,8 +69,10 @@ class BlockOfScan {
         if (has_top_) before_top_ = scan_.before(top_.slot);
     }
 
+    /// `runs_are_known`: as wholes.
+    template <bool runs_are_known = false>
     __device__ void climb() const {
-        if (has_item_) values_.store(place(), stage_.runs ? scan_.of_run(run_) : scan_.whole(slot_));
+        if (has_item_) values_.store(place(), !runs_are_known && stage_.runs ? scan_.of_run(run_) : scan_.whole(slot_));
         CATENA_NO_UNROLL
         for (int l = 0; l < stage_.levels; ++l)
             at_merge(l, [&](dca::ScanMerge const& m) {
@@ -135,19 +145,111 @@ __global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage,
     block.climb();
     block.descend();
 }
-/// Of one block, and then action(k) for every body k: by one cluster.
+/// action(item i)
+template <class Item, class Action>
+struct OfItem {
+    Item const* items;
+    Action action;
+    __device__ void operator()(std::int64_t i) const { action(items[i]); }
+};
+template <class Action>
+inline constexpr bool is_of_items = false;
+template <class Item, class Action>
+inline constexpr bool is_of_items<OfItem<Item, Action>> = true;
+/// action(k) for every body or item k, by all threads of the launch: neighbours at neighbouring places.
+template <bool of_items, class Action>
+__device__ void for_all(std::int64_t count, Action const& action) {
+    std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x, end = of_items ? count : gpu_order::padded(count);
+    for (std::int64_t i = thread(); i < end; i += threads)
+        if (std::int64_t const k = of_items ? i : gpu_order::body(i); k < count) action(k);
+}
+/// What a cluster's blocks find of the runs of a stage of one block: a thread a body, then a thread a run.
+template <class Scan>
+class RunsByStep {
+    static constexpr int bodies = static_cast<int>(dca::longest_run), at_once = most_of_scan / bodies;
+    using Steps = PackedRecords<typename Scan::Step>;
+
+  public:
+    static __host__ __device__ int runs_of_block(DeviceScanStage const& stage, unsigned blocks) {
+        return (stage.width + static_cast<int>(blocks) - 1) / static_cast<int>(blocks);
+    }
+    /// Numbers that it needs.
+    static __host__ __device__ std::size_t size(DeviceScanStage const& stage, unsigned blocks) {
+        return Steps::size((runs_of_block(stage, blocks) + at_once - 1) / at_once * most_of_scan);
+    }
+    __device__ RunsByStep(DeviceScanStage const& stage, Scan const& scan, double* memory)
+        : stage_(stage),
+          scan_(scan),
+          steps_{memory},
+          begin_(static_cast<int>(blockIdx.x) * runs_of_block(stage, gridDim.x)),
+          end_(begin_ + runs_of_block(stage, gridDim.x)) {
+        if (end_ > stage.width) end_ = stage.width;
+    }
+    /// Leaves their wholes.
+    __device__ void operator()() const {
+        int const thread = static_cast<int>(threadIdx.x);
+        CATENA_NO_UNROLL
+        for (int i = thread / bodies; begin_ + i < end_; i += at_once) {
+            dca::Run const run = stage_.runs[begin_ + i];
+            if (thread % bodies < run.count) steps_.store(i * bodies + thread % bodies, scan_.step(run, thread % bodies));
+        }
+        __syncthreads();
+        if (int const i = begin_ + thread; i < end_) scan_.set_whole(stage_.slot[i], whole(thread, static_cast<int>(stage_.runs[i].count)));
+    }
+
+  private:
+    __device__ typename Scan::Value whole(int i, int count) const {
+        auto const [rotation_of_first, omega_of_first, axes] = steps_.load(i * bodies);
+        auto rotation = rotation_of_first;
+        auto omega = omega_of_first;
+        CATENA_NO_UNROLL
+        for (int body = 1; body < count; ++body) Scan::go_on(rotation, omega, steps_.load(i * bodies + body));
+        return Scan::ended(rotation, omega);
+    }
+
+    DeviceScanStage const& stage_;
+    Scan const& scan_;
+    Steps steps_;
+    int begin_, end_;
+};
+/// Of one block, and then action(k) for every body or item k: by one cluster.
 template <class Scan, class Action>
 __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
     wait_for_launch();
+    constexpr bool by_steps = goes_by_steps<Scan>, of_items = is_of_items<Action>;
+    static_assert(!by_steps || of_items);                                 // the stage's runs
+    BlockOfScan<Scan> const block(stage, scan, shared_numbers, true, 0);  // of the cluster's first block
+    if constexpr (by_steps) {
+        RunsByStep<Scan>(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage))();
+        meet_cluster();
+        if (blockIdx.x + 1 == gridDim.x)  // while the first block turns
+            for (std::int64_t i = threadIdx.x; i < count; i += blockDim.x)
+                if (scan.begins_at_ground(stage.runs[i])) action(i);
+    }
     if (blockIdx.x == 0) {
-        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
-        block.climb();
+        block.template climb<by_steps>();
         block.descend();
     }
     meet_cluster();
-    std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x;
-    for (std::int64_t i = thread(); i < gpu_order::padded(count); i += threads)
-        if (std::int64_t const k = gpu_order::body(i); k < count) action(k);
+    if constexpr (by_steps) {
+        for_all<of_items>(count, [&](std::int64_t i) {
+            if (!scan.begins_at_ground(stage.runs[i])) action(i);
+        });
+    } else {
+        for_all<of_items>(count, action);
+    }
+}
+/// Of that, of most_of_scan threads each.
+template <class Scan>
+unsigned blocks_of_turn(DeviceScanStage const& stage, std::int64_t count) {
+    std::int64_t const wanted = goes_by_steps<Scan> ? std::max(count, stage.width * dca::longest_run) : count;
+    return static_cast<unsigned>(std::min<std::int64_t>(most_in_cluster, (wanted - 1) / most_of_scan + 1));
+}
+template <class Scan>
+std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
+    auto numbers = static_cast<std::size_t>(BlockOfScan<Scan>::size(stage));
+    if constexpr (goes_by_steps<Scan>) numbers += RunsByStep<Scan>::size(stage, blocks);
+    return numbers;
 }
 /// Of one block, with exchange() and the one block of `top` in between, as turn().
 template <class Scan, class Exchange>
@@ -175,9 +277,5 @@ __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_sca
 }
 
 inline unsigned threads_of_scan(DeviceScanStage const& stage) { return static_cast<unsigned>((stage.width + 31) / 32 * 32); }
-/// Of turn_scan_then(), of most_of_scan threads each.
-inline unsigned blocks_of_turn(std::int64_t count) {
-    return static_cast<unsigned>(std::min<std::int64_t>(most_in_cluster, (count - 1) / most_of_scan + 1));
-}
 
 }  // namespace catena::cuda::kernels

@@ -34,8 +34,9 @@ class ScanWalk {
     /// And then action(k) for k < count, if one launch does all; else nothing is done.
     template <class Scan, class Action>
     bool at_once(Scan const& scan, std::int64_t count, Action const& action) const {
-        return launches_.stages() == 1 && launches_.blocks(0) == 1 && launches_.turn_then(scan, count, action);
+        return is_one_block() && launches_.turn_then(scan, count, action);
     }
+    bool is_one_block() const { return launches_.stages() == 1 && launches_.blocks(0) == 1; }
 
     /// As StageWalk::turn_shared.
     template <class Scan, class Exchange>

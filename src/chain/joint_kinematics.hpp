@@ -157,6 +157,8 @@ class JointKinematics {
         space_.climb_and_descend(top_, scan.motions());
         space_.descend(tree, scan);
     }
+    /// Whether sweep_runs() takes runs by threads that have a body each.
+    bool has_threads_for_bodies() const { return group_.schedule.shared.empty() && space_.has_threads_for_bodies(tree_); }
     /// By one over all runs; then last(run) for each.
     template <class Scan, class Last>
     void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
@@ -181,6 +183,11 @@ class JointKinematics {
     }
     void begin_at_ground() {
         MotionRecords const before = before_.view();
+        JointsView const all = joints();
+        // Scans bring the same bits there; what comes after them may ask earlier (HingeScan::begins_at_ground).
+        space_.over(runs_, [before, all] CATENA_LAMBDA(dca::Run const& run) {
+            if (all.starts_chain(run.body)) before.store(run.slot, Motion::none());
+        });
         space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
         space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
     }

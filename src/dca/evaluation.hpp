@@ -2,6 +2,8 @@
 // again on the way down, but for what takes longer than to keep it.
 #pragma once
 
+#include <cstddef>
+
 #include "dca/followed_run.hpp"
 #include "dca/hinges_in_joints.hpp"
 
@@ -297,6 +299,22 @@ struct Evaluation {
     CATENA_HD void store(std::int64_t slot, Segment const& segment) const {
         s.matrices.store(slot, segment.matrix);
         s.biases.store(slot, segment.bias);
+    }
+    CATENA_HD void store_row(std::int64_t slot, int i, SegmentRow<double, K> const& row) const {
+        constexpr int at_z22 = Symmetric<double, K>::size, at_z12 = 2 * at_z22;
+        using Matrices = SegmentMatrix<double, K>;
+        static_assert(offsetof(Matrices, z22) == at_z22 * sizeof(double) && offsetof(Matrices, z12) == at_z12 * sizeof(double));
+        int const begin = i * (i + 1) / 2;
+        CATENA_UNROLL
+        for (int j = 0; j < K; ++j) {
+            if (j <= i) {
+                s.matrices.number(slot, begin + j) = row.z11[j];
+                s.matrices.number(slot, at_z22 + begin + j) = row.z22[j];
+            }
+            s.matrices.number(slot, at_z12 + i * K + j) = row.z12[j];
+        }
+        s.biases.number(slot, i) = row.b1;
+        s.biases.number(slot, K + i) = row.b2;
     }
     CATENA_HD void close(Root const& root, Segment const& floating) const {
         Segment const held = root.tip == TipTo::ground ? joined(floating, Segment::zero(), s.at(root.next)) : floating;

@@ -187,6 +187,8 @@ class HostSpace : public HostAccess {
         climb_and_descend(tree, scan);
         over(items, action);
     }
+    /// Whether scans by steps (HingeScan) of this tree that go over its items as well find these steps by a thread a body.
+    static bool has_threads_for_bodies(ScanTree const& /*tree*/) { return false; }
     /// Whether loops over so many items leave threads without work that loops over the bodies in them would give them.
     static bool has_threads_to_spare(std::int64_t /*items*/) { return false; }
     /// The largest of value(0), ..., value(count - 1), which are 0 or more; a NaN counts as the largest. 0 of none.

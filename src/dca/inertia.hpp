@@ -48,15 +48,27 @@ CATENA_HD void move_point(Wrench<Real>& w, Vector<Real, 3> const& r) {
 }
 /// A body more, whose centre of mass is `centre` away from the point that I is about.
 template <class Real>
-CATENA_HD void add_body(SpatialInertia<Real>& all, Real const& mass, Symmetric<Real, 3> const& inertia, Vector<Real, 3> const& centre) {
-    Vector<Real, 3> const moment = mass * centre;
-    Real const square = dot(moment, centre);
+struct AddedBody {
+    Real mass;
+    Vector<Real, 3> centre, moment;  // moment: m c
+    Symmetric<Real, 3> turning;      // its inertia + (m c . c) 1: less m c c^T is what it turns with about that point
+};
+template <class Real>
+CATENA_HD AddedBody<Real> added_body(Real const& mass, Symmetric<Real, 3> const& inertia, Vector<Real, 3> const& centre) {
+    AddedBody<Real> body{mass, centre, mass * centre, inertia};
+    Real const square = dot(body.moment, centre);
+    CATENA_UNROLL
+    for (int i = 0; i < 3; ++i) body.turning(i, i) = inertia(i, i) + square;
+    return body;
+}
+template <class Real>
+CATENA_HD void add_body(SpatialInertia<Real>& all, AddedBody<Real> const& body) {
+    Vector<Real, 3> const& moment = body.moment;
     CATENA_UNROLL
     for (int i = 0; i < 3; ++i) {
         CATENA_UNROLL
-        for (int j = 0; j < i; ++j) all.turning(i, j) = less_product(moment[i], centre[j], all.turning(i, j) + inertia(i, j));
-        all.turning(i, i) = less_product(moment[i], centre[i], all.turning(i, i) + (inertia(i, i) + square));
-        all.moving(i, i) = all.moving(i, i) + mass;
+        for (int j = 0; j <= i; ++j) all.turning(i, j) = less_product(moment[i], body.centre[j], all.turning(i, j) + body.turning(i, j));
+        all.moving(i, i) = all.moving(i, i) + body.mass;
     }
     all.coupling(1, 0) = all.coupling(1, 0) + moment[2];
     all.coupling(2, 0) = all.coupling(2, 0) - moment[1];
@@ -65,10 +77,15 @@ CATENA_HD void add_body(SpatialInertia<Real>& all, Real const& mass, Symmetric<R
     all.coupling(0, 2) = all.coupling(0, 2) + moment[1];
     all.coupling(1, 2) = all.coupling(1, 2) - moment[0];
 }
-/// What acts on it from outside.
+/// A wrench at a centre of mass about the point that is `centre` away from it.
 template <class Real>
-CATENA_HD void add_body(Wrench<Real>& bias, Vector<Real, 3> const& torque, Vector<Real, 3> const& force, Vector<Real, 3> const& centre) {
-    bias = {bias.torque - (torque + cross(centre, force)), bias.force - force};
+CATENA_HD Wrench<Real> about_point(Wrench<Real> const& w, Vector<Real, 3> const& centre) {
+    return {w.torque + cross(centre, w.force), w.force};
+}
+/// `load`: what acts on a body from outside.
+template <class Real>
+CATENA_HD void add_load(Wrench<Real>& bias, Wrench<Real> const& load) {
+    bias = {bias.torque - load.torque, bias.force - load.force};
 }
 /// q s q^T
 template <class Real>

@@ -105,9 +105,9 @@ template <class Real>
 CATENA_HD void take_difference(Real& e, Wrench<Real> const& first, BodyAcceleration<Real> const& d) {
     e = e - (dot(first.torque, d.alpha) + dot(first.force, d.a));
 }
-/// Of a body, from that of the one before it.
-template <class Real>
-CATENA_HD void swing_on(BodyAcceleration<Real>& swing, LoadedBodyInRun<Real> const& body) {
+/// Of a body, from that of the one before it. `Body`: with difference and across, as LoadedBodyInRun.
+template <class Real, class Body>
+CATENA_HD void swing_on(BodyAcceleration<Real>& swing, Body const& body) {
     swing.alpha = swing.alpha + body.difference.alpha;
     swing.a = (swing.a + body.difference.a) + cross(swing.alpha, body.across);
 }
@@ -156,13 +156,13 @@ CATENA_HD Real row_of_first(HingedBody<Real> const& body, int j) {
 template <class Real>
 CATENA_HD SpatialInertia<Real> inertia_of(HingedBody<Real> const& body) {
     SpatialInertia<Real> all{Symmetric<Real, 3>::zero(), Symmetric<Real, 3>::zero(), Matrix<Real, 3, 3>::zero()};
-    add_body(all, body.mass, body.inertia, -body.r2);
+    add_body(all, added_body(body.mass, body.inertia, -body.r2));
     return all;
 }
 template <class Real>
 CATENA_HD Wrench<Real> bias_of(HingedBody<Real> const& body) {
     Wrench<Real> bias{Vector<Real, 3>::zero(), Vector<Real, 3>::zero()};
-    add_body(bias, body.torque, body.force, -body.r2);
+    add_load(bias, about_point({body.torque, body.force}, -body.r2));
     return bias;
 }
 template <class Real>
@@ -205,9 +205,8 @@ CATENA_HD ReleasedHinge<Real> go_on(InertiaRun<Real>& run, LoadedBodyInRun<Real>
     move_point(run.bias, body.across);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) move_point(run.first[j], body.across);
-    add_body(run.inertia, body.mass, body.inertia, body.centre);
-    Wrench<Real> const load = load_of(body, run.swing);
-    add_body(run.bias, load.torque, load.force, body.centre);
+    add_body(run.inertia, added_body(body.mass, body.inertia, body.centre));
+    add_load(run.bias, about_point(load_of(body, run.swing), body.centre));
     return hinge;
 }
 /// The outboard handle of the body before the last one, in the run's axes.
@@ -228,15 +227,60 @@ CATENA_HD Vector<Real, 3> last_axis() {
     return {{Real(0), Real(0), Real(1)}};
 }
 
+/// The last body about its joint, in that one's axes.
+template <class Real>
+struct LastBody {
+    Vector<Real, 3> centre;
+    Real mass;
+    Symmetric<Real, 3> inertia;
+    Wrench<Real> load;
+};
+template <class Real>
+CATENA_HD LastBody<Real> last_body(HingedBody<Real> const& last) {
+    Matrix<Real, 3, 3> const to_joint = transpose(last.e1);
+    Vector<Real, 3> const centre = -(to_joint * last.r1);
+    return {centre, last.mass, turned(to_joint, last.inertia), about_point({to_joint * last.torque, to_joint * last.force}, centre)};
+}
+/// The inertia inboard of the last hinge, which is past it: what rounding left about it goes.
+template <class Real>
+CATENA_HD void leave_hinge(SpatialInertia<Real>& all) {
+    CATENA_UNROLL
+    for (int j = 0; j < 3; ++j) all.turning(2, j) = all.coupling(2, j) = Real(0);
+}
+/// Rows of RunsEnd.
 template <class Real>
 CATENA_HD Vector<Real, 6> six_of(Vector<Real, 3> const& force, Vector<Real, 3> const& torque) {
     return {{force[0], force[1], force[2], torque[0], torque[1], torque[2]}};
+}
+/// I of RunsEnd, of what is inboard and the last body.
+template <class Real>
+CATENA_HD Symmetric<Real, 6> inertia_of_end(SpatialInertia<Real> const& inboard, LastBody<Real> const& last) {
+    Real const square = dot(last.centre, last.centre);
+    Symmetric<Real, 6> all;
+    CATENA_UNROLL
+    for (int i = 0; i < 3; ++i) {
+        auto unit = Vector<Real, 3>::zero();
+        unit[i] = last.mass;
+        Vector<Real, 3> const arm = cross(last.centre, unit);  // column i of the last body's coupling
+        CATENA_UNROLL
+        for (int j = 0; j < 3; ++j) {
+            all(3 + j, i) = inboard.coupling(j, i) + arm[j];
+            if (j > i) continue;
+            all(i, j) = i == j ? inboard.moving(i, j) + last.mass : inboard.moving(i, j);
+            Real const apart = less_product(last.centre[i], last.centre[j], i == j ? square : Real(0));
+            all(3 + i, 3 + j) = inboard.turning(i, j) + fused(last.mass, apart, last.inertia(i, j));
+        }
+    }
+    return all;
+}
+template <class Real>
+CATENA_HD Vector<Real, 6> bias_of_end(Wrench<Real> const& inboard, LastBody<Real> const& last) {
+    return six_of(inboard.force - last.load.force, inboard.torque - last.load.torque);
 }
 /// Goes on to `last`, the last body, in the joint's axes; `hinge`: for the way back, in these axes too.
 template <class Real, class Torque>
 CATENA_HD RunsEnd<Real> end_run(InertiaRun<Real>& run, OutboardHandle<Real> const& before, HingedBody<Real> const& last,
                                 ReleasedHinge<Real>& hinge, Torque const& torque) {
-    using Vector3 = Vector<Real, 3>;
     take_difference(run, run.swing);
     Matrix<Real, 3, 3> const turn = transpose(before.axes);
     turn_axes(run.inertia, turn);
@@ -244,37 +288,18 @@ CATENA_HD RunsEnd<Real> end_run(InertiaRun<Real>& run, OutboardHandle<Real> cons
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) turn_axes(run.first[j], turn);
     hinge = pass_hinge(run, last_axis<Real>(), torque);
-    CATENA_UNROLL
-    for (int j = 0; j < 3; ++j) run.inertia.turning(2, j) = run.inertia.coupling(2, j) = Real(0);  // not what rounding left there
+    leave_hinge(run.inertia);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) run.first[j].torque[2] = Real(0);
     run.bias.torque[2] = left_along_hinge<Real>(torque);
     take_difference(run, last_difference(last, turn * before.inward));
 
-    Matrix<Real, 3, 3> const to_joint = transpose(last.e1);
-    Vector3 const centre = -(to_joint * last.r1), force = to_joint * last.force;
-    Symmetric<Real, 3> const inertia = turned(to_joint, last.inertia);
-    Real const square = dot(centre, centre);
-    Symmetric<Real, 6> all;
-    CATENA_UNROLL
-    for (int i = 0; i < 3; ++i) {
-        Vector3 unit = Vector3::zero();
-        unit[i] = last.mass;
-        Vector3 const arm = cross(centre, unit);  // column i of the last body's coupling
-        CATENA_UNROLL
-        for (int j = 0; j < 3; ++j) {
-            all(3 + j, i) = run.inertia.coupling(j, i) + arm[j];
-            if (j > i) continue;
-            all(i, j) = i == j ? run.inertia.moving(i, j) + last.mass : run.inertia.moving(i, j);
-            Real const apart = less_product(centre[i], centre[j], i == j ? square : Real(0));
-            all(3 + i, 3 + j) = run.inertia.turning(i, j) + fused(last.mass, apart, inertia(i, j));
-        }
-    }
+    LastBody<Real> const body = last_body(last);
     RunsEnd<Real> end;
-    end.factor = factorize(all, 6);
+    end.factor = factorize(inertia_of_end(run.inertia, body), 6);
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) end.first.set_column(j, six_of(run.first[j].force, run.first[j].torque));
-    end.bias = six_of(run.bias.force - force, run.bias.torque - (to_joint * last.torque + cross(centre, force)));
+    end.bias = bias_of_end(run.bias, body);
     return end;
 }
 /// a^T S^-1 b
@@ -285,20 +310,29 @@ CATENA_HD Real product(Symmetric<Real, 6> const& factor, Vector<Real, 6> const& 
     for (int i = 1; i < 6; ++i) sum = fused(factor(i, i) * a[i], b[i], sum);
     return sum;
 }
+/// Column j of handle 2 of a run's last body, as rows of RunsEnd.
+template <class Real>
+CATENA_HD Vector<Real, 6> second_of(Handle<Real, 5> const& handle2_of_end, int j) {
+    Vector<Real, 3> const force = j < 3 ? handle2_of_end.force.column(j < 3 ? j : 0) : Vector<Real, 3>::zero();
+    return six_of(force, handle2_of_end.torque.column(j));
+}
+/// Of the last body by velocities alone, at that handle along its directions.
+template <class Real>
+CATENA_HD Vector<Real, 5> bias_beyond(Handle<Real, 5> const& handle2_of_end, HingedFrame<Real> const& last) {
+    return along(handle2_of_end, Vector<Real, 3>::zero(), transposed_times(last.e1, last.inward2));
+}
 /// The run as the tree joins it to others.
 template <class Real>
 CATENA_HD BiasedSegment<Real, 5> segment_of(InertiaRun<Real> const& run, RunsEnd<Real> const& end, HingedFrame<Real> const& last) {
-    using Vector3 = Vector<Real, 3>;
     Handle<Real, 5> const h = handle2_of_end(last);
     Matrix<Real, 6, 5> first, second;  // L^-1 of them
     CATENA_UNROLL
     for (int j = 0; j < 5; ++j) {
-        Vector3 const force = j < 3 ? h.force.column(j < 3 ? j : 0) : Vector3::zero();
         first.set_column(j, solve_lower(end.factor, end.first.column(j)));
-        second.set_column(j, solve_lower(end.factor, six_of(force, h.torque.column(j))));
+        second.set_column(j, solve_lower(end.factor, second_of(h, j)));
     }
     Vector<Real, 6> const bias = solve_lower(end.factor, end.bias);
-    BiasedSegment<Real, 5> s{{}, {run.e, along(h, Vector3::zero(), transposed_times(last.e1, last.inward2))}};
+    BiasedSegment<Real, 5> s{{}, {run.e, bias_beyond(h, last)}};
     CATENA_UNROLL
     for (int i = 0; i < 5; ++i) {
         CATENA_UNROLL
@@ -331,12 +365,25 @@ template <class Real>
 CATENA_HD BodyAcceleration<Real> operator-(BodyAcceleration<Real> const& a, BodyAcceleration<Real> const& b) {
     return {a.alpha - b.alpha, a.a - b.a};
 }
-/// Back past a hinge: from `a` on its outboard side at the meeting point, without what velocities add there, to its inboard side, by the
-/// force at the run's first joint. Returns the outboard body's acceleration against the other about the hinge.
+/// A released hinge for the way back, when the force at the run's first joint is known: along, what bias and first then have in it.
 template <class Real>
-CATENA_HD Real pass_back(ReleasedHinge<Real> const& hinge, Vector<Real, 3> const& axis, Vector<Real, 5> const& first,
-                         BodyAcceleration<Real>& a) {
-    Real const own = dot(hinge.turning, a.alpha) + (dot(hinge.moving, a.a) + (hinge.bias - dot(hinge.first, first)));
+struct PushedHinge {
+    Vector<Real, 3> turning, moving;
+    Real inverse, along;
+};
+template <class Real>
+CATENA_HD PushedHinge<Real> pushed(ReleasedHinge<Real> const& hinge, Vector<Real, 5> const& first) {
+    return {hinge.turning, hinge.moving, hinge.inverse, hinge.bias - dot(hinge.first, first)};
+}
+template <class Real>
+CATENA_HD PushedHinge<Real> const& pushed(PushedHinge<Real> const& hinge, Vector<Real, 5> const&) {
+    return hinge;
+}
+/// Back past a hinge: from `a` on its outboard side at the meeting point, without what velocities add there, to its inboard side. Returns
+/// the outboard body's acceleration against the other about the hinge.
+template <class Real>
+CATENA_HD Real pass_back(PushedHinge<Real> const& hinge, Vector<Real, 3> const& axis, BodyAcceleration<Real>& a) {
+    Real const own = dot(hinge.turning, a.alpha) + (dot(hinge.moving, a.a) + hinge.along);
     Real const of_hinge = own * hinge.inverse;
     a.alpha = plus_scaled(a.alpha, -of_hinge, axis);
     return of_hinge;
@@ -450,7 +497,7 @@ CATENA_HD_IN_PLACE void descend_hinges(int count, bool all, Frame const& frame, 
         accelerate(count - 1, last, own_acceleration(transpose(last.e1), last.r1, a));
         HingedFrame<Real> const before = frame(count - 2);
         a = a - last_difference(last, transposed_times(before.e2, before.inward2));
-        Real const of_hinge = pass_back(kept.hinge(count - 1), last_axis<Real>(), first, a);
+        Real const of_hinge = pass_back(pushed(kept.hinge(count - 1), first), last_axis<Real>(), a);
         turn(count - 1, of_hinge);
         axes = count > 2 ? kept.axes() : before.e2;
         a = {axes * a.alpha, axes * a.a};
@@ -467,7 +514,7 @@ CATENA_HD_IN_PLACE void descend_hinges(int count, bool all, Frame const& frame, 
         }
         BodyInRun<Real> const body = kept.body(i);
         a.a = a.a - cross(a.alpha, body.across);
-        turn(i, pass_back(kept.hinge(i), body.axis, first, a));
+        turn(i, pass_back(pushed(kept.hinge(i), first), body.axis, a));
     }
     at(0, a);
     HingedFrame<Real> const begins = frame(0);

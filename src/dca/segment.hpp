@@ -25,6 +25,13 @@ struct SegmentBias {
     static CATENA_HD SegmentBias zero() { return {Vector<Real, K>::zero(), Vector<Real, K>::zero()}; }
 };
 
+/// Row i of both; of z11 and z22 what stands up to the diagonal.
+template <class Real, int K>
+struct SegmentRow {
+    Vector<Real, K> z11, z22, z12;
+    Real b1, b2;
+};
+
 /// The matrices of an eliminated joint. With Z = z22^A + z11^B on the restricted directions and Z = L S L^T:
 /// inboard = L^-1 z21^A, outboard = L^-1 z12^B, factor = L below the diagonal and S^-1 on it (0 in unrestricted rows).
 template <class Real, int K>

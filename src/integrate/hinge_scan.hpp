@@ -9,6 +9,12 @@ namespace catena {
 /// As a space's scans want it (HostSpace::ScanTree). Precondition: joints but those of chains' first bodies are hinges, none is driven.
 struct HingeScan {
     using Value = MotionNumbers<false>;
+    /// Of a body against the one before it, with what going on by it takes.
+    struct Step {
+        Quat rotation;
+        Vec3 omega;
+        Mat3 axes;
+    };
     JointLoads loads;
     bool joint_by_joint = false;  // set_relative() of every body came before
     bool all_turns = false;       // are asked for, not those of runs' first bodies and last two alone
@@ -16,20 +22,30 @@ struct HingeScan {
     /// With the turns and torques of its hinges, where these are not known.
     CATENA_HD Value of_run(dca::Run const& run) const {
         constexpr int few = 4;  // bodies at a time, so that their loads are under way together
-        std::int64_t const end = run.body + run.count;
-        if (!joint_by_joint) loads.set_relative<false>(run.body);
-        Motion m = loads.scan.load<false>(run.body);
-        std::int64_t k = run.body + 1;
-        for (; k + few <= end; k += few) {
+        int const count = static_cast<int>(run.count);
+        Motion m = of_body(run, 0);
+        int i = 1;
+        for (; i + few <= count; i += few) {
             Motion next[few];
         CATENA_UNROLL
-            for (int i = 0; i < few; ++i) next[i] = of_hinge(k + i, k + i >= end - 2);
+            for (int j = 0; j < few; ++j) next[j] = of_body(run, i + j);
             CATENA_UNROLL
-            for (int i = 0; i < few; ++i) m = compose<false>(m, next[i]);
+            for (int j = 0; j < few; ++j) m = compose<false>(m, next[j]);
         }
-        for (; k < end; ++k) m = compose<false>(m, of_hinge(k, k >= end - 2));
-        m.rotation = normalized(m.rotation);
-        return packed<false>(m);
+        for (; i < count; ++i) m = compose<false>(m, of_body(run, i));
+        return ended(m.rotation, m.omega);
+    }
+    // The same body by body: from step() of the first one go_on() by those of the others, and ended().
+    CATENA_HD Step step(dca::Run const& run, int i) const {
+        Motion const m = of_body(run, i);
+        return {m.rotation, m.omega, to_matrix(m.rotation)};
+    }
+    CATENA_HD static void go_on(Quat& rotation, Vec3& omega, Step const& next) {
+        rotation = rotation * next.rotation;
+        omega = transposed_times(next.axes, omega) + next.omega;
+    }
+    CATENA_HD static Value ended(Quat const& rotation, Vec3 const& omega) {
+        return packed<false>({normalized(rotation), omega, Vec3::zero(), Vec3::zero()});
     }
     CATENA_HD Value joined(Value const& inboard, Value const& outboard) const { return motions().joined(inboard, outboard); }
     CATENA_HD Value whole(std::int64_t slot) const { return motions().whole(slot); }
@@ -45,17 +61,36 @@ struct HingeScan {
         loads.set_biases(run.body);
     }
 
+    /// Whether begin() may come before the scan is through: before a chain is the ground.
+    CATENA_HD bool begins_at_ground(dca::Run const& run) const { return loads.scan.joints.starts_chain(run.body); }
+
   private:
     /// As JointLoads::set_relative, of what the solver asks for.
-    CATENA_HD Motion of_hinge(std::int64_t k, bool at_end) const {
+    CATENA_HD Motion of_body(dca::Run const& run, int i) const {
         JointScan const& s = loads.scan;
+        std::int64_t const k = run.body + i;
         if (joint_by_joint) return s.load<false>(k);
+        // All reads come first: a GPU waits for them together.
+        bool const is_hinge = i > 0 || s.joints.joint[k] == JointType::revolute;
         Vec3 const axis = s.joints.axis(k);
-        Quat const turn = from_axis_angle(axis, s.state.q.at(k, 0)), rotation = as_quaternion(read(s.joints.joint_rotation, k)) * turn;
-        if (at_end || all_turns) write(s.motion.joint_turn, k, as_vector(turn));
-        write(s.rotation, k, as_vector(rotation));
-        if (loads.given.joint_loads) loads.joint_load.at(k, HingeLoads::about_hinge) = loads.torque_about_hinge(k);
-        return {rotation, s.state.qd.at(k, 0) * axis, Vec3::zero(), Vec3::zero()};
+        double const angle = s.state.q.at(k, 0), rate = s.state.qd.at(k, 0);
+        Quat const frame = as_quaternion(read(s.joints.joint_rotation, k));
+        double const torque = loads.given.joint_loads ? loads.torque_about_hinge(k) : 0.0;
+        if (!is_hinge) {  // but whatever begins a chain
+            loads.set_relative<false>(k);
+            return s.load<false>(k);
+        }
+        Quat const turn = from_axis_angle(axis, angle);
+        Motion const m{frame * turn, rate * axis, Vec3::zero(), Vec3::zero()};
+        if (all_turns || i == 0 || i >= run.count - 2) write(s.motion.joint_turn, k, as_vector(turn));
+        write(s.rotation, k, as_vector(m.rotation));
+        if (i == 0) write(s.omega, k, m.omega);
+        if (!loads.given.joint_loads) return m;
+        if (i == 0)
+            loads.set_joint_load(k);
+        else
+            loads.joint_load.at(k, HingeLoads::about_hinge) = torque;
+        return m;
     }
 };
 

@@ -414,7 +414,9 @@ class JointDynamicsIn final : public JointDynamics {
         return goes_by_hinges_ && group_.drives.empty() && !has_implicit() && (lanes_ || !solver_->has_runs_side_by_side());
     }
     /// Whether motions joint by joint, which steps may leave, are found before those of runs.
-    bool joint_by_joint() const { return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)); }
+    bool joint_by_joint() const {
+        return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)) && !kinematics_.has_threads_for_bodies();
+    }
     AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
     /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
     /// accelerations instead, where that is enough.

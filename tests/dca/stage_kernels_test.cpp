@@ -61,12 +61,15 @@ std::vector<NamedGpu> gpus(dca::StageRecords const& records) {
     turning.gpu.short_chains = false;
     turning.gpu.lanes_above_groups = true;
     turning.gpu.most_blocks_of_cluster = 2;  // so that a block has several warps
+    NamedGpu narrow = with(64, 12, 0, false);
+    narrow.name += ", narrow teams";
+    narrow.gpu.narrow_teams = true;
     return {small,
             grouping,
             turning,
             with(32, 2, 0, false),
             among_ranks(with(64, 4, 3, true)),
-            with(64, 12, 0, false),
+            narrow,
             among_ranks(with(128, 8, 8, false)),
             with(256, 16, 8, true),
             {"of too few threads", {{128, 32, 4}, false, 32}},
@@ -232,7 +235,8 @@ TEST_F(StageKernels, RunsOnHinges) {
             expect_same(
                 scene_of({chain(RandomJoints::revolute, bodies), chain(RandomJoints::universal, 20), chain(RandomJoints::revolute, 64)}));
         }
-    EXPECT_GT(StageSpace::seen.teams, 0);
+    std::set<int> const all_teams{kernels::lanes_of_narrow_team, kernels::lanes_of_broad_team};
+    EXPECT_EQ(StageSpace::seen.lanes_of_teams, all_teams);
 }
 /// More than a block of stages that lanes of a warp climb together has: the first one is narrow then, and keeps its nodes for the way down.
 TEST_F(StageKernels, ManyRunsOnHinges) {

@@ -1,7 +1,10 @@
 // The scan along chains: the way from joint to joint, and the same bits on any number of ranks and by the GPU's kernels.
 #include <gtest/gtest.h>
 
+#include <bit>
+
 #include "chain/joint_kinematics.hpp"
+#include "integrate/hinge_scan.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/scan_space.hpp"
@@ -117,6 +120,102 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
     EXPECT_EQ(ScanSpace::shared_turns > 0, world.size() > 1);
     if (world.size() > 1) return;
     EXPECT_GE(ScanSpace::most_stages, 6U);
+    EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
+}
+
+/// What a HingeScan leaves to solvers and steps, of chains that begin with whatever joint and go on with hinges.
+template <class Space>
+class HingesIn {
+  public:
+    explicit HingesIn(Scene const& scene)
+        : groups_(make_groups(scene, Axes::joint, Handles::projected, false, *alone_)),
+          state_(make_joint_state(*groups_[0], scene)),
+          kinematics_(*groups_[0], Space(*executor_), *alone_),
+          motion_(*groups_[0], HostSpace(*executor_)),
+          joint_load_(group().size),
+          given_(group().size),
+          torque_(group().size),
+          inertia_(group().inertia),
+          bias_(group().size + 1, group().directions),
+          in_run_(static_cast<std::size_t>(group().size), 0) {
+        for (std::int64_t k = 0; k < group().size; ++k) given_.view().at(k, 0) = 0.1 * static_cast<double>(k % 7);
+        for (dca::Run const& run : group().schedule.runs)
+            for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
+                if (!group().is_first[static_cast<std::size_t>(k)])
+                    in_run_[static_cast<std::size_t>(k)] = k == run.body ? HingesInRuns::first : HingesInRuns::within;
+    }
+    ChainGroup const& group() const { return *groups_[0]; }
+    bool has_threads_for_bodies() const { return kinematics_.has_threads_for_bodies(); }
+    /// The bits of what becomes of every body, each time from another state.
+    std::vector<std::uint64_t> find(bool joint_loads, bool all_turns) {
+        for (std::int64_t k = 0; k < group().size; ++k) {
+            state_.view().qd.at(k, 0) = 1.1 * state_.view().qd.at(k, 0) + 0.01;
+            if (group().joint[static_cast<std::size_t>(k)] == JointType::revolute) state_.view().q.at(k, 0) += 0.3;
+        }
+        JointLoads loads;
+        loads.scan = kinematics_.scan(state_.view(), motion_.view());
+        loads.scan.motion.orients_first_alone = true;
+        loads.in_run = {in_run_.data()};
+        loads.left = {false, true, true};
+        loads.given.gravity = {{1, 2, -9.81}};
+        loads.directions = group().directions;
+        loads.inertia = inertia_.view();
+        loads.torque = torque_.view();
+        loads.bias = bias_.view();
+        loads.fixed_axes2 = group().axes2.view();
+        loads.fixed_r2 = group().r2.view();
+        loads.joint_load = joint_load_.view();
+        loads.given.torque = given_.view();
+        loads.given.joint_loads = joint_loads;
+        HingeScan const scan{loads, false, all_turns};
+        kinematics_.sweep_runs(scan, BodyExchange<4>::none(), [scan](dca::Run const& run) { scan.begin(run); });
+        std::vector<std::uint64_t> all;
+        auto const add = [&](auto const& v) {
+            for (double const number : v.data) all.push_back(std::bit_cast<std::uint64_t>(number));
+        };
+        for (std::int64_t k = 0; k < group().size; ++k) {
+            add(kinematics_.rotations().load(k));
+            add(motion_.joint_turn[k]);
+            add(motion_.orientation[k]);
+            add(motion_.omega[k]);
+            add(joint_load_.view().load(k));
+            add(torque_.view().load(k));
+            for (int d = 0; d < group().directions; ++d) all.push_back(std::bit_cast<std::uint64_t>(bias_.view().at(k, d)));
+        }
+        return all;
+    }
+
+  private:
+    std::unique_ptr<Communicator> alone_ = serial_communicator();
+    std::unique_ptr<Executor> executor_ = serial_executor(SimdLevel::off);
+    std::vector<std::unique_ptr<ChainGroup>> groups_;
+    JointState state_;
+    JointKinematics<Space> kinematics_;
+    BodyMotion motion_;
+    Field<4> joint_load_;
+    Field<3> given_, torque_;
+    Field<6> inertia_;
+    DirectionsField bias_;
+    std::vector<std::uint8_t> in_run_;
+};
+TEST(Kinematics, HasTheSameBitsOfHingesByTheKernelsOfAGpu) {
+    if (catena::testing::world().size() > 1) return;
+    ScanSpace::blocks_of_clusters.clear();
+    auto const expect_the_same = [&](Scene const& scene) {
+        HingesIn<HostSpace> by_loops(scene);
+        HingesIn<ScanSpace> by_kernels(scene);
+        EXPECT_EQ(by_kernels.has_threads_for_bodies(), std::ssize(by_loops.group().schedule.runs) <= dca::most_of_scan);
+        for (bool const joint_loads : {false, true})
+            for (bool const all_turns : {false, true})
+                for (int state = 0; state < 2; ++state)
+                    EXPECT_EQ(by_kernels.find(joint_loads, all_turns), by_loops.find(joint_loads, all_turns)) << by_loops.group().size;
+    };
+    for (std::size_t const bodies : {1, 2, 15, 16, 17, 33, 300, 1031, 2048, 4080, 4083, 5000})
+        for (Base const base : {Base::fixed, Base::free}) expect_the_same(two_chains(RandomJoints::revolute, bodies, base));
+    Scene many;
+    for (std::size_t bodies = 1; bodies <= 40; ++bodies)
+        many.chains.push_back(random_chain(bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
+    expect_the_same(many);
     EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
 }
 

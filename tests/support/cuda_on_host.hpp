@@ -50,6 +50,7 @@
 #define __host__
 #define __shared__ thread_local
 #define __launch_bounds__(...)
+#define __forceinline__ inline
 
 /// _longjmp() without the check that it leads down the same stack, which some compilers put before it.
 extern "C" [[noreturn]] void catena_jump_to_another_stack(jmp_buf, int) __asm__("_longjmp");

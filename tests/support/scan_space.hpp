@@ -70,6 +70,13 @@ class ScanSpace : public HostSpace {
         climb_and_descend(tree, scan);
         for_each(count, action);
     }
+    template <class Scan, class T, class Action>
+    void climb_and_descend(ScanTree const& tree, Scan const& scan, std::span<T const> items, Action const& action) const {
+        if (walk(tree).at_once(scan, std::ssize(items), cuda::kernels::OfItem<T, Action>{items.data(), action})) return;
+        climb_and_descend(tree, scan);
+        over(items, action);
+    }
+    static bool has_threads_for_bodies(ScanTree const& tree) { return walk(tree).is_one_block(); }
     template <class Numbers, class Scan, int... D>
     bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
                      BodyExchange<D> const&... beside) const {
@@ -101,9 +108,9 @@ class ScanSpace : public HostSpace {
         template <class Scan, class Action>
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
             auto const& stage = tree.stages_.front();
-            unsigned const blocks = cuda::kernels::blocks_of_turn(count);
+            unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(stage, count);
             blocks_of_clusters.insert(blocks);
-            cuda_on_host::launch({blocks, cuda::kernels::most_of_scan, numbers<Scan>(stage), blocks},
+            cuda_on_host::launch({blocks, cuda::kernels::most_of_scan, cuda::kernels::numbers_of_turn<Scan>(stage, blocks), blocks},
                                  cuda::kernels::turn_scan_then<Scan, Action>, stage, scan, count, action);
             return true;
         }

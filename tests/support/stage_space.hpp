@@ -25,6 +25,7 @@ struct StagedGpu {
     std::int64_t threads = sizes.threads;  // of a block without runs at most: fewer than planned take what they have to do in turns
     bool short_chains = false;             // by themselves
     bool ranks_reach_each_other = false;
+    bool narrow_teams = false;                                   // for runs on hinges, also where these are few
     std::size_t shared_bytes = cuda_on_host::most_shared_bytes;  // of a block that takes runs apart
     std::int64_t fewest_groups_below_stages = cuda::fewest_groups_below_stages;
     bool lanes_above_groups = false;  // one cluster, wherever it can
@@ -37,7 +38,8 @@ struct StagesSeen {
     std::set<unsigned> blocks_of_short_chains;
     std::set<unsigned> blocks_that_turn_shared;  // below the one that speaks to other ranks
     std::set<unsigned> blocks_above_groups;
-    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, teams = 0, groups = 0;
+    std::set<int> lanes_of_teams;  // of runs on hinges
+    int turns_alone = 0, runs_apart = 0, runs_in_stages = 0, groups = 0;
 };
 
 class StageSpace : public HostSpace {
@@ -74,6 +76,8 @@ class StageSpace : public HostSpace {
                 plan_.runs_apart = true;
                 plan_.stages.front().of_runs = false;
             }
+            if (!gpu.runs_apart)
+                lanes_of_teams_ = gpu.narrow_teams ? kernels::lanes_of_narrow_team : kernels::lanes_of_teams(std::ssize(runs));
             if (gpu.short_chains) short_ = kernels::one_chain_of(runs, levels, roots, dca::part_length);
             if (gpu.lanes_above_groups && !groups_.empty())
                 above_groups_ = kernels::one_chain_of(runs, levels, roots, cuda::bodies_of_group);
@@ -99,6 +103,7 @@ class StageSpace : public HostSpace {
         int threads_;
         std::size_t shared_bytes_ = gpu.shared_bytes;
         int most_blocks_of_cluster_ = gpu.most_blocks_of_cluster;
+        int lanes_of_teams_ = 0;
         dca::StagePlan plan_;
         kernels::OneChain short_, above_groups_;
         std::optional<dca::StagesTogether> together_;
@@ -223,20 +228,19 @@ class StageSpace : public HostSpace {
         template <class Sweep>
         void climb_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            if constexpr (dca::takes_whole_runs<Sweep>)
-                if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart) {
-                    ++seen.teams;
-                    return over_runs(kernels::climb_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::BodyAhead>(runs), sweep);
-                }
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { over_runs(kernel, grid, sweep); };
+            if (kernels::climb_by_teams<Sweep>(tree.lanes_of_teams_, runs, by_teams)) {
+                seen.lanes_of_teams.insert(tree.lanes_of_teams_);
+                return;
+            }
             kernels::RunsGrid const grid = kernels::grid_of_climb<Sweep>(runs, tree.shared_bytes_);
             over_runs(kernels::climb_runs<Sweep>, grid, sweep);
         }
         template <class Sweep>
         void descend_runs(Sweep const& sweep) const {
             std::int64_t const runs = tree.runs_.count;
-            if constexpr (dca::takes_whole_runs<Sweep>)
-                if (kernels::go_by_teams<Sweep>(runs) && !gpu.runs_apart)
-                    return over_runs(kernels::descend_runs_by_teams<Sweep>, kernels::grid_of_teams<kernels::HingeBehind>(runs), sweep);
+            auto const by_teams = [&](auto* kernel, kernels::RunsGrid const& grid) { over_runs(kernel, grid, sweep); };
+            if (kernels::descend_by_teams<Sweep>(tree.lanes_of_teams_, runs, by_teams)) return;
             kernels::RunsGrid const grid = kernels::grid_of_descent<Sweep>(runs, tree.shared_bytes_);
             over_runs(kernels::descend_runs<Sweep>, grid, sweep);
         }
