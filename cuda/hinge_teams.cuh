@@ -33,8 +33,7 @@ class SlotsOfTeam {
 constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run), bodies_within = bodies_of_whole_run - 2;
 /// What a run needs of a body to go on to it. All are found before what the way up needs takes the registers; not those of the first and
 /// the last, so that eight warps have room.
-struct BodyAhead {
-    Vec3 axis, across;    // BodyInRun
+struct BodyAhead : dca::BodyInRun<double> {
     double torque_about;  // the hinge, where that is in no body's own
     dca::AddedBody<double> body;
     dca::Wrench<double> load;  // about handle 2
@@ -209,7 +208,7 @@ class HingeTeam {
         int const i = first + own_;
         swing_ = along(first, swing, Swung{body.difference, body.across}, [](Swing& s, Swung const& next) { swing_on(s, next); });
         if (!is_within(i)) return;
-        ahead.put(i - 1, {body.axis, body.across, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
+        ahead.put(i - 1, {body, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
                           about_point(load_of(body, swing_), body.centre)});
         if (works_) kept.put(i, body, swing_);
     }
