@@ -38,12 +38,17 @@ class DeviceScan {
     bool at_once(Scan const& scan, std::int64_t count, Action const& action, cudaStream_t stream) const {
         return walk(stream).at_once(scan, count, action);
     }
-    /// Whether at_once() would, and goes_by_steps.
+    /// Whether at_once() would, or the other turn_shared(), and goes_by_steps.
     bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
     /// As ScanWalk::turn_shared.
     template <class Scan, class Numbers>
     bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, cudaStream_t stream) const {
         return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
+    }
+    template <class Scan, class Numbers, class Action>
+    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, std::int64_t count,
+                     Action const& action, cudaStream_t stream) const {
+        return walk(stream).turn_shared(scan, exchange, Launches{top, stream}, count, action);
     }
 
   private:
@@ -91,10 +96,10 @@ class DeviceScan {
         }
         template <class Scan, class Action>
         bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
-            if (!tree.has_clusters_) return false;
             kernels::DeviceScanStage const& stage = tree.stages_.front().view;
             unsigned const blocks = kernels::blocks_of_turn<Scan>(stage, count);
             std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(stage, blocks);
+            if (!tree.has_cluster_of(shared)) return false;
             auto* const kernel = kernels::turn_scan_then<Scan, Action>;
             allow_shared(kernel, shared);
             cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, stage, scan, count, action);
@@ -108,6 +113,20 @@ class DeviceScan {
             allow_shared(kernel, all);
             cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above, exchange.next(), scan);
             ++scans_shared;
+        }
+        template <class Scan, class Numbers, class Action>
+        bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, Launches const& top, std::int64_t count,
+                              Action const& action) const {
+            kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
+            unsigned const blocks = kernels::blocks_of_turn<Scan>(own, count);
+            std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(own, blocks) + bytes<Scan>(above);
+            if (!tree.has_cluster_of(shared)) return false;
+            auto* const kernel = kernels::turn_shared_scan_then<Scan, kernels::ExchangeByBlock<Numbers>, Action>;
+            allow_shared(kernel, shared);
+            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, own, above, exchange.next(), scan, count, action);
+            ++scans_shared;
+            ++shared_scans_by_bodies;
+            return true;
         }
 
       private:
@@ -123,7 +142,11 @@ class DeviceScan {
     };
     ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
 
+    /// Whose blocks have so many bytes of shared memory.
+    bool has_cluster_of(std::size_t shared_bytes) const { return has_clusters_ && shared_bytes <= most_shared_bytes_; }
+
     bool has_clusters_ = knows_clusters();
+    std::size_t most_shared_bytes_ = most_shared_bytes();
     Buffer<dca::Run> run_list_;
     RunsView runs_;
     std::vector<Stage> stages_;

@@ -15,6 +15,7 @@
 #include "cuda/launch.cuh"
 #include "cuda/peer_exchange.cuh"
 #include "dca/host_space.hpp"
+#include "dca/scan_then.hpp"
 
 namespace catena::cuda {
 
@@ -180,6 +181,13 @@ class DeviceSpace {
     bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top, Scan const& scan,
                      BodyExchange<D> const&... beside) const {
         return turn_shared_by(kernels::ExchangeByBlock<Numbers>{direct, numbers, along(beside...)}, tree, top, scan);
+    }
+    template <class Numbers, class Scan, class T, class Action, int... D>
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top,
+                     dca::ScanThen<Scan, Buffer<T>, Action> const& all, BodyExchange<D> const&... beside) const {
+        ExchangeInTurn<Numbers> const exchange{peers_, stream_, {direct, numbers, along(beside...)}};
+        kernels::OfItem<T, Action> const action{all.items.data(), all.action};
+        return tree.turn_shared(all.scan, exchange, top, static_cast<std::int64_t>(all.items.size()), action, stream());
     }
     template <int D>
     Field<D> read(DeviceField<D> const& field) const {

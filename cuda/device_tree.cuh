@@ -98,9 +98,7 @@ class DeviceTree {
         kernels::DeviceStage view;
     };
     static dca::StageSizes sizes_here(dca::StageRecords const& records, int& shared_bytes) {
-        int device = 0;
-        check(cudaGetDevice(&device), "say which it is");
-        check(cudaDeviceGetAttribute(&shared_bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "say how large it is");
+        shared_bytes = static_cast<int>(most_shared_bytes());
         return dca::stage_sizes(records, shared_bytes, blocks_at_once());
     }
     /// Of StageWalk.

@@ -23,6 +23,13 @@ bool knows_clusters() {
     return clusters != 0 && cudaFuncGetAttributes(&attributes, nothing) == cudaSuccess && attributes.ptxVersion >= 90;
 }
 
+std::size_t most_shared_bytes() {
+    int device = 0, bytes = 0;
+    check(cudaGetDevice(&device), "say which it is");
+    check(cudaDeviceGetAttribute(&bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device), "say how large it is");
+    return static_cast<std::size_t>(bytes);
+}
+
 int multiprocessors() {
     int device = 0, count = 0;
     check(cudaGetDevice(&device), "say which it is");

@@ -177,7 +177,7 @@ __global__ void __launch_bounds__(threads_of_exchange) exchange(PeerCall call, N
     __syncthreads();
     exchange_by_block(call, numbers, beside);
 }
-/// Of kernels turn() and turn_shared_scan().
+/// Of kernels turn(), turn_shared_scan() and turn_shared_scan_then().
 template <class Numbers>
 struct ExchangeByBlock {
     PeerCall call;

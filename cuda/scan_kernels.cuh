@@ -212,31 +212,41 @@ class RunsByStep {
     Steps steps_;
     int begin_, end_;
 };
+/// Of one block's runs, and then action(i) for every item i, a run of the stage's: by one cluster, whose first block turns() when all runs'
+/// wholes are known.
+template <class Scan, class Action, class Turns>
+__device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, double* memory, std::int64_t count, Action const& action,
+                              Turns const& turns) {
+    static_assert(is_of_items<Action>);
+    RunsByStep<Scan>(stage, scan, memory)();
+    meet_cluster();
+    if (blockIdx.x + 1 == gridDim.x)  // while the first block turns
+        for (std::int64_t i = threadIdx.x; i < count; i += blockDim.x)
+            if (scan.begins_at_ground(stage.runs[i])) action(i);
+    if (blockIdx.x == 0) turns();
+    meet_cluster();
+    for_all<true>(count, [&](std::int64_t i) {
+        if (!scan.begins_at_ground(stage.runs[i])) action(i);
+    });
+}
 /// Of one block, and then action(k) for every body or item k: by one cluster.
 template <class Scan, class Action>
 __global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
     wait_for_launch();
-    constexpr bool by_steps = goes_by_steps<Scan>, of_items = is_of_items<Action>;
-    static_assert(!by_steps || of_items);                                 // the stage's runs
-    BlockOfScan<Scan> const block(stage, scan, shared_numbers, true, 0);  // of the cluster's first block
-    if constexpr (by_steps) {
-        RunsByStep<Scan>(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage))();
-        meet_cluster();
-        if (blockIdx.x + 1 == gridDim.x)  // while the first block turns
-            for (std::int64_t i = threadIdx.x; i < count; i += blockDim.x)
-                if (scan.begins_at_ground(stage.runs[i])) action(i);
-    }
-    if (blockIdx.x == 0) {
-        block.template climb<by_steps>();
-        block.descend();
-    }
-    meet_cluster();
-    if constexpr (by_steps) {
-        for_all<of_items>(count, [&](std::int64_t i) {
-            if (!scan.begins_at_ground(stage.runs[i])) action(i);
+    if constexpr (goes_by_steps<Scan>) {
+        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true, 0);  // lists on their way meanwhile
+        turn_by_steps(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage), count, action, [&] {
+            block.template climb<true>();
+            block.descend();
         });
     } else {
-        for_all<of_items>(count, action);
+        if (blockIdx.x == 0) {
+            BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
+            block.climb();
+            block.descend();
+        }
+        meet_cluster();
+        for_all<is_of_items<Action>>(count, action);
     }
 }
 /// Of that, of most_of_scan threads each.
@@ -251,13 +261,10 @@ std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
     if constexpr (goes_by_steps<Scan>) numbers += RunsByStep<Scan>::size(stage, blocks);
     return numbers;
 }
-/// Of one block, with exchange() and the one block of `top` in between, as turn().
-template <class Scan, class Exchange>
-__global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
-    wait_for_launch();
-    BlockOfScan<Scan> block(stage, scan, shared_numbers, false);
-    BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
-    block.climb();
+/// Of one block, with exchange() and the one block of the top `above` in between, as turn().
+template <bool runs_are_known, class Scan, class Exchange>
+__device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above, Exchange const& exchange) {
+    block.template climb<runs_are_known>();
     block.put_tops();
     __syncthreads();
     exchange();
@@ -267,6 +274,24 @@ __global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage
     __syncthreads();
     block.learn();
     block.descend();
+}
+template <class Scan, class Exchange>
+__global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
+    wait_for_launch();
+    BlockOfScan<Scan> block(stage, scan, shared_numbers, false);
+    BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
+    turn_shared_block<false>(block, above, exchange);
+}
+/// The same of one block's runs, and then action(i) as turn_scan_then().
+template <class Scan, class Exchange, class Action>
+__global__ void __launch_bounds__(most_of_scan)
+    turn_shared_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan, std::int64_t count, Action action) {
+    wait_for_launch();
+    double* const of_top = shared_numbers + BlockOfScan<Scan>::size(stage);
+    BlockOfScan<Scan> block(stage, scan, shared_numbers, false, 0);
+    BlockOfScan<Scan> const above(top, scan, of_top, true, 0);
+    turn_by_steps(stage, scan, of_top + BlockOfScan<Scan>::size(top), count, action,
+                  [&] { turn_shared_block<true>(block, above, exchange); });
 }
 template <class Scan>
 __global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {

@@ -10,7 +10,8 @@
 namespace catena::cuda {
 
 /// `Launches`: stages() and blocks(i) of stage i; climb(i, scan), turn(i, scan) and descend(i, scan) of it; whether
-/// turn_then(scan, count, action) was launched; turn_shared(scan, exchange, top) of the last stage, what ranks show each other and `top`.
+/// turn_then(scan, count, action) was launched; turn_shared(scan, exchange, top) of the last stage, what ranks show each other and `top`,
+/// and whether turn_shared_then(scan, exchange, top, count, action) was launched.
 template <class Launches>
 class ScanWalk {
   public:
@@ -47,6 +48,11 @@ class ScanWalk {
         launches_.turn_shared(scan, exchange, top);
         descend_below(last, scan);
         return true;
+    }
+    /// And at_once().
+    template <class Scan, class Exchange, class Action>
+    bool turn_shared(Scan const& scan, Exchange const& exchange, Launches const& top, std::int64_t count, Action const& action) const {
+        return is_one_block() && turns_in_a_block(launches_, top) && launches_.turn_shared_then(scan, exchange, top, count, action);
     }
 
   private:

@@ -6,6 +6,7 @@
 
 #include "chain/joint_scan.hpp"
 #include "dca/host_space.hpp"
+#include "dca/scan_then.hpp"
 #include "dca/shared_units.hpp"
 
 namespace catena {
@@ -149,21 +150,21 @@ class JointKinematics {
     void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
         MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
-        dca::RecordNumbers<Motion> const numbers{scan.motions().s.whole, shared_.own_units(), shared_.units()};
-        if (shared_.turn(space_, communicator_, numbers, tree, top_, scan, meeting, loads)) return;
-        space_.climb(tree, scan);
-        shared_.show(space_, numbers);
-        shared_.bring(space_, communicator_, numbers, meeting, loads);
-        space_.climb_and_descend(top_, scan.motions());
-        space_.descend(tree, scan);
+        pass(scan, tree, meeting, loads);
     }
     /// Whether sweep_runs() takes runs by threads that have a body each.
-    bool has_threads_for_bodies() const { return group_.schedule.shared.empty() && space_.has_threads_for_bodies(tree_); }
+    bool has_threads_for_bodies() const {
+        return space_.has_threads_for_bodies(tree_) &&
+               (group_.schedule.shared.empty() || (shared_.is_direct() && space_.has_threads_for_bodies(top_)));
+    }
     /// By one over all runs; then last(run) for each.
     template <class Scan, class Last>
     void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
         if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan, runs_, last);
-        sweep_with(scan, tree_, loads);
+        MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
+        dca::ScanThen const all{scan, runs_, last};
+        if (shared_.turn(space_, communicator_, shown(scan), tree_, top_, all, meeting, loads)) return;
+        pass(scan, tree_, meeting, loads);
         space_.over(runs_, last);
     }
 
@@ -193,6 +194,21 @@ class JointKinematics {
     }
 
   private:
+    template <class Scan>
+    dca::RecordNumbers<Motion> shown(Scan const& scan) {
+        return {scan.motions().s.whole, shared_.own_units(), shared_.units()};
+    }
+    /// sweep_with() among ranks.
+    template <class Scan>
+    void pass(Scan const& scan, typename Space::ScanTree const& tree, MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
+        if (shared_.turn(space_, communicator_, shown(scan), tree, top_, scan, meeting, loads)) return;
+        space_.climb(tree, scan);
+        shared_.show(space_, shown(scan));
+        shared_.bring(space_, communicator_, shown(scan), meeting, loads);
+        space_.climb_and_descend(top_, scan.motions());
+        space_.descend(tree, scan);
+    }
+
     ChainGroup const& group_;
     Space space_;
     Communicator const& communicator_;

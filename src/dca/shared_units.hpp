@@ -69,7 +69,7 @@ class SharedUnits {
         space.for_each(width_ * std::ssize(shared_), TakeNumbers<Numbers>{numbers, all_.data()});
     }
     /// Both, with a sweep's way up `tree` before and its way down after them, and up and down the `top` in between, if the space does all
-    /// that in one; else nothing is done. Ranks that do and ranks that do not find together.
+    /// that in one; else nothing is done. Ranks that do and ranks that do not find together. `sweep` may be a ScanThen.
     template <class Numbers, class Tree, class Sweep, class... Beside>
     bool turn(Space const& space, Communicator const& communicator, Numbers const& numbers, Tree const& tree, Tree const& top,
               Sweep const& sweep, Beside const&... beside) {

@@ -132,8 +132,11 @@ void ChainSystem::pass_bodies(OwnBodies const& own, std::function<void(Bodies co
 
 void ChainSystem::pass_own_bodies(OwnBodies const& own, std::function<void(std::vector<Bodies> const&)> const& take) const {
     SceneWindows(communicator_, groups_).pass_own(own.width(), own.rows, [&](std::vector<SceneWindows::Own> const& round) {
-        std::vector<Bodies> bodies;
-        for (SceneWindows::Own const& run : round) bodies.push_back(bodies_of(own, run.first, run.values, *executor_));
+        std::vector<Bodies> bodies(round.size());
+        executor_->for_each_of_many_or_few(std::ssize(round), [&](std::int64_t i, Executor const& within) {
+            auto const& [first, values] = round[static_cast<std::size_t>(i)];
+            bodies[static_cast<std::size_t>(i)] = bodies_of(own, first, values, within);
+        });
         take(bodies);
     });
 }

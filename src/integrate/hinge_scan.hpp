@@ -23,21 +23,21 @@ struct HingeScan {
     CATENA_HD Value of_run(dca::Run const& run) const {
         constexpr int few = 4;  // bodies at a time, so that their loads are under way together
         int const count = static_cast<int>(run.count);
-        Motion m = of_body(run, 0);
+        Motion m = of_body<true>(run, 0);
         int i = 1;
         for (; i + few <= count; i += few) {
             Motion next[few];
         CATENA_UNROLL
-            for (int j = 0; j < few; ++j) next[j] = of_body(run, i + j);
+            for (int j = 0; j < few; ++j) next[j] = of_body<false>(run, i + j);
             CATENA_UNROLL
             for (int j = 0; j < few; ++j) m = compose<false>(m, next[j]);
         }
-        for (; i < count; ++i) m = compose<false>(m, of_body(run, i));
+        for (; i < count; ++i) m = compose<false>(m, of_body<false>(run, i));
         return ended(m.rotation, m.omega);
     }
     // The same body by body: from step() of the first one go_on() by those of the others, and ended().
     CATENA_HD Step step(dca::Run const& run, int i) const {
-        Motion const m = of_body(run, i);
+        Motion const m = of_body<true>(run, i);
         return {m.rotation, m.omega, to_matrix(m.rotation)};
     }
     CATENA_HD static void go_on(Quat& rotation, Vec3& omega, Step const& next) {
@@ -61,32 +61,36 @@ struct HingeScan {
         loads.set_biases(run.body);
     }
 
-    /// Whether begin() may come before the scan is through: before a chain is the ground.
+    /// Whether begin() may come before the scan is through: before a chain is the ground. A run of one body ends its chain, so that none
+    /// waits for what another rank has.
     CATENA_HD bool begins_at_ground(dca::Run const& run) const { return loads.scan.joints.starts_chain(run.body); }
 
   private:
-    /// As JointLoads::set_relative, of what the solver asks for.
+    /// As JointLoads::set_relative, of what the solver asks for. `may_begin`: else it is not the run's first.
+    template <bool may_begin>
     CATENA_HD Motion of_body(dca::Run const& run, int i) const {
         JointScan const& s = loads.scan;
         std::int64_t const k = run.body + i;
         if (joint_by_joint) return s.load<false>(k);
         // All reads come first: a GPU waits for them together.
-        bool const is_hinge = i > 0 || s.joints.joint[k] == JointType::revolute;
+        bool const is_hinge = !may_begin || i > 0 || s.joints.joint[k] == JointType::revolute;
         Vec3 const axis = s.joints.axis(k);
         double const angle = s.state.q.at(k, 0), rate = s.state.qd.at(k, 0);
         Quat const frame = as_quaternion(read(s.joints.joint_rotation, k));
         double const torque = loads.given.joint_loads ? loads.torque_about_hinge(k) : 0.0;
-        if (!is_hinge) {  // but whatever begins a chain
-            loads.set_relative<false>(k);
-            return s.load<false>(k);
-        }
+        if constexpr (may_begin)
+            if (!is_hinge) {  // but whatever begins a chain
+                loads.set_relative<false>(k);
+                return s.load<false>(k);
+            }
         Quat const turn = from_axis_angle(axis, angle);
         Motion const m{frame * turn, rate * axis, Vec3::zero(), Vec3::zero()};
-        if (all_turns || i == 0 || i >= run.count - 2) write(s.motion.joint_turn, k, as_vector(turn));
+        bool const begins = may_begin && i == 0;
+        if (all_turns || begins || i >= run.count - 2) write(s.motion.joint_turn, k, as_vector(turn));
         write(s.rotation, k, as_vector(m.rotation));
-        if (i == 0) write(s.omega, k, m.omega);
+        if (begins) write(s.omega, k, m.omega);
         if (!loads.given.joint_loads) return m;
-        if (i == 0)
+        if (begins)
             loads.set_joint_load(k);
         else
             loads.joint_load.at(k, HingeLoads::about_hinge) = torque;

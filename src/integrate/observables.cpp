@@ -46,6 +46,17 @@ void Shape::add(double mass, Vec3 const& position) {
 
 double Shape::radius_of_gyration() const { return std::sqrt(square_ / mass_); }
 
+namespace {
+
+bool asks_for(Scene const& scene, std::string const& name) {
+    auto const& asked = scene.output.observables;
+    return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+}
+
+}  // namespace
+
+bool has_energies(Scene const& scene) { return asks_for(scene, "energy"); }
+
 Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
     : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)), kinetic_(scene) {
     for (ChainSpec const& chain : scene.chains) has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
@@ -70,8 +81,7 @@ Observables::Observables(Scene const& scene, Topology const& topology, std::vect
 
 bool Observables::wants(std::string const& name) const {
     if (name == "temperature" && !has_temperature_) return false;
-    auto const& asked = scene_.output.observables;
-    return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+    return asks_for(scene_, name);
 }
 
 void Observables::begin() {

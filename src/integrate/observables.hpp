@@ -42,6 +42,9 @@ class Shape {
     Vec3 first_ = Vec3::zero(), last_ = Vec3::zero(), mean_ = Vec3::zero();
 };
 
+/// Whether rows have energies, of which potential ones may cost as much as several steps.
+bool has_energies(Scene const&);
+
 class Observables {
   public:
     /// `terms`: names of the potential energy terms. The scene's output.observables choose the groups of columns; empty: all that it can

@@ -160,9 +160,9 @@ void RunFolder::write_checkpoint(Checkpoint const& checkpoint, ChainSystem const
         checkpoints_way_ = writer.way();
         for (auto const& [name, array] : own)
             if (checkpoints_way_.collective)
-                system.pass_own_array(array, [&](std::vector<ArrayPart> const& parts) { writer.put(name, parts); });
+                system.pass_own_array(array, [&, &of = name](std::vector<ArrayPart> const& parts) { writer.put(of, parts); });
             else
-                system.pass_array(array, [&](ArrayPart const& part) { writer.put(name, std::span(&part, 1)); });
+                system.pass_array(array, [&, &of = name](ArrayPart const& part) { writer.put(of, std::span(&part, 1)); });
         writer.finish();
     });
 }

@@ -161,7 +161,7 @@ class Run {
     };
     Observed observed() {
         stepper_->observe(scene_.output.joint_forces);
-        return {system_.potential_energy()};
+        return {has_energies(scene_) ? system_.potential_energy() : std::vector<EnergyTerm>()};
     }
     ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }
 
@@ -220,9 +220,11 @@ class Run {
 
     void put_own(ChainSystem::OwnBodies const& own) {
         system_.pass_own_bodies(own, [&](std::vector<ChainSystem::Bodies> const& runs) {
-            std::vector<Frame> parts;
-            for (ChainSystem::Bodies const& bodies : runs)
-                parts.push_back(sites_.part(bodies, scene_.output.velocities, system_.executor()));
+            std::vector<Frame> parts(runs.size());
+            system_.executor().for_each_of_many_or_few(std::ssize(runs), [&](std::int64_t i, Executor const& within) {
+                auto const r = static_cast<std::size_t>(i);
+                parts[r] = sites_.part(runs[r], scene_.output.velocities, within);
+            });
             folder_->put(parts);
         });
     }

@@ -225,7 +225,7 @@ TEST_F(StageKernels, ShortChains) {
 /// By a thread or by several each; whose joints are not all hinges go the other way.
 TEST_F(StageKernels, RunsOnHinges) {
     if (!alone()) return;
-    for (std::size_t const bodies : {2, 17, 128, 500})
+    for (std::size_t const bodies : {2, 17, 19, 128, 511})
         for (Base const base : {Base::fixed, Base::free}) {
             SCOPED_TRACE(std::to_string(bodies) + (base == Base::free ? " free" : " fixed"));
             auto const chain = [&](RandomJoints joints, std::size_t n) {
@@ -235,6 +235,10 @@ TEST_F(StageKernels, RunsOnHinges) {
             expect_same(
                 scene_of({chain(RandomJoints::revolute, bodies), chain(RandomJoints::universal, 20), chain(RandomJoints::revolute, 64)}));
         }
+    std::vector<ChainSpec> short_ones;  // with runs of every length side by side
+    for (std::size_t bodies = 1; bodies <= 40; ++bodies)
+        short_ones.push_back(random_chain(bodies, {.bodies = 7 * bodies % 41, .joints = RandomJoints::revolute, .base = Base::free}));
+    expect_same(scene_of(short_ones));
     std::set<int> const all_teams{kernels::lanes_of_narrow_team, kernels::lanes_of_broad_team};
     EXPECT_EQ(StageSpace::seen.lanes_of_teams, all_teams);
 }

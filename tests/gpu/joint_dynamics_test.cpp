@@ -117,6 +117,10 @@ TEST_F(GpuJoints, LoadsOnHinges) {
             if (HasFailure()) return;
         }
 }
+/// So many that four lanes go along each run, and that springs are read joint by joint.
+TEST_F(GpuJoints, LoadsOnManyHinges) {
+    expect_same(scene_of({random_chain(1, {.bodies = 40001, .joints = RandomJoints::revolute, .base = Base::free, .springs = true})}), 2);
+}
 TEST_F(GpuJoints, LoadsDrivesAndTips) { expect_same_with_loads_drives_and_tips(100); }
 /// For checkers, under which launches take long.
 TEST_F(GpuJoints, LoadsDrivesAndTipsInARow) { expect_same_with_loads_drives_and_tips(2); }

@@ -127,10 +127,10 @@ TEST(Kinematics, HasTheSameBitsByTheKernelsOfAGpu) {
 template <class Space>
 class HingesIn {
   public:
-    explicit HingesIn(Scene const& scene)
-        : groups_(make_groups(scene, Axes::joint, Handles::projected, false, *alone_)),
+    HingesIn(Scene const& scene, Communicator const& communicator)
+        : groups_(make_groups(scene, Axes::joint, Handles::projected, false, communicator)),
           state_(make_joint_state(*groups_[0], scene)),
-          kinematics_(*groups_[0], Space(*executor_), *alone_),
+          kinematics_(*groups_[0], Space(*executor_), communicator),
           motion_(*groups_[0], HostSpace(*executor_)),
           joint_load_(group().size),
           given_(group().size),
@@ -168,7 +168,8 @@ class HingesIn {
         loads.given.torque = given_.view();
         loads.given.joint_loads = joint_loads;
         HingeScan const scan{loads, false, all_turns};
-        kinematics_.sweep_runs(scan, BodyExchange<4>::none(), [scan](dca::Run const& run) { scan.begin(run); });
+        auto const beside = joint_loads ? from_outboard(group(), loads.joint_load) : BodyExchange<4>::none();
+        kinematics_.sweep_runs(scan, beside, [scan](dca::Run const& run) { scan.begin(run); });
         std::vector<std::uint64_t> all;
         auto const add = [&](auto const& v) {
             for (double const number : v.data) all.push_back(std::bit_cast<std::uint64_t>(number));
@@ -182,11 +183,11 @@ class HingesIn {
             add(torque_.view().load(k));
             for (int d = 0; d < group().directions; ++d) all.push_back(std::bit_cast<std::uint64_t>(bias_.view().at(k, d)));
         }
+        if (joint_loads) add(joint_load_.view().load(group().size));
         return all;
     }
 
   private:
-    std::unique_ptr<Communicator> alone_ = serial_communicator();
     std::unique_ptr<Executor> executor_ = serial_executor(SimdLevel::off);
     std::vector<std::unique_ptr<ChainGroup>> groups_;
     JointState state_;
@@ -198,24 +199,38 @@ class HingesIn {
     DirectionsField bias_;
     std::vector<std::uint8_t> in_run_;
 };
+/// Alone, and where ranks share the chains.
 TEST(Kinematics, HasTheSameBitsOfHingesByTheKernelsOfAGpu) {
-    if (catena::testing::world().size() > 1) return;
+    Communicator const& world = catena::testing::world();
     ScanSpace::blocks_of_clusters.clear();
+    ScanSpace::shared_turns = 0;
+    ScanSpace::ranks = &world;
+    bool by_bodies = false, by_runs = false;
     auto const expect_the_same = [&](Scene const& scene) {
-        HingesIn<HostSpace> by_loops(scene);
-        HingesIn<ScanSpace> by_kernels(scene);
-        EXPECT_EQ(by_kernels.has_threads_for_bodies(), std::ssize(by_loops.group().schedule.runs) <= dca::most_of_scan);
+        HingesIn<HostSpace> by_loops(scene, world);
+        HingesIn<ScanSpace> by_kernels(scene, world);
+        std::int64_t const runs = std::ssize(by_loops.group().schedule.runs);
+        bool const one_block = runs > 0 && runs <= dca::most_of_scan;
+        EXPECT_TRUE(by_kernels.has_threads_for_bodies() == one_block || world.size() > 1);
+        EXPECT_TRUE(!by_kernels.has_threads_for_bodies() || one_block);  // a rank without a share of the chain has none
+        (by_kernels.has_threads_for_bodies() ? by_bodies : by_runs) = true;
         for (bool const joint_loads : {false, true})
             for (bool const all_turns : {false, true})
                 for (int state = 0; state < 2; ++state)
                     EXPECT_EQ(by_kernels.find(joint_loads, all_turns), by_loops.find(joint_loads, all_turns)) << by_loops.group().size;
     };
-    for (std::size_t const bodies : {1, 2, 15, 16, 17, 33, 300, 1031, 2048, 4080, 4083, 5000})
+    for (std::size_t const bodies : {1, 2, 15, 16, 17, 33, 300, 1031, 2048, 4080, 4083, 5000, 9001})
         for (Base const base : {Base::fixed, Base::free}) expect_the_same(two_chains(RandomJoints::revolute, bodies, base));
     Scene many;
     for (std::size_t bodies = 1; bodies <= 40; ++bodies)
         many.chains.push_back(random_chain(bodies, {.bodies = 3 * bodies, .joints = RandomJoints::revolute, .base = Base::fixed}));
     expect_the_same(many);
+    EXPECT_TRUE(by_bodies);
+    EXPECT_TRUE(by_runs || world.size() > 2);
+    EXPECT_EQ(ScanSpace::shared_turns > 0, world.size() > 1);
+    EXPECT_TRUE(ScanSpace::blocks_of_clusters.contains(8) || world.size() > 3);
+    EXPECT_FALSE(ScanSpace::blocks_of_clusters.empty());
+    if (world.size() > 1) return;
     EXPECT_EQ(ScanSpace::blocks_of_clusters, (std::set<unsigned>{1, 2, 5, 8}));
 }
 

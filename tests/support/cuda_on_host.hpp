@@ -179,7 +179,6 @@ class Block {
             watch::arrive(&left_);
             for (std::size_t const w : order)
                 if (warps[w].waits_for == Whole::warp) resume(w, warps[w], random);
-            watch::leave(&arrived_);
             auto const waits = [&](Whole whole) { return [whole](Warp const& warp) { return warp.waits_for == whole; }; };
             over = std::all_of(warps.begin(), warps.end(), waits(Whole::nobody));
             if (over || std::any_of(warps.begin(), warps.end(), waits(Whole::warp))) continue;
@@ -260,6 +259,7 @@ class Block {
         std::iota(order.begin(), order.end(), first);
         std::shuffle(order.begin(), order.end(), random);
         for (std::size_t const t : order) resume(static_cast<unsigned>(t));
+        watch::leave(&arrived_);
         Fiber const& lane = fibers_[first];
         for (std::size_t const t : order)
             if (fibers_[t].line != lane.line || fibers_[t].waits_for != lane.waits_for) fail(fibers_[t].line, lane.line);

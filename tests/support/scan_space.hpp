@@ -5,6 +5,7 @@
 #include <set>
 
 #include "dca/host_space.hpp"
+#include "dca/scan_then.hpp"
 #include "tests/support/cuda_on_host.hpp"
 #include "tests/support/shared_by_host.hpp"
 
@@ -85,6 +86,15 @@ class ScanSpace : public HostSpace {
         };
         return walk(tree).turn_shared(scan, show, Launches{top});
     }
+    template <class Numbers, class Scan, class T, class Action, int... D>
+    bool turn_shared(Direct const& direct, Numbers const& numbers, ScanTree const& tree, ScanTree const& top,
+                     dca::ScanThen<Scan, std::span<T const>, Action> const& all, BodyExchange<D> const&... beside) const {
+        auto const show = [&] {
+            if (threadIdx.x == 0) exchange(direct, numbers, beside...);
+        };
+        return walk(tree).turn_shared(all.scan, show, Launches{top}, std::ssize(all.items),
+                                      cuda::kernels::OfItem<T, Action>{all.items.data(), all.action});
+    }
 
   private:
     /// Of ScanWalk.
@@ -120,6 +130,18 @@ class ScanSpace : public HostSpace {
             ++shared_turns;
             cuda_on_host::launch({1, cuda::kernels::most_of_scan, numbers<Scan>(own) + numbers<Scan>(above)},
                                  cuda::kernels::turn_shared_scan<Scan, Exchange>, own, above, exchange, scan);
+        }
+        template <class Scan, class Exchange, class Action>
+        bool turn_shared_then(Scan const& scan, Exchange const& exchange, Launches const& top, std::int64_t count,
+                              Action const& action) const {
+            auto const &own = tree.stages_.back(), &above = top.tree.stages_.back();
+            unsigned const blocks = cuda::kernels::blocks_of_turn<Scan>(own, count);
+            ++shared_turns;
+            blocks_of_clusters.insert(blocks);
+            cuda_on_host::launch(
+                {blocks, cuda::kernels::most_of_scan, cuda::kernels::numbers_of_turn<Scan>(own, blocks) + numbers<Scan>(above), blocks},
+                cuda::kernels::turn_shared_scan_then<Scan, Exchange, Action>, own, above, exchange, scan, count, action);
+            return true;
         }
 
       private:
