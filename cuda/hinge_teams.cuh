@@ -380,13 +380,6 @@ class HingeTeam {
     double row_[wrenches][bias], e_[wrenches] = {};
 };
 
-/// Whether all lanes of the warp say so.
-__device__ inline bool all_lanes(int lane, bool says) {
-    int all = says ? 1 : 0;
-    CATENA_UNROLL
-    for (int apart = 16; apart > 0; apart /= 2) all &= __shfl_sync(0xffffffffu, all, lane ^ apart);
-    return all != 0;
-}
 /// A warp with another run among its own has a thread take each.
 template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
@@ -394,7 +387,7 @@ __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep s
     std::int64_t const wanted = thread() / lanes;
     HingeTeam<lanes> team(lane, wanted < runs.count);
     dca::Run const run = runs[wanted < runs.count ? wanted : runs.count - 1];
-    bool const by_teams = all_lanes(lane, run.count == dca::longest_run && sweep.takes(run));
+    bool const by_teams = __all_sync(0xffffffffu, run.count == dca::longest_run && sweep.takes(run)) != 0;
     wait_for_launch();
     if (by_teams) {
         dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
@@ -418,7 +411,7 @@ __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep
     std::int64_t const wanted = thread() / lanes;
     bool const works = wanted < runs.count, leads = works && lane % lanes == 0;
     dca::Run const run = runs[works ? wanted : runs.count - 1];
-    bool const by_teams = all_lanes(lane, run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run));
+    bool const by_teams = __all_sync(0xffffffffu, run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run)) != 0;
     wait_for_launch();
     if (by_teams) {
         dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, false);
