@@ -43,7 +43,7 @@ void CatenaSteps::adapt() { stepper_->adapt(watch_, last_error_, tolerance()); }
 ChainSystem::Snapshot CatenaSteps::observe() {
     system_.make_current();
     stepper_->prepare(nullptr);
-    stepper_->observe(false);
+    stepper_->observe({});
     return system_.snapshot();
 }
 

@@ -76,9 +76,10 @@ void ForceContext::set_positions(std::span<Vec3 const> positions, std::size_t ce
 
 std::vector<OpenMM::Vec3> ForceContext::forces(int groups) { return context_->getState(OpenMM::State::Forces, false, groups).getForces(); }
 
-void ForceContext::find_energies(std::span<double> of_group) {
+void ForceContext::find_energies(std::span<double> of_group, int groups) {
     for (int i = 0; i < system_->getNumForces(); ++i) {
         int const group = system_->getForce(i).getForceGroup();
+        if ((groups & 1 << group) == 0) continue;
         of_group[static_cast<std::size_t>(group)] = context_->getState(OpenMM::State::Energy, false, 1 << group).getPotentialEnergy();
     }
 }

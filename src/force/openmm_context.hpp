@@ -44,8 +44,8 @@ class ForceContext {
     std::vector<OpenMM::Vec3> forces(int groups = -1);
     Placement placement() const { return placement_; }
     OpenMM::Context& context() { return *context_; }
-    /// Those of its System's forces, kJ/mol, each in the place of its group. Precondition: no two have one group.
-    void find_energies(std::span<double> of_group);
+    /// Those of its System's forces in these groups, kJ/mol, each in the place of its group. Precondition: no two have one group.
+    void find_energies(std::span<double> of_group, int groups = -1);
 
   private:
     /// As long as OpenMM's own integrators leave particles in one order.

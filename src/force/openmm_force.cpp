@@ -15,6 +15,7 @@
 #include "force/openmm_rank.hpp"
 #include "force/openmm_subset.hpp"
 #include "force/worker.hpp"
+#include "mpi/first_rank.hpp"
 
 namespace catena {
 
@@ -195,6 +196,8 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     std::string failure;
     try {
         rank_->find_energies(device_.get(), values);
+    } catch (SharedError const&) {
+        throw;
     } catch (std::exception const& e) {
         if (communicator_.rank() != 0) throw;
         failure = e.what();

@@ -37,6 +37,19 @@ int groups_of(OpenMM::System const& system, int rank) {
     return groups;
 }
 
+/// A force's energy has a term for what lies beyond the cutoff: every Context adds the whole of it.
+bool reaches_beyond(OpenMM::Force const& force) {
+    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return pairs->getUseLongRangeCorrection();
+    auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force);
+    return charges != nullptr && charges->usesPeriodicBoundaryConditions() && charges->getUseDispersionCorrection();
+}
+
+bool reaches_beyond(OpenMM::System const& system) {
+    for (int i = 0; i < system.getNumForces(); ++i)
+        if (reaches_beyond(system.getForce(i))) return true;
+    return false;
+}
+
 /// Where forces on pairs are found in single precision, they and positions go so from GPU to GPU.
 bool is_in_single(OpenMmPlatform const& platform) {
     auto const precision = platform.properties.find("Precision");
@@ -70,7 +83,7 @@ PairForces::PairForces(RankPlan const& plan)
       first_of_rank_(plan.beads.first_of_rank),
       groups_(groups_of(*plan.model.system, plan.communicator.rank())),
       context_(std::make_unique<ForceContext>(plan.model.system, plan.platform, plan.box)),
-      energies_(plan) {
+      energies_(reaches_beyond(*plan.model.system) ? std::make_unique<WholeEnergies>(plan) : nullptr) {
     std::vector<int> const particle_of_bead = particles_of_beads(plan.model.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : plan.beads.beads_of(rank)) {
@@ -213,7 +226,18 @@ std::vector<Vec3> PairForces::forces_again() {
 }
 
 void PairForces::find_energies(DevicePath* device, std::span<double> of_group) {
-    energies_.find(device->positions(), context_.get(), of_group);
+    if (energies_) {
+        energies_->find(device->positions(), context_.get(), of_group);
+        return;
+    }
+    std::vector<double> own(of_group.size());
+    on_every_rank(communicator_, [&] { context_->find_energies(own, groups_); });
+    std::vector<std::int64_t> const bytes(static_cast<std::size_t>(communicator_.size()),
+                                          std::ssize(own) * static_cast<std::int64_t>(sizeof(double)));
+    std::vector<double> all(own.size() * bytes.size());
+    communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
+    std::fill(of_group.begin(), of_group.end(), 0.0);
+    for (std::size_t i = 0; i < all.size(); ++i) of_group[i % own.size()] += all[i];
 }
 
 void PairForces::gather(std::span<Vec3 const>) { throw ComputationError("positions stay on the GPU"); }

@@ -52,6 +52,8 @@ class PairForces final : public RankForces, public Halo {
 
     /// For those who stand for the GPU.
     ForceContext* computing() const { return context_.get(); }
+    /// Whether energies are those of the ranks' shares, each of its pairs.
+    bool shares_energies() const { return !energies_; }
 
   private:
     std::int64_t own() const { return std::ssize(particle_); }
@@ -73,7 +75,7 @@ class PairForces final : public RankForces, public Halo {
     std::vector<std::int64_t> received_;  // which of all comes with each position received
     int groups_;
     std::unique_ptr<ForceContext> context_;
-    WholeEnergies energies_;
+    std::unique_ptr<WholeEnergies> energies_;  // null: each rank has those of its share
     Lists lists_;  // every other rank's beads as they are sent there
     bool renew_ = true, some_are_far_ = false;
     GhostTraffic traffic_;

@@ -160,7 +160,7 @@ class Run {
         std::optional<ChainSystem::OwnBodies> bodies = std::nullopt;  // once somebody asks for them
     };
     Observed observed() {
-        stepper_->observe(scene_.output.joint_forces);
+        stepper_->observe({.joint_forces = scene_.output.joint_forces, .energies = has_energies(scene_)});
         return {has_energies(scene_) ? system_.potential_energy() : std::vector<EnergyTerm>()};
     }
     ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }

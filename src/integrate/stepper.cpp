@@ -21,8 +21,8 @@ class JointStepper final : public Stepper {
     }
     void prepare(StepTimeline*) override { integrator_->prepare(); }
     /// OpenMM's energies are those of its last evaluation, which stages of a step need not do at the step's end.
-    void observe(bool joint_forces) override {
-        if (!joint_forces && !system_.openmm()) return;
+    void observe(Asked const& asked) override {
+        if (!asked.joint_forces && !(asked.energies && system_.openmm())) return;
         system_.evaluate();
         for (int i = 0; i < system_.scene().solver.refine; ++i) system_.refine();
     }
@@ -130,9 +130,9 @@ class ConstrainedStepper final : public Stepper {
         offset_ = seconds_now() - begin;
         if (integrator_.sweeps() == 0) integrator_.choose_sweeps();
     }
-    void observe(bool joint_forces) override {
+    void observe(Asked const& asked) override {
         integrator_.observe();
-        if (!joint_forces) return;
+        if (!asked.joint_forces) return;
         for (AbsoluteDynamics* group : system_.absolute()) group->evaluate();
     }
     void step(std::int64_t n, StepTimeline* timeline) override {

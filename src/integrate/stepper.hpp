@@ -10,14 +10,19 @@
 
 namespace catena {
 
+/// What an observer asks for beside positions and velocities.
+struct Asked {
+    bool joint_forces = false, energies = false;
+};
+
 /// One way to take a step. Between steps the state is that of a whole step.
 class Stepper {
   public:
     virtual ~Stepper() = default;
     /// Forces, matrices and whatever else is needed at the present step. Collective.
     virtual void prepare(StepTimeline*) = 0;
-    /// Velocities as an observer sees them; after prepare(). Collective.
-    virtual void observe(bool joint_forces) = 0;
+    /// Velocities as an observer sees them, and what else is asked for; after prepare(). Collective.
+    virtual void observe(Asked const&) = 0;
     virtual void step(std::int64_t n, StepTimeline*) = 0;
     virtual double constraint_error() = 0;
     /// One more projection sweep from now on where `watch` says that one is due and there is one to add. Returns whether it was added.

@@ -43,7 +43,7 @@ void Trajectory::run(std::int64_t steps) {
 }
 
 ChainSystem::Snapshot Trajectory::snapshot() {
-    stepper_->observe(false);
+    stepper_->observe({.energies = true});
     return system_.snapshot();
 }
 

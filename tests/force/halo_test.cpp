@@ -323,12 +323,32 @@ TEST(Pairs, EveryBeadIsOnEachRank) {
                 for (Vec3& f : summed) f = (1.0 / communicator.size()) * f;
                 EXPECT_LE(difference(summed, expected), tolerance) << "step " << step << " on " << communicator.size() << " ranks";
             }
+            EXPECT_TRUE(forces.shares_energies());
+            std::vector<double> energies(2);
+            forces.find_energies(nullptr, energies);
+            std::vector<EnergyTerm> const of_all = oracle->energies();
+            for (std::size_t i = 0; i < of_all.size(); ++i) {
+                EXPECT_NE(of_all[i].value, 0);
+                EXPECT_NEAR(energies.at(i), communicator.size() * of_all[i].value, 1e-10 * std::abs(of_all[i].value));
+            }
             GhostTraffic const traffic = forces.traffic();
             EXPECT_EQ(traffic.rebuilds, 2);
             EXPECT_EQ(traffic.updates, 13);
             EXPECT_EQ(traffic.ghosts, beads.size() - (end - begin));
             EXPECT_EQ(traffic.messages, 2 * 13 * (communicator.size() - 1));
         });
+}
+
+/// A term for what lies beyond the cutoff is no pair's: every rank would add it.
+TEST(Pairs, EnergiesBeyondTheCutoffAreFoundOnce) {
+    on_ranks([&](Communicator const& communicator) {
+        BeadSystem const beads = split(eight_chains(Vec3{{40, 8.5, 8.2}}), communicator.size());
+        OpenMmSpec const spec = on_reference();
+        OpenMmModel const model = calvados2_model(spec, beads);
+        dynamic_cast<OpenMM::CustomNonbondedForce&>(model.system->getForce(0)).setUseLongRangeCorrection(true);
+        PairForces const forces({model, choose_platform(spec, beads, communicator, -1), beads, communicator, beads.box});
+        EXPECT_FALSE(forces.shares_energies());
+    });
 }
 
 TEST(Pairs, WhatCannotBeSharedOut) {

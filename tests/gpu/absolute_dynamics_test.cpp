@@ -212,7 +212,7 @@ class GpuConstrained : public ::testing::TestWithParam<AbsoluteScene> {
             stepper->step(i, nullptr);
         }
         stepper->prepare(nullptr);
-        stepper->observe(true);
+        stepper->observe({.joint_forces = true});
         auto arrays = system.state();
         arrays["errors"] = {stepper->constraint_error(), system.residual()};
         EXPECT_LE(arrays["errors"][0], dynamics.constraint_tolerance);
