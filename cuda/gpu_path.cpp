@@ -66,7 +66,7 @@ class LonePath final : public GpuPath {
             note_list(anew);
         }
         compute(beads);
-        if (asks_) openmm_->keep_list();  // whoever asks for some groups' energies now would have a list as far as these reach
+        if (asks_) openmm_->keep_list();  // energies that are asked for now need no look at all blocks for each force
         if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
         if (asks_) of_an_order_ = evaluations_of_a_listed_order;
     }

@@ -4,8 +4,7 @@
 // descend_hinges(). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
 #pragma once
 
-#include "cuda/stage_kernels.cuh"
-#include "dca/evaluation.hpp"
+#include "cuda/team_memory.cuh"
 
 namespace catena::cuda::kernels {
 
@@ -13,79 +12,8 @@ constexpr int lanes_of_narrow_team = 4, lanes_of_broad_team = 16;
 // More runs than the first have fewer lanes each, more than the second a thread: they keep a GPU busy with that.
 constexpr std::int64_t most_runs_of_broad_teams = 2048, most_runs_of_teams = 8192;
 
-/// Something for each of a warp's teams: in so many slots.
-template <class T, int lanes, int slots>
-class SlotsOfTeam {
-    static constexpr int teams = 32 / lanes;
-    using Records = PackedRecords<T, numbers_of<T>>;
-
-  public:
-    static constexpr std::size_t size = Records::size(teams * slots);
-    __device__ SlotsOfTeam(double* memory, int lane) : records_{memory}, team_(lane / lanes) {}
-    __device__ void put(int slot, T const& value) const { records_.store(slot * teams + team_, value); }
-    __device__ T get(int slot) const { return records_.load(slot * teams + team_); }
-    __device__ double& number(int slot, int n) const { return records_.number(slot * teams + team_, n); }
-
-  private:
-    Records records_;
-    int team_;
-};
-constexpr int bodies_of_whole_run = static_cast<int>(dca::longest_run), bodies_within = bodies_of_whole_run - 2;
-/// What a run needs of a body to go on to it. All are found before what the way up needs takes the registers; not those of the first and
-/// the last, so that eight warps have room.
-struct BodyAhead : dca::BodyInRun<double> {
-    double torque_about;  // the hinge, where that is in no body's own
-    dca::AddedBody<double> body;
-    dca::Wrench<double> load;  // about handle 2
-};
-template <int lanes>
-using BodiesAhead = SlotsOfTeam<BodyAhead, lanes, bodies_within>;
-/// And to come back from it, where the force at the run's first joint is known.
-struct HingeBehind {
-    dca::PushedHinge<double> hinge;
-    dca::BodyInRun<double> body;
-};
-template <class Sweep, int lanes>
-class HingesBehind {
-    using Tail = typename dca::HingesInJoints<typename Sweep::Sweeps>::Tail;
-    using Hinges = SlotsOfTeam<HingeBehind, lanes, bodies_of_whole_run - 1>;
-    using Tails = SlotsOfTeam<Tail, lanes, 1>;
-    using Frames = SlotsOfTeam<dca::HingedFrame<double>, lanes, 3>;  // of the first body and the last two
-    static_assert(lanes >= 3);
-
-  public:
-    static constexpr std::size_t size = Hinges::size + Tails::size + Frames::size;
-    __device__ HingesBehind(double* memory, int lane)
-        : hinges_(memory, lane),
-          tail_(memory + Hinges::size, lane),
-          frames_(memory + Hinges::size + Tails::size, lane),
-          own_(lane % lanes) {}
-    /// All lanes of the warp together.
-    template <class Kept, class Frame>
-    __device__ void fetch(Kept const& kept, Vector<double, 5> const& first, Frame const& frame) const {
-        if (own_ < 3) frames_.put(own_, frame(own_ == 0 ? 0 : bodies_of_whole_run - 3 + own_));
-        CATENA_NO_UNROLL
-        for (int i = 1 + own_; i < bodies_of_whole_run; i += lanes) hinges_.put(i - 1, {pushed(kept.hinge(i), first), kept.body(i)});
-        move_some<8>(own_, numbers_of<Tail>, lanes, [&](int n) { return kept.tail(n); }, [&](int n, double v) { tail_.number(0, n) = v; });
-        __syncwarp();
-    }
-    // What dca::descend_hinges() asks for.
-    __device__ dca::HingedFrame<double> frame(int i) const { return frames_.get(i == 0 ? 0 : i - (bodies_of_whole_run - 3)); }
-    __device__ dca::PushedHinge<double> hinge(int i) const { return hinges_.get(i - 1).hinge; }
-    __device__ dca::BodyInRun<double> body(int i) const { return hinges_.get(i - 1).body; }
-    __device__ dca::RunsEnd<double> end() const { return tail_.get(0).end; }
-    __device__ Mat3 axes() const { return tail_.get(0).axes; }
-    __device__ dca::BodyAcceleration<double> swing(int) const { return tail_.get(0).swing; }
-
-  private:
-    Hinges hinges_;
-    Tails tail_;
-    Frames frames_;
-    int own_;
-};
-
-/// Of whole runs (dca::longest_run). All lanes of a warp come to what it does.
-template <int lanes>
+/// All lanes of a warp come to what it does: also with teams that have fewer bodies than others of it.
+template <int lanes, bool whole>
 class HingeTeam {
     using Body = dca::HingedBody<double>;
     using Wrench = dca::Wrench<double>;
@@ -95,12 +23,12 @@ class HingeTeam {
     using Column = Vector<double, 6>;
     // Wrench 0 to 4: `first`, then the bias; wrench w is that of lane w % lanes.
     static constexpr int bias = 5, wrenches = (bias + lanes) / lanes, last_wrench = wrenches - 1;
-    static constexpr int count = bodies_of_whole_run, before_last = (count - 2) % lanes;  // lane that has this body
-    static_assert(count % lanes == 0);
+    static_assert(whole ? bodies_of_whole_run % lanes == 0 : bodies_of_whole_run == lanes);
 
   public:
     /// `works`: else it only goes along with the warp's other teams.
-    __device__ HingeTeam(int lane, bool works) : own_(lane % lanes), leader_(lane - own_), works_(works) {}
+    __device__ HingeTeam(BodiesOfTeam<lanes, whole> const& bodies, int lane, bool works)
+        : bodies_(bodies), own_(lane % lanes), leader_(lane - own_), most_(bodies.most(lane)), works_(works) {}
     __device__ bool leads() const { return works_ && own_ == 0; }
 
     /// As dca::climb_hinges(). put_row(i, dca::SegmentRow): by the lane that has it.
@@ -110,8 +38,8 @@ class HingeTeam {
         begin(body(0));
         go_on<dca::Undriven>(ahead, kept);
         dca::OutboardHandle<double> const before =
-            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last);
-        end(before, body(count - 1), dca::Undriven{}, kept, put_row);
+            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last());
+        end(before, body(bodies_.last()), dca::Undriven{}, kept, put_row);
     }
     /// The same where hinges' loads are given. `all`: as FollowedBodies.
     template <class Leaf, class Kept, class PutRow>
@@ -120,9 +48,9 @@ class HingeTeam {
         dca::FollowedState<double> const last_one = follow(loaded, all, ahead, kept);
         begin(loaded.first());
         go_on<double>(ahead, kept);
-        dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(count - 2), last_one.inward};
+        dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(bodies_.last() - 1), last_one.inward};
         Body const last = loaded.last(before.axes, last_one.omega, ByLeader<Kept>{kept, leads()});
-        end(before, last, loaded.torque_about(count - 1), kept, put_row);
+        end(before, last, loaded.torque_about(bodies_.last()), kept, put_row);
     }
 
   private:
@@ -150,8 +78,8 @@ class HingeTeam {
         Mat3 turn = own.turn;
         Swing swing{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
-        for (int first = 0; first < count; first += lanes) {
-            Body const here = body(first + own_);
+        for (int first = 0; first < bodies_of_whole_run; first += lanes) {
+            Body const here = body(bodies_.body_or_last(first + own_));
             Mat3 const mine =
                 along(first, turn, here.turn_to(one_before(here.e2, own.axes2)), [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
             Vec3 const inward = mine * here.inward2;
@@ -176,9 +104,10 @@ class HingeTeam {
         Vec3 omega = own.omega;
         Swing swing{Vec3::zero(), Vec3::zero()};
         CATENA_NO_UNROLL
-        for (int first = 0; first < count; first += lanes) {
+        for (int first = 0; first < bodies_of_whole_run; first += lanes) {
             int const i = first + own_;
-            dca::BodyOnHinge<double> const here = loaded.on_hinge(i);
+            int const read = bodies_.body_or_last(i);
+            dca::BodyOnHinge<double> const here = loaded.on_hinge(read);
             Vec3 const omega_of_last = omega;
             own.turn = along(first, turn, here.turn, [](Quat& t, Quat const& next) { t = t * next; });
             Mat3 const mine = to_matrix_of_unit(own.turn);
@@ -189,14 +118,15 @@ class HingeTeam {
             own.inward = one_before(inward, own.inward);
             InRun in_run = own.go_on(body);
             own.inward = inward;
-            loaded.add_wrench(i, in_run);
-            put_ahead(first, in_run, loaded.torque_about(i), swing, ahead, kept);
-            if (works_ && is_within(i) && (all || i == count - 2)) kept.put_omega(i, transposed_times(mine, own.omega));
+            loaded.add_wrench(read, in_run);
+            put_ahead(first, in_run, loaded.torque_about(read), swing, ahead, kept);
+            if (works_ && bodies_.is_within(i) && (all || i == bodies_.last() - 1)) kept.put_omega(i, transposed_times(mine, own.omega));
         }
         __syncwarp();
-        return of_lane(own, before_last);
+        return of_lane(own, before_last());
     }
-    __device__ static bool is_within(int i) { return i > 0 && i < count - 1; }
+    /// The lane that has this body.
+    __device__ int before_last() const { return (bodies_.last() - 1) % lanes; }
     /// Of the bodies from `first` on, one a lane; `swing`: of the one before them.
     template <class Kept>
     __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about, Swing& swing, Ahead const& ahead,
@@ -207,7 +137,7 @@ class HingeTeam {
         };
         int const i = first + own_;
         swing_ = along(first, swing, Swung{body.difference, body.across}, [](Swing& s, Swung const& next) { swing_on(s, next); });
-        if (!is_within(i)) return;
+        if (!bodies_.is_within(i)) return;
         ahead.put(i - 1, {body, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
                           about_point(load_of(body, swing_), body.centre)});
         if (works_) kept.put(i, body, swing_);
@@ -232,9 +162,11 @@ class HingeTeam {
     template <class Torque, class Kept>
     __device__ __forceinline__ void go_on(Ahead const& ahead, Kept& kept) {
         CATENA_NO_UNROLL
-        for (int i = 1; i < count - 1; ++i) {
+        for (int i = 1; i < most_ - 1; ++i) {
+            bool const goes = whole || bodies_.is_within(i);
             BodyAhead const next = ahead.get(i - 1);
-            dca::ReleasedHinge<double> const hinge = pass_hinge(next.axis, torque_of<Torque>(next.torque_about));
+            dca::ReleasedHinge<double> const hinge = pass_hinge(next.axis, torque_of<Torque>(next.torque_about), goes);
+            if (!goes) continue;
             CATENA_UNROLL
             for (int s = 0; s < wrenches; ++s) move_point(wrench_[s], next.across);
             if (has_bias()) add_load(wrench_[last_wrench], next.load);
@@ -250,20 +182,24 @@ class HingeTeam {
         else
             return {};
     }
+    /// `goes`: else for other teams' sake.
     template <class Torque>
-    __device__ __forceinline__ dca::ReleasedHinge<double> pass_hinge(Vec3 const& axis, Torque const& torque) {
+    __device__ __forceinline__ dca::ReleasedHinge<double> pass_hinge(Vec3 const& axis, Torque const& torque, bool goes = true) {
         dca::ReleasedHinge<double> h;
-        dca::Release<double> const r = release_hinge(all_, axis, h);
-        double along[wrenches];
-        CATENA_UNROLL
-        for (int s = 0; s < last_wrench; ++s) along[s] = release_hinge(wrench_[s], r);
-        if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
-            along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
-        else
-            along[last_wrench] = release_hinge(wrench_[last_wrench], r);
+        double along[wrenches] = {};
+        if (goes) {
+            dca::Release<double> const r = release_hinge(all_, axis, h);
+            CATENA_UNROLL
+            for (int s = 0; s < last_wrench; ++s) along[s] = release_hinge(wrench_[s], r);
+            if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
+                along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
+            else
+                along[last_wrench] = release_hinge(wrench_[last_wrench], r);
+        }
         CATENA_UNROLL
         for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes], j % lanes);
         h.bias = of_lane(along[last_wrench], bias % lanes);
+        if (!goes) return h;
         CATENA_UNROLL
         for (int s = 0; s < wrenches; ++s) gain_row(h, along[s], bias - 1, row_[s], e_[s]);
         return h;
@@ -272,7 +208,7 @@ class HingeTeam {
     template <class Torque, class Kept, class PutRow>
     __device__ __forceinline__ void end(dca::OutboardHandle<double> const& before, Body const& last, Torque const& torque, Kept& kept,
                                         PutRow const& put_row) {
-        take_difference(of_lane(swing_, before_last));
+        take_difference(of_lane(swing_, before_last()));
         Mat3 const turn = transpose(before.axes);
         turn_axes(all_, turn);
         CATENA_UNROLL
@@ -287,7 +223,7 @@ class HingeTeam {
         dca::LastBody<double> const body = last_body(last);
         Symmetric<double, 6> const factor = dca::factorize(inertia_of_end(all_, body), 6);
         if (leads()) {
-            kept.put(count - 1, hinge);
+            kept.put(bodies_.last(), hinge);
             kept.put(factor);
             kept.put_axes(before.axes);
         }
@@ -350,7 +286,7 @@ class HingeTeam {
                 int const lane = begin + i;
                 T const here = of_lane(value, lane);
                 bool const goes_on = i > 0 || first + begin > 0;
-                if constexpr (lanes == count) {
+                if constexpr (lanes == bodies_of_whole_run) {
                     if (goes_on) step(state, here);
                     if (lane == own_) own = state;
                 } else if (goes_on && lane <= own_) {
@@ -358,7 +294,7 @@ class HingeTeam {
                 }
             }
         }
-        if constexpr (lanes < count) state = of_lane(own, lanes - 1);
+        if constexpr (lanes < bodies_of_whole_run) state = of_lane(own, lanes - 1);
         return own;
     }
     /// What the lane before has; `of_last`: the same of the bodies before, by the lanes that have them.
@@ -372,7 +308,9 @@ class HingeTeam {
         return from_lane(value, leader_ + lane);
     }
 
+    BodiesOfTeam<lanes, whole> bodies_;
     int own_, leader_;  // lane of the team, and of the warp that is the team's first
+    int most_;
     bool works_;
     Swing swing_;  // of the last of the lane's own bodies
     dca::SpatialInertia<double> all_;
@@ -380,56 +318,96 @@ class HingeTeam {
     double row_[wrenches][bias], e_[wrenches] = {};
 };
 
-/// A warp with another run among its own has a thread take each.
+template <bool whole, int lanes, class Sweep>
+__device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
+    HingeTeam<lanes, whole> team(BodiesOfTeam<lanes, whole>(run), lane, works);
+    dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
+    BodiesAhead<lanes> const ahead(shared_numbers, lane);
+    auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) { sweep.store_row(run.slot, i, row); };
+    if (sweep.follows()) {
+        team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
+    } else {
+        auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
+        team.climb(body, ahead, kept, put_row);
+    }
+    sweep.s.note(kept.lost());
+}
+template <bool whole, int lanes, class Sweep>
+__device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
+    BodiesOfTeam<lanes, whole> const bodies(run);
+    bool const leads = works && lane % lanes == 0;
+    dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, false);
+    auto const first = sweep.s.forces.load(run.body), next = sweep.s.forces.load(run.next);
+    HingesBehind<Sweep, lanes, whole> const behind(bodies, shared_numbers, lane);
+    behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
+    dca::descend_hinges<double>(
+        bodies.count(), false, [&](int i) { return behind.frame(i); }, behind, first, next,
+        [&](int i, dca::HingedFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
+            if (leads) sweep.accelerate(run, i, frame, a);
+        },
+        [](int, dca::BodyAcceleration<double>&) {},
+        [&](int i, double of_hinge) {
+            if (leads) sweep.turn(run, i, of_hinge);
+        });
+}
+/// Whether all lanes of the warp say so. By shuffles: nvcc 13 makes of what comes after a vote code that takes a quarter longer.
+__device__ inline bool all_lanes(int lane, bool says) {
+    int all = says ? 1 : 0;
+    CATENA_UNROLL
+    for (int apart = 16; apart > 0; apart /= 2) all &= __shfl_sync(0xffffffffu, all, lane ^ apart);
+    return all != 0;
+}
+/// A team without a run goes along with that of the warp's other one.
+__device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run, bool by_hinges) {
+    std::int64_t const other = wanted ^ 1;
+    return by_hinges ? run : runs[other < runs.count ? other : runs.count - 1];
+}
+/// Whole runs by teams where a warp has no others; broad teams take others on hinges, too, but not those of one or two bodies: these, and
+/// what is beside whole runs of narrow teams, a thread takes.
 template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
     int const lane = static_cast<int>(threadIdx.x) % 32;
     std::int64_t const wanted = thread() / lanes;
-    HingeTeam<lanes> team(lane, wanted < runs.count);
-    dca::Run const run = runs[wanted < runs.count ? wanted : runs.count - 1];
-    bool const by_teams = __all_sync(0xffffffffu, run.count == dca::longest_run && sweep.takes(run)) != 0;
+    bool const works = wanted < runs.count;
+    dca::Run const run = runs[works ? wanted : runs.count - 1];
+    bool const by_hinges = run.count > 2 && sweep.takes(run);
+    bool const whole = all_lanes(lane, by_hinges && run.count == dca::longest_run);
     wait_for_launch();
-    if (by_teams) {
-        dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
-        BodiesAhead<lanes> const ahead(shared_numbers, lane);
-        auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) { sweep.store_row(run.slot, i, row); };
-        if (sweep.follows()) {
-            team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
-        } else {
-            auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
-            team.climb(body, ahead, kept, put_row);
-        }
-        sweep.s.note(kept.lost());
-    } else if (team.leads()) {
-        climb_run(sweep, run);
+    if (whole) {
+        climb_by_team<true, lanes>(sweep, run, lane, works);
+        return;
     }
+    if constexpr (lanes == bodies_of_whole_run) {
+        if (!all_lanes(lane, !by_hinges)) {
+            dca::Run const of_team = for_team(runs, wanted, run, by_hinges);
+            climb_by_team<false, lanes>(sweep, of_team, lane, works && by_hinges);
+        }
+        if (by_hinges) return;
+    }
+    if (works && lane % lanes == 0) climb_run(sweep, run);
 }
 /// What is wanted of every body is found one after the other: by a thread.
 template <int lanes, class Sweep>
 __global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep sweep) {
     int const lane = static_cast<int>(threadIdx.x) % 32;
     std::int64_t const wanted = thread() / lanes;
-    bool const works = wanted < runs.count, leads = works && lane % lanes == 0;
+    bool const works = wanted < runs.count;
     dca::Run const run = runs[works ? wanted : runs.count - 1];
-    bool const by_teams = __all_sync(0xffffffffu, run.count == dca::longest_run && !sweep.goes_by_all() && sweep.takes(run)) != 0;
+    bool const by_hinges = run.count > 2 && !sweep.goes_by_all() && sweep.takes(run);
+    bool const whole = all_lanes(lane, by_hinges && run.count == dca::longest_run);
     wait_for_launch();
-    if (by_teams) {
-        dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, false);
-        auto const first = sweep.s.forces.load(run.body), next = sweep.s.forces.load(run.next);
-        HingesBehind<Sweep, lanes> const behind(shared_numbers, lane);
-        behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
-        dca::descend_hinges<double>(
-            bodies_of_whole_run, false, [&](int i) { return behind.frame(i); }, behind, first, next,
-            [&](int i, dca::HingedFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
-                if (leads) sweep.accelerate(run, i, frame, a);
-            },
-            [](int, dca::BodyAcceleration<double>&) {},
-            [&](int i, double of_hinge) {
-                if (leads) sweep.turn(run, i, of_hinge);
-            });
-    } else if (leads) {
-        descend_run(sweep, run);
+    if (whole) {
+        descend_by_team<true, lanes>(sweep, run, lane, works);
+        return;
     }
+    if constexpr (lanes == bodies_of_whole_run) {
+        if (!all_lanes(lane, !by_hinges)) {
+            dca::Run const of_team = for_team(runs, wanted, run, by_hinges);
+            descend_by_team<false, lanes>(sweep, of_team, lane, works && by_hinges);
+        }
+        if (by_hinges) return;
+    }
+    if (works && lane % lanes == 0) descend_run(sweep, run);
 }
 template <int lanes>
 RunsGrid grid_of_teams(std::int64_t runs, std::size_t numbers_of_warp) {
@@ -456,8 +434,9 @@ template <class Sweep, class Launch>
 bool descend_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
     if constexpr (dca::takes_whole_runs<Sweep>) {
         constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
-        if (lanes == broad) launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, HingesBehind<Sweep, broad>::size));
-        if (lanes == narrow) launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, HingesBehind<Sweep, narrow>::size));
+        std::size_t const numbers = lanes == broad ? HingesBehind<Sweep, broad, true>::size : HingesBehind<Sweep, narrow, true>::size;
+        if (lanes == broad) launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, numbers));
+        if (lanes == narrow) launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, numbers));
         return lanes != 0;
     }
     return false;

@@ -38,12 +38,13 @@ class OpenMmOnDevice {
     /// The next compute() makes its neighbour list anew: of pairs whose first block of 32 places is from `begin` to `end` > `begin` of the
     /// row of all, whose ends are 0 and 1. Whoever computes the others needs the same order and does so at the same evaluation.
     virtual void make_list(double begin, double end) = 0;
-    /// From now on compute() takes the list that there is, and does not look for what has moved. Until make_list().
+    /// From now on compute(), and whatever else OpenMM computes of its Context, takes the list that there is, and does not look for what
+    /// has moved. Until make_list().
     virtual void keep_list() = 0;
     /// How far particles may move until their list is to be made anew, nm.
     virtual double list_lasts() = 0;
-    /// How many tiles of 32 by 32 pairs the list has, pairs by themselves as their part of one; 0: OpenMM keeps none of so few particles,
-    /// and keep_list() must not be called. Waits for it.
+    /// How many tiles of 32 by 32 pairs the list has, pairs by themselves as their part of one; 0 of all pairs: OpenMM keeps none of so
+    /// few particles, and keep_list() must not be called. Waits for it.
     virtual double tiles() = 0;
 };
 

@@ -196,8 +196,8 @@ std::vector<EnergyTerm> OpenMmForces::energies() {
     std::string failure;
     try {
         rank_->find_energies(device_.get(), values);
-    } catch (SharedError const&) {
-        throw;
+    } catch (SharedError const& e) {
+        throw SharedError(fmt::format("OpenMM failed to compute the energies: {}", e.what()));
     } catch (std::exception const& e) {
         if (communicator_.rank() != 0) throw;
         failure = e.what();

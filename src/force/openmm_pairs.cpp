@@ -37,17 +37,13 @@ int groups_of(OpenMM::System const& system, int rank) {
     return groups;
 }
 
-/// A force's energy has a term for what lies beyond the cutoff: every Context adds the whole of it.
-bool reaches_beyond(OpenMM::Force const& force) {
-    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return pairs->getUseLongRangeCorrection();
-    auto const* charges = dynamic_cast<OpenMM::NonbondedForce const*>(&force);
-    return charges != nullptr && charges->usesPeriodicBoundaryConditions() && charges->getUseDispersionCorrection();
-}
-
-bool reaches_beyond(OpenMM::System const& system) {
-    for (int i = 0; i < system.getNumForces(); ++i)
-        if (reaches_beyond(system.getForce(i))) return true;
-    return false;
+/// What energies have for what lies beyond the cutoff is no pair's, and adds no force: rank 0 alone has it.
+std::shared_ptr<OpenMM::System> of_rank(std::shared_ptr<OpenMM::System> system, int rank) {
+    for (int i = 0; rank > 0 && i < system->getNumForces(); ++i) {
+        if (auto* pairs = dynamic_cast<OpenMM::CustomNonbondedForce*>(&system->getForce(i))) pairs->setUseLongRangeCorrection(false);
+        if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&system->getForce(i))) charges->setUseDispersionCorrection(false);
+    }
+    return system;
 }
 
 /// Where forces on pairs are found in single precision, they and positions go so from GPU to GPU.
@@ -82,8 +78,7 @@ PairForces::PairForces(RankPlan const& plan)
       in_single_(is_in_single(plan.platform)),
       first_of_rank_(plan.beads.first_of_rank),
       groups_(groups_of(*plan.model.system, plan.communicator.rank())),
-      context_(std::make_unique<ForceContext>(plan.model.system, plan.platform, plan.box)),
-      energies_(reaches_beyond(*plan.model.system) ? std::make_unique<WholeEnergies>(plan) : nullptr) {
+      context_(std::make_unique<ForceContext>(of_rank(plan.model.system, plan.communicator.rank()), plan.platform, plan.box)) {
     std::vector<int> const particle_of_bead = particles_of_beads(plan.model.bead_of_particle);
     for (int rank = 0; rank < communicator_.size(); ++rank)
         for (std::int64_t const bead : plan.beads.beads_of(rank)) {
@@ -225,15 +220,11 @@ std::vector<Vec3> PairForces::forces_again() {
     return forces;
 }
 
-void PairForces::find_energies(DevicePath* device, std::span<double> of_group) {
-    if (energies_) {
-        energies_->find(device->positions(), context_.get(), of_group);
-        return;
-    }
+void PairForces::find_energies(DevicePath*, std::span<double> of_group) {
     std::vector<double> own(of_group.size());
     on_every_rank(communicator_, [&] { context_->find_energies(own, groups_); });
     std::vector<std::int64_t> const bytes(static_cast<std::size_t>(communicator_.size()),
-                                          std::ssize(own) * static_cast<std::int64_t>(sizeof(double)));
+                                          static_cast<std::int64_t>(std::span(own).size_bytes()));
     std::vector<double> all(own.size() * bytes.size());
     communicator_.all_gather(std::as_bytes(std::span(own)), std::as_writable_bytes(std::span(all)), bytes);
     std::fill(of_group.begin(), of_group.end(), 0.0);

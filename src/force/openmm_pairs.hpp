@@ -8,7 +8,6 @@
 
 #include "force/ghost_traffic.hpp"
 #include "force/halo.hpp"
-#include "force/openmm_energies.hpp"
 #include "force/openmm_rank.hpp"
 
 namespace catena {
@@ -18,12 +17,14 @@ namespace catena {
 /// to every rank, or comes from there: 12 bytes each from GPU to GPU in single precision.
 class PairForces final : public RankForces, public Halo {
   public:
+    /// Ranks but the first take what energies have beyond cutoffs off the plan's System.
     explicit PairForces(RankPlan const& plan);
 
     // RankForces
     void gather(std::span<Vec3 const> own) override;
     void evaluate(std::span<Vec3> own_forces) override;
-    void find_energies(DevicePath* device, std::span<double> of_group) override;
+    /// Those of each rank's share, added up on all.
+    void find_energies(DevicePath*, std::span<double> of_group) override;
     DevicePathPlan plan(bool overlap);
     std::unique_ptr<DevicePath> device_path(bool overlap) override;
     std::vector<Vec3> forces_again() override;
@@ -52,8 +53,6 @@ class PairForces final : public RankForces, public Halo {
 
     /// For those who stand for the GPU.
     ForceContext* computing() const { return context_.get(); }
-    /// Whether energies are those of the ranks' shares, each of its pairs.
-    bool shares_energies() const { return !energies_; }
 
   private:
     std::int64_t own() const { return std::ssize(particle_); }
@@ -75,7 +74,6 @@ class PairForces final : public RankForces, public Halo {
     std::vector<std::int64_t> received_;  // which of all comes with each position received
     int groups_;
     std::unique_ptr<ForceContext> context_;
-    std::unique_ptr<WholeEnergies> energies_;  // null: each rank has those of its share
     Lists lists_;  // every other rank's beads as they are sent there
     bool renew_ = true, some_are_far_ = false;
     GhostTraffic traffic_;

@@ -27,8 +27,8 @@ class RankForces {
     /// Forces on own beads at the positions gathered last, on any thread: it sends no messages. Throws ComputationError and what OpenMM
     /// throws.
     virtual void evaluate(std::span<Vec3> own_forces) = 0;
-    /// On rank 0 the energies of its forces at the positions gathered last, or where `device` has them, kJ/mol, each in the place of its
-    /// group. Collective; throws SharedError on all, or on rank 0 alone what OpenMM throws once nothing collective is left to do.
+    /// On rank 0 at least the energies of its forces at the positions gathered last, or where `device` has them, kJ/mol, each in the place
+    /// of its group. Collective; throws SharedError on all, or on rank 0 alone what OpenMM throws once nothing collective is left to do.
     virtual void find_energies(DevicePath* device, std::span<double> of_group) = 0;
     /// The path on which positions and forces stay on the GPU, in the place of gather() and evaluate(). Precondition: they are made for it.
     virtual std::unique_ptr<DevicePath> device_path(bool /*overlap*/) { return nullptr; }

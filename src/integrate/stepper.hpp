@@ -10,7 +10,7 @@
 
 namespace catena {
 
-/// What an observer asks for beside positions and velocities.
+/// What an observer asks for beside positions and velocities; `energies`: ChainSystem::potential_energy().
 struct Asked {
     bool joint_forces = false, energies = false;
 };

@@ -43,13 +43,14 @@ void Trajectory::run(std::int64_t steps) {
 }
 
 ChainSystem::Snapshot Trajectory::snapshot() {
-    stepper_->observe({.energies = true});
+    stepper_->observe({});
     return system_.snapshot();
 }
 
 Trajectory::Energy Trajectory::energy() {
+    stepper_->observe({.energies = true});
     Energy e;
-    e.total = e.kinetic = kinetic_energy(scene_, snapshot());
+    e.total = e.kinetic = kinetic_energy(scene_, system_.snapshot());
     for (EnergyTerm const& term : system_.potential_energy()) e.total += term.value;
     return e;
 }

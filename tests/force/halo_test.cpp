@@ -323,14 +323,6 @@ TEST(Pairs, EveryBeadIsOnEachRank) {
                 for (Vec3& f : summed) f = (1.0 / communicator.size()) * f;
                 EXPECT_LE(difference(summed, expected), tolerance) << "step " << step << " on " << communicator.size() << " ranks";
             }
-            EXPECT_TRUE(forces.shares_energies());
-            std::vector<double> energies(2);
-            forces.find_energies(nullptr, energies);
-            std::vector<EnergyTerm> const of_all = oracle->energies();
-            for (std::size_t i = 0; i < of_all.size(); ++i) {
-                EXPECT_NE(of_all[i].value, 0);
-                EXPECT_NEAR(energies.at(i), communicator.size() * of_all[i].value, 1e-10 * std::abs(of_all[i].value));
-            }
             GhostTraffic const traffic = forces.traffic();
             EXPECT_EQ(traffic.rebuilds, 2);
             EXPECT_EQ(traffic.updates, 13);
@@ -339,15 +331,55 @@ TEST(Pairs, EveryBeadIsOnEachRank) {
         });
 }
 
-/// A term for what lies beyond the cutoff is no pair's: every rank would add it.
-TEST(Pairs, EnergiesBeyondTheCutoffAreFoundOnce) {
+/// On the host nobody has a share of pairs; all that is no pair's is the first rank's: bonds, and what energies have beyond the cutoff.
+TEST(Pairs, EnergiesAreAddedUp) {
     on_ranks([&](Communicator const& communicator) {
+        if (communicator.size() == 1) return;
         BeadSystem const beads = split(eight_chains(Vec3{{40, 8.5, 8.2}}), communicator.size());
         OpenMmSpec const spec = on_reference();
-        OpenMmModel const model = calvados2_model(spec, beads);
-        dynamic_cast<OpenMM::CustomNonbondedForce&>(model.system->getForce(0)).setUseLongRangeCorrection(true);
-        PairForces const forces({model, choose_platform(spec, beads, communicator, -1), beads, communicator, beads.box});
-        EXPECT_FALSE(forces.shares_energies());
+        OpenMmPlatform const platform = choose_platform(spec, beads, communicator, -1);
+        auto const model_with = [&](bool corrections) {
+            OpenMmModel model = calvados2_model(spec, beads);
+            auto* charges = new OpenMM::NonbondedForce;
+            charges->setNonbondedMethod(OpenMM::NonbondedForce::CutoffPeriodic);
+            charges->setCutoffDistance(1.4);
+            charges->setUseDispersionCorrection(corrections);
+            for (std::int64_t i = 0; i < beads.size(); ++i) charges->addParticle(0.2 * static_cast<double>(i % 5 - 2), 0.3, 0.5);
+            auto* attraction = new OpenMM::CustomNonbondedForce("-(0.3/r)^6");
+            attraction->setNonbondedMethod(OpenMM::CustomNonbondedForce::CutoffPeriodic);
+            attraction->setCutoffDistance(1.4);
+            attraction->setUseLongRangeCorrection(corrections);
+            for (std::int64_t i = 0; i < beads.size(); ++i) attraction->addParticle({});
+            auto* bonds = new OpenMM::HarmonicBondForce;
+            for (int i = 0; i + 1 < static_cast<int>(beads.size()); i += 7) bonds->addBond(i, i + 1, 0.3, 1000);
+            for (OpenMM::Force* force : std::initializer_list<OpenMM::Force*>{charges, attraction, bonds}) {
+                force->setForceGroup(model.system->getNumForces());
+                model.system->addForce(force);
+            }
+            return model;
+        };
+        std::vector<Vec3> const x = moved(beads, 3);
+        auto const energies_of = [&](OpenMmModel const& model) {
+            ForceContext context(model.system, platform, beads.box);
+            context.set_positions(x, x.size());
+            std::vector<double> energies(5);
+            context.find_energies(energies);
+            return energies;
+        };
+        OpenMmModel const plain = model_with(false), corrected = model_with(true);
+        std::vector<double> const of_pairs = energies_of(plain), of_all = energies_of(corrected);
+        PairForces forces({corrected, platform, beads, communicator, beads.box});
+        EXPECT_EQ(forces.groups_of_share(), communicator.rank() == 0 ? 31 : 15);
+        PlainMemory memory(forces);
+        memory.evaluate({x.begin() + beads.first_of_rank[communicator.rank()], x.begin() + beads.first_of_rank[communicator.rank() + 1]});
+        std::vector<double> found(5);
+        forces.find_energies(nullptr, found);
+        for (std::size_t i = 0; i < found.size(); ++i) {
+            double const beyond = of_all[i] - of_pairs[i];
+            EXPECT_EQ(std::abs(beyond) > 1e-6 * std::abs(of_all[i]), i == 2 || i == 3) << i;
+            double const expected = (i == 4 ? 1 : communicator.size()) * of_pairs[i] + beyond;
+            EXPECT_NEAR(found[i], expected, 1e-10 * (1 + std::abs(expected))) << i << " on " << communicator.size() << " ranks";
+        }
     });
 }
 

@@ -58,8 +58,8 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
         scene.forces.openmm->replicate = !on_device;  // the oracle
         return scene;
     }
-    /// At step `last`, from the scene's start or from where another stood.
-    Found found(Scene const& scene, std::int64_t last, Found const* start = nullptr) {
+    /// At step `last`, from the scene's start or from where another stood. `asks`: for energies at every step.
+    Found found(Scene const& scene, std::int64_t last, Found const* start = nullptr, bool asks = false) {
         ChainSystem system(scene, Axes::world, world_);
         EXPECT_EQ(system.openmm()->path(), scene.forces.openmm->path);
         auto stepper = make_stepper(system, scene.dynamics);
@@ -73,6 +73,7 @@ class OpenMmOnGpus : public ::testing::TestWithParam<Case> {
             if (f.step == 100) system.openmm()->renew_ghosts();
             stepper->prepare(nullptr);
             if (f.step == last) break;
+            if (asks) f.energies = system.potential_energy();
             stepper->step(f.step, nullptr);
         }
         for (AbsoluteDynamics* group : system.absolute()) {

@@ -104,6 +104,14 @@ TEST_P(PairsOnGpus, AfterAnotherOrder) {
     EXPECT_GT(device.lists.made, 420);  // what falls moves fast
 }
 
+/// Where each rank finds its share's, from what its forces came from.
+TEST_P(PairsOnGpus, ARunDoesNotDependOnEnergiesAskedFor) {
+    Scene const scene = scene_with("double", true, "pairs");
+    Found const asked = found(scene, 60, nullptr, true), not_asked = found(scene, 60);
+    EXPECT_EQ(asked.checkpoint.arrays, not_asked.checkpoint.arrays);
+    EXPECT_EQ(asked.lists.kept, not_asked.lists.kept);
+}
+
 TEST_P(PairsOnGpus, ListsAreMadeAnewWhenAsked) { expect_lists_made_anew("pairs"); }
 
 TEST_P(PairsOnGpus, WithoutOverlapAndAudited) {
