@@ -86,7 +86,7 @@ class Run {
             Traffic const before = chains_traffic();
             at_step(n, [&] { stepper_->prepare(timeline); });
             Traffic of_step = chains_traffic() - before;
-            if (n == first) open(n);  // nothing is written or replaced before the first step has its forces
+            if (n == first) open(n);  // nothing is written or replaced before forces have been found
             stopped_by_ = n == last_ ? 0 : stop.reason_at(n);
             bool const ends = n == last_ || stopped_by_ != 0;
             double const error = looks || ends ? constraint_error(n) : 0;
@@ -136,7 +136,7 @@ class Run {
     void open(std::int64_t n) {
         first_ = n;
         folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
-        at_start_ = observed();
+        at_start_ = observed(true);
         observables_ = std::make_unique<Observables>(scene_, sites_.topology(), at_start_->terms);
         folder_->open(sites_.topology(), observables_->columns());
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
@@ -159,8 +159,9 @@ class Run {
         std::vector<EnergyTerm> terms;
         std::optional<ChainSystem::OwnBodies> bodies = std::nullopt;  // once somebody asks for them
     };
-    Observed observed() {
-        stepper_->observe({.joint_forces = scene_.output.joint_forces, .energies = has_energies(scene_)});
+    /// `anyway`: forces are found, whether somebody asks for what comes of them or not.
+    Observed observed(bool anyway = false) {
+        stepper_->observe({.joint_forces = scene_.output.joint_forces, .energies = anyway || has_energies(scene_)});
         return {has_energies(scene_) ? system_.potential_energy() : std::vector<EnergyTerm>()};
     }
     ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }

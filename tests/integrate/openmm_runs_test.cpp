@@ -151,6 +151,25 @@ TEST_P(VerletRuns, WithGhostsARestartIsTheUndisturbedRun) {
     world.barrier();
 }
 
+/// The first state has been evaluated before anything is written.
+TEST_P(VerletRuns, FramesEvaluateAnewForEnergiesAlone) {
+    Communicator const& world = catena::testing::world();
+    auto const run_with = [&](std::string const& name, std::string const& observables) {
+        Scene scene = parse_scene(GetParam().text, "scene.yaml", {"output.observables=[" + observables + "]"});
+        return run_simulation(std::move(scene), world, options_of(name, 30, ""));
+    };
+    nlohmann::json const with = run_with("with", "energy"), without = run_with("without", "radius_of_gyration");
+    if (world.rank() == 0) {
+        EXPECT_EQ(arrays("with"), arrays("without"));
+        if (world.size() > 1) {  // steps 7, 14, 21 and 28
+            auto const evaluations = [](nlohmann::json const& s) { return s.at("forces").at("ghosts").at("evaluations").get<int>(); };
+            EXPECT_EQ(evaluations(with) - evaluations(without), 4);
+            EXPECT_GT(evaluations(without), 30);
+        }
+    }
+    world.barrier();
+}
+
 RunScene const passing[] = {{"InABox", passing_bodies(boxes[0])}, {"InTheOpen", passing_bodies(boxes[1])}};
 INSTANTIATE_TEST_SUITE_P(Boxes, VerletRuns, ::testing::ValuesIn(passing), [](auto const& scene) { return scene.param.name; });
 
