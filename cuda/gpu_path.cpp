@@ -59,14 +59,11 @@ class LonePath final : public GpuPath {
             if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
             bool const far = std::exchange(flags_->data()->far, 0) != 0;
             bool const anew = far || of_this_order_ == 0 || !std::exchange(has_list_, true);
-            if (anew)
-                openmm_->make_list(0, 1);
-            else
-                openmm_->keep_list();
+            if (anew) openmm_->make_list(0, 1);
             note_list(anew);
         }
         compute(beads);
-        if (asks_) openmm_->keep_list();  // energies that are asked for now need no look at all blocks for each force
+        if (asks_) openmm_->keep_list();  // until it is made anew; for energies that are asked for now, too
         if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
         if (asks_) of_an_order_ = evaluations_of_a_listed_order;
     }

@@ -118,7 +118,7 @@ class HaloPath final : public GpuPath {
         exchange_.end = seconds_now();
         if (pairs_) choose_pairs();
         compute(beads);
-        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // energies, as of LonePath
+        if (pairs_ && pairs_->has_list()) openmm_->keep_list();  // as LonePath does
     }
 
     /// What has arrived goes where it belongs.

@@ -46,10 +46,7 @@ bool PairShare::choose(OpenMmOnDevice& openmm, bool new_order) {
     Communicator const& communicator = halo_.communicator();
     int const rank = communicator.rank(), ranks = communicator.size();
     std::int64_t const before = evaluations_++;
-    if (has_list_ && !new_order && !is_early(before) && !halo_.some_are_far()) {
-        openmm.keep_list();
-        return false;
-    }
+    if (has_list_ && !new_order && !is_early(before) && !halo_.some_are_far()) return false;
     if (before == 0) {
         openmm.share(*halo_.groups_of_share(), rank, ranks);
         cuts_ = equal_cuts(ranks);

@@ -30,8 +30,8 @@ class PairShare {
     /// Whenever lists of positions are made, before they are of use. `direct`: GPUs write to each other's memory. Whether they do so here.
     /// Collective.
     bool fit(bool direct);
-    /// Before each evaluation: which pairs are this rank's. `new_order`: of OpenMM's particles. Whether their list is made anew.
-    /// Collective.
+    /// Before each evaluation: which pairs are this rank's. `new_order`: of OpenMM's particles. Whether their list is made anew; if not,
+    /// the caller has kept the one before. Collective.
     bool choose(OpenMmOnDevice&, bool new_order);
     /// Whether some rank's OpenMM keeps a list of pairs, as far as is known.
     bool has_list() const { return has_list_; }
