@@ -66,6 +66,7 @@ Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory 
     text.entry(ranks == 1 ? "estimate" : "estimate, each rank",
                fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene),
                            bytes_text(memory.state), bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
+    for (std::string const& note : scene.notes) text.note(note);
     text.heading("The scene is valid.");
     return text;
 }
@@ -92,6 +93,7 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator) {
                     {"memory_bytes_per_rank", {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
                     {"scene_hash", scene.hash},
                     {"ranks", communicator.size()},
+                    {"notes", scene.notes},
                     {"valid", true}};
     return outcome;
 }

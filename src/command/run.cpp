@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -129,6 +130,7 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
 
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     StopSignals const signals;
+    for (std::string const& note : given.notes) spdlog::warn("{}", note);
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
     RunOptions options;
     options.output = output_folder(given, request);

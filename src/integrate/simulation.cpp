@@ -60,6 +60,7 @@ class Run {
                              "leave it out, or take rk4, dormand-prince or velocity-verlet where the chains allow it");
         stepper_ = make_stepper(system_, scene_.dynamics);
         if (root_) sites_ = sites_of_scene_.get();
+        notes_ = scene_.notes;
         warn_of_shared_gpus();
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }

@@ -16,7 +16,7 @@ struct ChainRequest {
     Fields fields;
     Node const& node;
     std::size_t index;   // in `chains`, from 0
-    Scene const& scene;  // everything but the chains
+    Scene& scene;        // everything but the chains; readers add notes
     Base base = Base::free;
     std::vector<Domain> rigid = {};  // ascending; of a chain of residues
 

@@ -77,7 +77,7 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
 
 class ChainReader {
   public:
-    ChainReader(Node const& entry, std::size_t index, Scene const& scene, bool warm)
+    ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm)
         : request_{chain_fields(entry), entry, index, scene}, source_(source_of(request_.fields)), warm_(warm) {
         request_.base = base_of(request_.fields, source_);
         tip_ = read_tip(request_.fields);
@@ -194,7 +194,7 @@ class ChainReader {
 
 }  // namespace
 
-void read_chain(Node const& entry, std::size_t index, Scene const& scene, bool warm, std::vector<Draft>& drafts) {
+void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, std::vector<Draft>& drafts) {
     ChainReader(entry, index, scene, warm).append_to(drafts);
 }
 

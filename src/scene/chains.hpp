@@ -23,6 +23,6 @@ struct Draft {
 
 /// Reads the entry `index` (from 0) of `chains` into `count` chains and appends them. `scene` holds everything but the chains; `warm`: it
 /// names a temperature, so that chains without velocities of their own start thermal. Throws InputError.
-void read_chain(Node const& entry, std::size_t index, Scene const& scene, bool warm, std::vector<Draft>& drafts);
+void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, std::vector<Draft>& drafts);
 
 }  // namespace catena::scene

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "scene/chains.hpp"
 #include "scene/fields.hpp"
@@ -58,6 +60,10 @@ std::int64_t Scene::bodies() const {
     std::int64_t sum = 0;
     for (ChainSpec const& chain : chains) sum += static_cast<std::int64_t>(chain.size());
     return sum;
+}
+
+void Scene::note(std::string text) {
+    if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(std::move(text));
 }
 
 Scene load_scene(std::string const& file, std::vector<std::string> const& overrides) {

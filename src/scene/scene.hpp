@@ -234,6 +234,15 @@ struct OutputSpec {
     std::vector<std::string> observables;  // columns, in order; empty: the default set
     bool joint_forces = false;             // constraint forces in the trajectory
     bool velocities = false;               // velocities in the trajectory
+    bool coordinates = false;              // orientations of bodies, joint coordinates and rates in the trajectory
+};
+
+/// How far the reader moved the positions that the user gave: links take their lengths, wrapped chains are made whole, overlaps relaxed.
+struct StartChange {
+    double link = 0;        // largest change of a link's length
+    double position = 0;    // largest displacement of a bead, without whole box edges
+    std::string link_at;    // "chain `a`, beads 19 and 20: 9.31 to 0.38 nm"; empty: no link changed
+    std::string moved_at;   // "chain `a`, bead 20"; empty: no bead moved
 };
 
 struct Scene {
@@ -245,11 +254,16 @@ struct Scene {
     DynamicsSpec dynamics;
     SolverSpec solver;
     OutputSpec output;
-    std::string file;  // as the user named it
+    bool relax = false;              // overlaps of the start are relaxed before the first step
+    StartChange start;
+    std::vector<std::string> notes;  // what the reader assumed, changed or left out: a sentence each, in the order met
+    std::string file;                // as the user named it
     std::string hash;  // of what decides the motion (not of solver, output and dynamics.steps): guards restarts
 
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;
+    /// Adds a note unless it is there.
+    void note(std::string text);
 };
 
 /// Reads and validates a scene file. `overrides`: "key.path=value" with list indices as in "chains[0].count=10".
