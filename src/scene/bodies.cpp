@@ -111,7 +111,10 @@ BodyList kind_of_list(Node const& bodies) {
         fail(*other, fmt::format("a joint {}in a chain of links", type ? fmt::format("of type `{}` ", shown(type->text)) : ""),
              "make it a link, or give every joint another type");
     }
-    return !links ? BodyList::bodies : rigid ? BodyList::linked : BodyList::beads;
+    Node const& first = bodies.items[0];
+    bool const lone_bead = bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");  // an ion
+    if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
+    return rigid ? BodyList::linked : BodyList::beads;
 }
 
 std::array<double, 2> read_drag(Node const& drag) {

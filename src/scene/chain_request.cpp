@@ -3,12 +3,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <filesystem>
 
 #include "scene/conformation.hpp"
 #include "scene/files.hpp"
+#include "scene/pdb_sites.hpp"
 #include "scene/random.hpp"
+#include "scene/residue_names.hpp"
 
 namespace catena::scene {
+
+namespace {
+
+/// PDB files, and those that its reader refuses by name.
+bool is_structure(std::string const& path) {
+    std::string kind = std::filesystem::path(path).extension().string();
+    std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return kind == ".pdb" || kind == ".ent" || kind == ".cif" || kind == ".mmcif";
+}
+
+/// Amino acids of the file, by their parents, that are not those of the chain. 0 where the numbers differ, which is refused elsewhere.
+std::size_t other_residues(PdbSites const& from, std::vector<std::string> const& residues) {
+    std::size_t others = 0;
+    for (std::size_t k = 0; from.sites.size() == residues.size() && k < residues.size(); ++k) {
+        ResidueMeaning const meaning = meaning_of(from.sites[k].residue);
+        others += meaning.kind == ResidueKind::amino_acid && meaning.parent != residues[k];
+    }
+    return others;
+}
+
+}  // namespace
 
 void ChainRequest::allow(char const* kind, Names keys) const {
     for (char const* const key : {"model", "positions", "links", "anchor", "conformation", "rigid"}) {
@@ -37,13 +62,22 @@ std::uint64_t ChainRequest::seed(std::int64_t copy) const {
 
 std::vector<Vec3> ChainRequest::positions_from(Node const& file, std::size_t beads) const {
     std::string const path = resolved(text(file), scene.file);
-    bool const pdb = path.ends_with(".pdb") || path.ends_with(".ent") || file.key == "pdb";
+    bool const pdb = is_structure(path) || file.key == "pdb";
     if (pdb && scene.si) fail(file, "positions in a PDB file are in angstrom, the scene is in SI units", "give a table x,y,z in metres");
-    std::vector<Vec3> positions = pdb ? read_pdb(path, file, false).position : read_position_table(path, file);
+    std::vector<Vec3> positions = pdb ? from_structure(path, file) : read_position_table(path, file);
     if (positions.size() != beads)
         fail(file, fmt::format("`{}` holds {} positions, the chain has {} beads", shown_path(file.text), positions.size(), beads),
              "give one position a bead");
     return positions;
+}
+
+std::vector<Vec3> ChainRequest::from_structure(std::string const& path, Node const& file) const {
+    PdbSites const sites = read_pdb(path, file, false);
+    for (std::string const& note : sites.notes) scene.note(note);
+    if (std::size_t const others = other_residues(sites, residues); others > 0)
+        scene.note(fmt::format("`{}` names other residues than the sequence in {} of {} places: its positions are taken all the same",
+                               sites.file, others, residues.size()));
+    return sites.positions();
 }
 
 void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const {

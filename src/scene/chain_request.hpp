@@ -15,10 +15,11 @@ namespace catena::scene {
 struct ChainRequest {
     Fields fields;
     Node const& node;
-    std::size_t index;   // in `chains`, from 0
-    Scene& scene;        // everything but the chains; readers add notes
+    std::size_t index;  // in `chains`, from 0
+    Scene& scene;       // everything but the chains; readers add notes
     Base base = Base::free;
-    std::vector<Domain> rigid = {};  // ascending; of a chain of residues
+    std::vector<Domain> rigid = {};          // ascending; of a chain of residues
+    std::vector<std::string> residues = {};  // three-letter names, of a chain of residues
 
     /// Refuses those of `model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this kind of
     /// chain.
@@ -36,6 +37,8 @@ struct ChainRequest {
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
     /// InputError when two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;
+    /// Positions of the sites of a PDB file; a note where its residues are not the chain's.
+    std::vector<Vec3> from_structure(std::string const& path, Node const& file) const;
 };
 
 }  // namespace catena::scene

@@ -24,8 +24,8 @@ namespace catena::scene {
 namespace {
 
 Fields chain_fields(Node const& entry) {
-    return Fields(entry, {"name", "count", "sequence", "fasta", "pdb", "bodies", "generator", "model", "positions", "links", "base", "tip",
-                          "anchor", "conformation", "rigid", "velocities"});
+    return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies", "generator", "model", "positions", "links",
+                          "base", "tip", "anchor", "conformation", "rigid", "velocities"});
 }
 
 /// The one key that says what the chain is made of.

@@ -4,6 +4,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "scene/carried_beads.hpp"
 
@@ -61,7 +63,7 @@ class LinkedBuilder {
     void add_domain(Domain const& domain, Node const& node) {
         RigidBody const body = body_of(beads_, domain);
         if (!(body.moments[0] > least_ratio * body.moments[2]))
-            fail(node, fmt::format("the beads of residues {} to {} stand on one line: a thin rod", domain.first + 1, domain.last + 1),
+            fail(node, fmt::format("the beads of {} stand on one line: a thin rod", domain.name),
                  "take in a residue beside it, or leave the domain out");
         add(domain.first, body.mass, body.com, Vec3::zero());
         linked_.inertia.push_back(Sym3{{body.moments[0], 0, body.moments[1], 0, 0, body.moments[2]}});
@@ -94,23 +96,65 @@ class LinkedBuilder {
     CarriedList carried_;
 };
 
+/// What the numbers of a scene's `rigid` mean.
+class Numbering {
+  public:
+    Numbering(std::size_t residues, std::vector<std::string> const& labels) : residues_(residues), labels_(labels) {
+        for (std::size_t k = 0; k < labels.size(); ++k) beads_[labels[k]].push_back(k);
+    }
+
+    std::string remedy() const {
+        return labels_.empty() ? fmt::format("give [first, last] with residues from 1 to {}, both included", residues_)
+                               : fmt::format("give [first, last] with the file's residue numbers, here {} to {}, both included",
+                                             labels_.front(), labels_.back());
+    }
+    Domain domain(Node const& pair) const {
+        if (pair.kind != Node::Kind::list || pair.items.size() != 2) fail(pair, describe(pair) + " is not a pair of residues", remedy());
+        Domain domain{bead(pair, pair.items[0]), bead(pair, pair.items[1])};
+        std::string const span = fmt::format("residues {} to {}", shown(pair.items[0].text), shown(pair.items[1].text));
+        if (domain.last < domain.first + 2) fail(pair, span + " are no rigid body: it needs three that do not stand on one line", remedy());
+        domain.name = span;
+        return domain;
+    }
+
+  private:
+    std::size_t bead(Node const& pair, Node const& end) const {
+        if (labels_.empty()) {
+            std::int64_t const number = whole(end, 1);
+            if (number > static_cast<std::int64_t>(residues_))
+                fail(pair, fmt::format("residue {} of a chain of {}", number, residues_), remedy());
+            return static_cast<std::size_t>(number - 1);
+        }
+        auto const found = beads_.find(label(end));
+        if (found == beads_.end()) fail(pair, fmt::format("residue {} is not in the file", shown(end.text)), remedy());
+        if (found->second.size() > 1)
+            fail(pair, fmt::format("{} residues of the file bear the number {}", found->second.size(), shown(end.text)),
+                 "give each residue its own number or insertion code");
+        return found->second[0];
+    }
+    static std::string label(Node const& end) {
+        double value = 0;
+        std::string const written = text(end);
+        bool const number = parse_number(written, value) == NumberFault::none && value == std::floor(value) && std::abs(value) < 1e15;
+        return number ? std::to_string(static_cast<std::int64_t>(value)) : written;
+    }
+
+    std::size_t residues_;
+    std::vector<std::string> const& labels_;
+    std::map<std::string, std::vector<std::size_t>> beads_;
+};
+
 }  // namespace
 
-std::vector<Domain> read_domains(Node const& rigid, std::size_t residues) {
-    std::string const remedy = fmt::format("give [first, last] with residues from 1 to {}, both included", residues);
-    if (list(rigid).items.empty()) fail(rigid, "the list of rigid domains is empty", "leave the key out or " + remedy);
+std::vector<Domain> read_domains(Node const& rigid, std::size_t residues, std::vector<std::string> const& labels) {
+    Numbering const numbering(residues, labels);
+    if (list(rigid).items.empty()) fail(rigid, "the list of rigid domains is empty", "leave the key out or " + numbering.remedy());
     std::vector<Domain> domains;
     for (Node const& item : rigid.items) {
-        if (item.kind != Node::Kind::list || item.items.size() != 2) fail(item, describe(item) + " is not a pair of residues", remedy);
-        std::int64_t const first = whole(item.items[0], 1), last = whole(item.items[1], 1);
-        if (last > static_cast<std::int64_t>(residues)) fail(item, fmt::format("residue {} of a chain of {}", last, residues), remedy);
-        if (last < first + 2)
-            fail(item, fmt::format("residues {} to {} are no rigid body: it needs three that do not stand on one line", first, last),
-                 remedy);
-        Domain const domain{static_cast<std::size_t>(first - 1), static_cast<std::size_t>(last - 1)};
+        Domain const domain = numbering.domain(item);
         for (Domain const& other : domains)
             if (domain.first <= other.last && other.first <= domain.last)
-                fail(item, fmt::format("residues {} to {} overlap the domain {} to {}", first, last, other.first + 1, other.last + 1),
+                fail(item, fmt::format("{} overlap the domain{}", domain.name, other.name.substr(std::string("residues").size())),
                      "give each residue to one domain");
         domains.push_back(domain);
     }

@@ -7,13 +7,15 @@
 
 namespace catena::scene {
 
-/// First and last residue of a domain, from 0, both included.
+/// First and last bead of a domain, from 0, both included.
 struct Domain {
     std::size_t first = 0, last = 0;
+    std::string name = {};  // "residues 5 to 30", as the scene numbers them
 };
 
-/// The list in ascending order. InputError for domains outside the chain of `residues`, of fewer than three residues, or that overlap.
-std::vector<Domain> read_domains(Node const& rigid, std::size_t residues);
+/// The list in ascending order. The scene numbers the residues by `labels`, one each, such as a file's "52A"; without labels from 1 to
+/// `residues`. InputError for domains outside the chain, of fewer than three residues, or that overlap.
+std::vector<Domain> read_domains(Node const& rigid, std::size_t residues, std::vector<std::string> const& labels = {});
 
 /// The beads of each domain become one rigid body with their mass, centre of mass and inertia, in principal axes, which carries them and is
 /// linked at its first and last bead; the other beads stay points. InputError for beads on one line.

@@ -65,33 +65,6 @@ double cell_number(std::string const& cell, std::string const& path, int line) {
     refuse_line(fmt::format("`{}` is beyond the range of double precision", shown(cell)), path, line, "give finite decimal numbers");
 }
 
-struct PdbAtom {
-    std::string name, residue, chain, residue_id;
-    Vec3 position;  // nm
-};
-
-/// Columns as in the PDB format 3.3, section "ATOM".
-PdbAtom atom_of(std::string const& line, std::string const& path, int n) {
-    if (line.size() < 54) refuse_line("the atom's line is cut short", path, n, "give coordinates in columns 31 to 54");
-    PdbAtom atom{trimmed(line.substr(12, 4)), trimmed(line.substr(17, 3)), line.substr(21, 1), line.substr(21, 6), Vec3::zero()};
-    for (int i = 0; i < 3; ++i)
-        atom.position[i] = 0.1 * cell_number(trimmed(line.substr(30 + 8 * static_cast<std::size_t>(i), 8)), path, n);
-    return atom;
-}
-
-std::vector<PdbAtom> atoms_of(std::string const& path, Node const& at) {
-    std::vector<PdbAtom> atoms;
-    std::istringstream stream(read_text_file(path, at));
-    std::string line;
-    for (int n = 1; std::getline(stream, line); ++n) {
-        if (line.starts_with("ENDMDL")) break;
-        if (!line.starts_with("ATOM  ") && !line.starts_with("HETATM")) continue;
-        PdbAtom const atom = atom_of(line, path, n);
-        if (line[16] == ' ' || line[16] == 'A') atoms.push_back(atom);
-    }
-    return atoms;
-}
-
 }  // namespace
 
 std::string read_text_file(std::string const& path, Node const& at) {
@@ -110,24 +83,6 @@ std::string resolved(std::string const& path, std::string const& scene_file) {
     return (std::filesystem::path(scene_file).parent_path() / path).string();
 }
 
-std::string read_fasta(std::string const& path, Node const& at) {
-    std::string sequence;
-    bool inside = false;
-    for (auto const& [n, line] : lines_of(read_text_file(path, at), 0)) {
-        if (line[0] == '>') {
-            if (inside) break;
-            inside = true;
-        } else if (!inside) {
-            refuse_line("sequence before the first record", path, n, "start the record with a line `>name`");
-        } else {
-            sequence += line;
-        }
-    }
-    if (!sequence.empty() && sequence.back() == '*') sequence.pop_back();
-    if (sequence.empty()) fail(at, "no sequence in `" + shown_path(path) + "`", "give a record: `>name`, then one-letter codes");
-    return sequence;
-}
-
 std::vector<Vec3> read_position_table(std::string const& path, Node const& at) {
     std::vector<Vec3> positions;
     bool first = true;
@@ -138,28 +93,6 @@ std::vector<Vec3> read_position_table(std::string const& path, Node const& at) {
         positions.push_back({{cell_number(cells[0], path, n), cell_number(cells[1], path, n), cell_number(cells[2], path, n)}});
     }
     return positions;
-}
-
-PdbSites read_pdb(std::string const& path, Node const& at, bool single_chain) {
-    std::vector<PdbAtom> const atoms = atoms_of(path, at);
-    bool alpha_carbons = false;
-    for (PdbAtom const& atom : atoms) alpha_carbons = alpha_carbons || atom.name == "CA";
-    PdbSites sites;
-    PdbAtom const* previous = nullptr;
-    for (PdbAtom const& atom : atoms) {
-        if (alpha_carbons && atom.name != "CA") continue;
-        if (previous && atom.residue_id == previous->residue_id)
-            fail(at,
-                 fmt::format("residue {} of `{}` has several atoms and none is its only CA", trimmed(atom.residue_id), shown_path(path)),
-                 "keep one atom a residue");
-        if (previous && single_chain && atom.chain != previous->chain)
-            fail(at, fmt::format("`{}` holds chains {} and {}", shown_path(path), previous->chain, atom.chain), "keep one chain a file");
-        sites.position.push_back(atom.position);
-        sites.residue.push_back(atom.residue);
-        previous = &atom;
-    }
-    if (atoms.empty()) fail(at, "no atoms in `" + shown_path(path) + "`", "give ATOM records");
-    return sites;
 }
 
 }  // namespace catena::scene

@@ -2,10 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "force/calvados2.hpp"
 #include "scene/conformation.hpp"
+#include "scene/fasta.hpp"
 #include "scene/files.hpp"
+#include "scene/gaps.hpp"
 #include "scene/generators.hpp"
+#include "scene/pdb_sites.hpp"
+#include "scene/residue_names.hpp"
 
 namespace catena::scene {
 
@@ -13,29 +19,61 @@ namespace {
 
 using Residues = std::vector<Calvados2Residue const*>;
 
-Residues residues_of(std::string const& letters, Node const& source) {
+Residues residues_of(std::string const& letters) {
     Residues residues;
-    for (char const letter : letters) {
-        if (letter == ' ' || letter == '\t' || letter == '\n' || letter == '\r') continue;
-        residues.push_back(find_calvados2(letter));
-        if (residues.back()) continue;
-        fail(source,
-             fmt::format("`{}` at position {} of the sequence is no residue of calvados2", shown(std::string(1, letter)), residues.size()),
-             "use the one-letter codes ARNDCQEGHILKMFPSTWYV");
-    }
-    if (residues.empty()) fail(source, "the sequence is empty", "give one-letter codes");
+    for (char const letter : letters) residues.push_back(find_calvados2(letter));
     return residues;
 }
 
-Residues residues_named(std::vector<std::string> const& names, Node const& source) {
+/// The model's residues for a file's names. Other names and modifications are their parents, with a note; InputError for the others.
+Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) {
     Residues residues;
-    for (std::string const& name : names) {
-        residues.push_back(find_calvados2(name));
-        if (residues.back()) continue;
-        fail_at(source, "bead", static_cast<std::int64_t>(residues.size()), fmt::format("`{}` is no residue of calvados2", shown(name)),
-                "rename or remove it in the file");
+    std::map<std::pair<std::string, std::string>, int> renamed;
+    for (PdbSite const& site : from.sites) {
+        ResidueMeaning const meaning = meaning_of(site.residue);
+        std::string const residue = site.residue + (site.label.empty() ? "" : " " + site.label);
+        auto const bead = static_cast<std::int64_t>(residues.size()) + 1;
+        if (meaning.kind == ResidueKind::charged)
+            fail_at(source, "bead", bead,
+                    fmt::format("`{}` has another charge than {}, and calvados2 has no parameters for it", residue, meaning.parent),
+                    fmt::format("write {} in the file if that charge may be lost, or give the forces as a System", meaning.parent));
+        residues.push_back(meaning.kind == ResidueKind::amino_acid ? find_calvados2(meaning.parent) : nullptr);
+        if (!residues.back())
+            fail_at(source, "bead", bead, fmt::format("`{}` is no residue of calvados2", residue), "rename or remove it in the file");
+        if (meaning.parent != site.residue) ++renamed[{site.residue, meaning.parent}];
     }
+    std::string list;
+    for (auto const& [names, count] : renamed)
+        list += fmt::format("{}{} {} as {}", list.empty() ? "" : ", ", count, names.first, names.second);
+    if (!list.empty()) scene.note(fmt::format("`{}`: residues take the parameters and charge of their parents ({})", from.file, list));
     return residues;
+}
+
+/// How the file numbers its residues; empty where it does not.
+std::vector<std::string> labels_of(PdbSites const& from) {
+    std::vector<std::string> labels;
+    for (PdbSite const& site : from.sites) {
+        if (!site.number) return {};
+        labels.push_back(site.label);
+    }
+    return labels;
+}
+
+/// Says which beads are meant where the file's numbers are not those of the beads.
+void note_numbering(ChainRequest const& request, std::vector<std::string> const& labels, std::string const& file) {
+    bool from_one = true;
+    for (std::size_t k = 0; k < labels.size(); ++k) from_one = from_one && labels[k] == std::to_string(k + 1);
+    if (from_one) return;
+    std::string list;
+    for (Domain const& domain : request.rigid)
+        list += fmt::format("{}{} are beads {} to {}", list.empty() ? "" : ", ", domain.name, domain.first + 1, domain.last + 1);
+    request.scene.note(fmt::format("`rigid` means the residue numbers of `{}`: {}", file, list));
+}
+
+void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues, PdbSites const& from) {
+    std::vector<std::string> const labels = labels_of(from);
+    request.rigid = read_domains(rigid, residues, labels);
+    note_numbering(request, labels, from.file);
 }
 
 void set_residues(BeadArrays& beads, Residues const& residues) {
@@ -75,25 +113,32 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
     Residues residues;
-    PdbSites sites;
+    PdbSites from;
+    Node const* const record = fields.find("record");
     if (Node const* const file = fields.find("pdb")) {
-        sites = read_pdb(resolved(text(*file), request.scene.file), *file, true);
-        residues = residues_named(sites.residue, *file);
+        from = read_pdb(resolved(text(*file), request.scene.file), *file, true);
+        for (std::string const& note : from.notes) request.scene.note(note);
+        residues = residues_named(from, *file, request.scene);
+        refuse_gaps(from, request, *file);
     } else if (Node const* const fasta = fields.find("fasta")) {
-        residues = residues_of(read_fasta(resolved(text(*fasta), request.scene.file), *fasta), *fasta);
+        std::string const path = resolved(text(*fasta), request.scene.file);
+        residues = residues_of(one_letter_codes(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta, request.scene));
     } else {
         Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
-        residues = residues_of(text(sequence), sequence);
+        residues = residues_of(one_letter_codes(text(sequence), sequence, request.scene));
     }
+    if (record && !fields.find("fasta")) fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
     if (Node const* const rigid = fields.find("rigid")) {
         Node const* const conformation = fields.find("conformation");
         if (!pdb && !fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
             fail(*rigid, "rigid domains in a chain without positions", "give `pdb` or `positions`: they say what shape the domains have");
-        request.rigid = read_domains(*rigid, residues.size());
+        set_rigid(request, *rigid, residues.size(), from);
     }
+    request.residues.clear();
+    for (Calvados2Residue const* const residue : residues) request.residues.push_back(residue->name);
     BeadArrays beads = at_start(request, static_cast<std::int64_t>(residues.size()), copy);
     set_residues(beads, residues);
-    if (pdb) request.place(beads, sites.position, *fields.find("pdb"));
+    if (pdb) request.place(beads, from.positions(), *fields.find("pdb"));
     return beads;
 }
 

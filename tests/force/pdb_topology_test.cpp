@@ -1,5 +1,7 @@
 #include "force/pdb_topology.hpp"
 
+#include <set>
+
 #include "tests/force/beads.hpp"
 
 namespace catena::testing {
@@ -22,12 +24,36 @@ TEST(PdbTopology, ChainsEndAtTerAndWhereTheIdentifierChanges) {
     ASSERT_EQ(chains.size(), 4u);
     EXPECT_EQ(chains[0].name, "A");
     EXPECT_EQ(chains[0].residue, (std::vector<std::string>{"MET", "ALA"}));
-    EXPECT_EQ(chains[1].name, "A");
+    EXPECT_EQ(chains[1].name, "A-2");
     EXPECT_EQ(chains[2].residue, std::vector<std::string>{"LYS"});
     EXPECT_EQ(chains[3].name, "4");
     EXPECT_NEAR(chains[0].position[1][0], 0.2, 1e-15);
     EXPECT_NEAR(chains[0].position[1][1], -0.15, 1e-15);
     EXPECT_NEAR(chains[0].position[1][2], 2.025, 1e-15);
+}
+
+TEST(PdbTopology, NamesAreUniqueHoweverManyChains) {
+    std::string text;
+    for (int k = 0; k < 200; ++k) text += atom(k, "GLY", static_cast<char>('A' + k % 26), k) + "TER\n";
+    auto const chains = read(text);
+    ASSERT_EQ(chains.size(), 200u);
+    std::set<std::string> names;
+    for (auto const& chain : chains) names.insert(chain.name);
+    EXPECT_EQ(names.size(), 200u);
+    EXPECT_EQ(chains[26].name, "A-2");
+    EXPECT_EQ(chains[199].name, "R-8");
+}
+
+TEST(PdbTopology, SegmentsTellChainsApart) {
+    auto const in_segment = [](int serial, std::string const& segment) {
+        std::string line = atom(serial, "GLY", ' ', serial);
+        return line.substr(0, 66) + "      " + segment + "\n";
+    };
+    auto const chains = read(in_segment(1, "PROA") + in_segment(2, "PROA") + in_segment(3, "PROB"));
+    ASSERT_EQ(chains.size(), 2u);
+    EXPECT_EQ(chains[0].name, "PROA");
+    EXPECT_EQ(chains[0].size(), 2u);
+    EXPECT_EQ(chains[1].name, "PROB");
 }
 
 TEST(PdbTopology, TheFirstModelAloneAndLinesOfOtherSystems) {
@@ -43,9 +69,9 @@ TEST(PdbTopology, Messages) {
     EXPECT_NE(complaint([] { read("END\n"); }).find("holds no ATOM record (scene.yaml: topology): "), std::string::npos);
     std::string broken = atom(1, "GLY", 'A', 1);
     broken.replace(30, 8, "   1.x  ");
-    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("\"1.x\" is no coordinate ("), std::string::npos);
-    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("topology.pdb, line 2): "), std::string::npos);
-    EXPECT_NE(complaint([&] { read(broken.substr(0, 30) + "\n"); }).find("\"\" is no coordinate"), std::string::npos);
+    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("`1.x` is not a number ("), std::string::npos);
+    EXPECT_NE(complaint([&] { read("TER\n" + broken); }).find("topology.pdb: line 2): "), std::string::npos);
+    EXPECT_NE(complaint([&] { read(broken.substr(0, 30) + "\n"); }).find("the atom's line is cut short"), std::string::npos);
 }
 
 }  // namespace

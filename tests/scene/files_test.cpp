@@ -41,6 +41,11 @@ class SceneFiles : public testing::Test {
         }
         return "accepted";
     }
+    std::vector<std::string> notes_of(Scene const& scene) const {
+        std::vector<std::string> notes;
+        for (std::string const& note : scene.notes) notes.push_back(without_folder(note));
+        return notes;
+    }
     std::string without_folder(std::string message) const {
         std::string const prefix = folder_.string() + "/";
         for (std::size_t at; (at = message.find(prefix)) != std::string::npos;) message.erase(at, prefix.size());
@@ -97,54 +102,179 @@ TEST_F(SceneFiles, bad_tables) {
     EXPECT_EQ(refusal(with_table_), "no such file: `start.csv`" + where + "check the path");
 }
 
-TEST_F(SceneFiles, first_record_of_a_fasta_file) {
-    write("a.fasta", ">one\nGA\nS*\n>two\nWWWW\n");
-    BeadArrays const beads = read(with_fasta_).chains.at(0).beads;
-    EXPECT_EQ(beads.residue, (std::vector<std::string>{"GLY", "ALA", "SER"}));
+TEST_F(SceneFiles, one_record_of_a_fasta_file) {
+    write("a.fasta", "\xEF\xBB\xBF>one some words\r\nGA\r\nS*\r\n");
+    EXPECT_EQ(read(with_fasta_).chains.at(0).beads.residue, (std::vector<std::string>{"GLY", "ALA", "SER"}));
+    EXPECT_TRUE(read(with_fasta_).notes.empty());
+}
+
+TEST_F(SceneFiles, records_of_a_fasta_file_are_chosen_by_name_or_number) {
+    auto const first = [&](std::string const& keys) {
+        return read("chains: [{fasta: a.fasta, model: calvados2" + keys + "}]").chains.at(0).beads.residue.at(0);
+    };
+    std::string const where = " (s.yaml: chains[0].fasta, line 1): ";
+    write("a.fasta", ">one\nGA\n>sp|P1|TWO_X words\nWW\n>2\nKK\n>one\nAA\n");
+    EXPECT_EQ(first(", record: P1"), "TRP");
+    EXPECT_EQ(first(", record: 2"), "LYS");  // a name goes before a number
+    EXPECT_EQ(first(", record: 1"), "GLY");
+    EXPECT_EQ(first(", name: TWO_X"), "TRP");
+    EXPECT_EQ(first(", name: one, record: 4"), "ALA");
+    EXPECT_EQ(refusal(with_fasta_), "`a.fasta` holds 4 records: `one`, `sp|P1|TWO_X`, `2`, `one`" + where +
+                                        "name the chain after one of them, or add `record: NAME` or its number");
+    EXPECT_EQ(refusal("chains: [{name: one, fasta: a.fasta, model: calvados2}]"),
+              "2 records bear the name `one` (s.yaml: chains[0].name, line 1): choose one by its number: `record: 1`");
+    EXPECT_EQ(
+        refusal("chains: [{fasta: a.fasta, model: calvados2, record: 5}]"),
+        "`a.fasta` has no record `5`: it holds `one`, `sp|P1|TWO_X`, `2`, `one` (s.yaml: chains[0].record, line 1): give a name, or a "
+        "number from 1 to 4");
+    EXPECT_EQ(refusal("chains: [{sequence: GG, model: calvados2, record: 5}]"),
+              "key `record` chooses among the sequences of a `fasta` file (s.yaml: chains[0].record, line 1): leave it out");
 }
 
 TEST_F(SceneFiles, bad_fasta_files) {
     write("a.fasta", "GAS\n");
     EXPECT_EQ(refusal(with_fasta_), "sequence before the first record (a.fasta: line 1): start the record with a line `>name`");
-    write("a.fasta", ">one\n>two\nGAS\n");
+    write("a.fasta", ">one\n\n");
     EXPECT_EQ(refusal(with_fasta_),
               "no sequence in `a.fasta` (s.yaml: chains[0].fasta, line 1): give a record: `>name`, then one-letter codes");
-    write("a.fasta", ">one\nGXS\n");
+    std::string const codes = "use the one-letter codes ARNDCQEGHILKMFPSTWYV";
+    auto const refused = [&](std::string const& sequence, std::string const& what, std::string const& remedy) {
+        write("a.fasta", ">one\n" + sequence + "\n");
+        EXPECT_EQ(refusal(with_fasta_), what + " (s.yaml: chains[0].fasta, line 1): " + remedy);
+    };
+    refused("GXS", "`X` at position 2 of the sequence is no residue of calvados2", codes);
+    refused("GU", "`U` at position 2 of the sequence is no residue of calvados2: selenocysteine", "write C");
+    refused("G*S", "`*` at position 2 of the sequence is no residue of calvados2: a stop within the sequence", "end the sequence there");
+    refused("G-S", "`-` at position 2 of the sequence is no residue of calvados2: a gap of an alignment", "give the sequence without gaps");
+    refused("1 GAS", "`1` at position 1 of the sequence is no residue of calvados2: a number", "leave the numbers of positions out");
+    write("a.fasta", std::string(">one\0GAS\n", 9));
     EXPECT_EQ(refusal(with_fasta_),
-              "`X` at position 2 of the sequence is no residue of calvados2 (s.yaml: chains[0].fasta, line 1): use the one-letter codes "
-              "ARNDCQEGHILKMFPSTWYV");
+              "`a.fasta` is no text (s.yaml: chains[0].fasta, line 1): give a FASTA file: `>name`, then one-letter codes");
+}
+
+TEST_F(SceneFiles, slips_in_sequences_are_noted) {
+    auto const notes = [&](std::string const& sequence) { return read("chains: [{sequence: " + sequence + ", model: calvados2}]").notes; };
+    std::string const threes = "`chains[0].sequence` looks like three-letter codes and is read as ";
+    EXPECT_EQ(notes("MET ASP VAL"), std::vector<std::string>{threes + "9 one-letter codes (M, E, T, ...): write one letter a residue"});
+    EXPECT_EQ(notes("METASPVAL").size(), 1u);
+    EXPECT_EQ(notes("met asp val").size(), 2u);
+    EXPECT_EQ(notes("MKVF"), std::vector<std::string>{});
+    EXPECT_EQ(notes("GSK EEL RKA"), std::vector<std::string>{});
+    EXPECT_EQ(notes("MKvf"), std::vector<std::string>{"`chains[0].sequence`: 2 of 4 letters are small and are read as capitals"});
+    EXPECT_EQ(notes("ACGTACGTACGTACGTACGT").size(), 1u);
+    EXPECT_EQ(notes("GAGAGAGAGAGAGAGAGAGA").size(), 0u);
 }
 
 TEST_F(SceneFiles, alpha_carbons_of_a_pdb_file) {
-    write("a.pdb", "HEADER\n" + atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'A', 1, 1) + atom(3, "CA", "ALA", 'A', 2, 4.8, 'A') +
-                       atom(4, "CA", "ALA", 'A', 2, 5.8, 'B') + "ENDMDL\n" + atom(5, "CA", "SER", 'A', 3, 9));
-    BeadArrays const beads = read(with_pdb_).chains.at(0).beads;
+    write("a.pdb", "HEADER\n" + atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'A', 1, 1) + atom(3, "CA", "ALA", 'A', 2, 4.8) +
+                       "ENDMDL\n" + atom(5, "CA", "SER", 'A', 3, 9));
+    Scene const s = read(with_pdb_);
+    BeadArrays const& beads = s.chains.at(0).beads;
     EXPECT_EQ(beads.residue, (std::vector<std::string>{"GLY", "ALA"}));
     EXPECT_DOUBLE_EQ(beads.position[0][0], 0.1);
     EXPECT_DOUBLE_EQ(beads.position[0][2], -0.025);
     EXPECT_DOUBLE_EQ(beads.length[1], 0.38);
+    EXPECT_EQ(notes_of(s), std::vector<std::string>{"`a.pdb`: 2 models, the first is taken"});
 }
 
 TEST_F(SceneFiles, bad_pdb_files) {
-    std::string const where = " (s.yaml: chains[0].pdb, line 1): ";
-    write("a.pdb", "HEADER\n");
-    EXPECT_EQ(refusal(with_pdb_), "no atoms in `a.pdb`" + where + "give ATOM records");
-    write("a.pdb", atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, 1));
-    EXPECT_EQ(refusal(with_pdb_), "residue A   1 of `a.pdb` has several atoms and none is its only CA" + where + "keep one atom a residue");
-    write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1));
-    EXPECT_EQ(refusal(with_pdb_), "`a.pdb` holds chains A and B" + where + "keep one chain a file");
-    write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "HOH", 'A', 2, 1));
-    EXPECT_EQ(refusal(with_pdb_),
-              "`HOH` is no residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename or remove it in the file");
-    write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0).substr(0, 40) + "\n");
-    EXPECT_EQ(refusal(with_pdb_), "the atom's line is cut short (a.pdb: line 1): give coordinates in columns 31 to 54");
+    std::string const where = " (s.yaml: chains[0].pdb, line 1): ", own = " (a.pdb): write a PDB file";
+    auto const refused = [&](std::string const& text, std::string const& message) {
+        write("a.pdb", text);
+        EXPECT_EQ(refusal(with_pdb_), message);
+    };
+    refused("HEADER\n", "no atoms in `a.pdb`" + where + "give ATOM records");
+    refused(atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, 1),
+            "residue GLY 1 of chain A of `a.pdb` has several atoms and none is its only CA" + where + "keep one atom a residue");
+    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
+            "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where + "keep one chain a file and give each its own entry");
+    refused(atom(1, "CA", "GLY", 'A', 1, 0) + "TER\n" + atom(2, "CA", "GLY", 'A', 2, 3.8) + atom(3, "CA", "GLY", 'A', 3, 7.6),
+            "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where + "keep one chain a file and give each its own entry");
+    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "XYZ", 'A', 2, 1),
+            "`XYZ 2` is no residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename or remove it in the file");
+    refused(
+        atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "SEP", 'A', 2, 1),
+        "`SEP 2` has another charge than SER, and calvados2 has no parameters for it (s.yaml: chains[0].pdb, bead 2, line 1): write SER "
+        "in the file if that charge may be lost, or give the forces as a System");
+    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "N", "ALA", 'A', 2, 1),
+            "residue ALA 2 of chain A of `a.pdb` has no CA atom (line 2)" + where + "add it, or take the residue out of the file");
+    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'A', 1, 0),
+            "residue GLY 1 of chain A of `a.pdb` has atom CA twice (lines 1 and 2)" + where + "keep one of them");
+    refused(
+        atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "ALA", 'A', 1, 3.8),
+        "residue GLY 1 of chain A of `a.pdb` comes again as ALA (line 2)" + where + "give each residue its own number or insertion code");
+    refused(atom(1, "CA", "GLY", 'A', 2, 0) + atom(2, "CA", "ALA", 'A', 1, 3.8),
+            "residue ALA 1 follows GLY 2 in `a.pdb`" + where +
+                "sort the residues by their numbers, number them along the chain, or keep one chain a file");
+    refused(" \n", "the file is empty" + own);
+    refused("<!DOCTYPE html>\n", "the file holds HTML or XML" + own);
+    refused(std::string("ATOM\0", 5), "the file is no text" + own);
+    refused("\x1F\x8B", "the file is compressed (a.pdb): unpack it: gunzip");
+    refused(">p\nGAS\n", "the file holds sequences (FASTA)" + own + ", or give it as `fasta`");
+    for (char const* const head : {"data_x\n", "# made by x\nloop_\n_atom_site.id\n"})
+        refused(head, "mmCIF is not read yet" + own + " (gemmi convert in.cif out.pdb)");
+}
+
+TEST_F(SceneFiles, pdb_files_with_wrong_columns) {
+    std::string const where = " (a.pdb: line 1): give x, y and z in angstrom, with a decimal point, in columns 31-38, 39-46 and 47-54";
+    std::string const good = atom(1, "CA", "GLY", 'A', 1, 1.234, ' ', 30.5, 20.25);
+    auto const refused = [&](std::string const& text, std::string const& what) {
+        write("a.pdb", text);
+        EXPECT_EQ(refusal(with_pdb_), what + where);
+    };
+    refused(good.substr(0, 40) + "\n", "the atom's line is cut short");
+    refused("ATOM 1 CA GLY A 1 1.234 30.500 20.250 1.00 0.00 some more of it\n", "the coordinates begin before column 31");
+    refused(std::string(good).replace(30, 24, "       1.234      30.500"), "`1` is cut out of its column");
+    refused(std::string(good).insert(6, "1"), "`1.23` is cut out of its column");
+    refused(std::string(good).replace(29, 1, "1"), "the coordinates begin before column 31");
+}
+
+TEST_F(SceneFiles, a_pdb_file_may_have_six_digits_of_serials_and_long_residue_names) {
+    write("a.pdb", std::string(atom(1, "CA", "HSD", 'A', 1, 0)).replace(4, 7, " 100000") +
+                       std::string(atom(2, "CA", "HIS", 'A', 2, 3.8)).replace(17, 4, "HISE") +
+                       std::string(atom(3, "CA", "GLY", 'A', 3, 7.6)).replace(4, 7, "  *****"));
+    EXPECT_EQ(read(with_pdb_).chains.at(0).beads.residue, (std::vector<std::string>{"HIS", "HIS", "GLY"}));
+}
+
+TEST_F(SceneFiles, a_long_chain_as_catena_writes_it) {
+    std::string text;
+    for (int k = 0; k < 20500; ++k) text += atom(k, "CA", "GLY", 'A', (k + 1) % 10000, 3.29 * (k % 20), ' ', k % 2, 0.3 * k);
+    write("a.pdb", text + "TER\nEND\n");
+    Scene const s = read("chains: [{pdb: a.pdb, model: calvados2, links: as_given}]");
+    EXPECT_EQ(s.chains.at(0).beads.size(), 20500u);
+}
+
+TEST_F(SceneFiles, residue_numbers_beyond_their_columns) {
+    write("a.pdb", atom(1, "CA", "GLY", 'A', 9999, 0) + atom(2, "CA", "GLY", 'A', 0, 3.8) +
+                       std::string(atom(3, "CA", "ALA", 'A', 1, 7.6)).replace(22, 4, "A000") +
+                       std::string(atom(4, "CA", "ALA", 'A', 1, 11.4)).replace(22, 4, "****") +
+                       std::string(atom(5, "CA", "ALA", 'A', 1, 15.2)).replace(22, 4, "****"));
+    EXPECT_EQ(read("chains: [{pdb: a.pdb, model: calvados2}]").chains.at(0).beads.size(), 5u);
+}
+
+TEST_F(SceneFiles, rigid_domains_of_a_pdb_file_bear_its_residue_numbers) {
+    write("a.pdb", atom(1, "CA", "GLY", 'A', 10, 0) + atom(2, "CA", "GLY", 'A', 11, 3.8) + atom(3, "CA", "ALA", 'A', 12, 3.8, ' ', 4.3) +
+                       std::string(atom(4, "CA", "ALA", 'A', 12, 0, ' ', 4.3)).replace(26, 1, "A"));
+    auto const with = [](std::string const& rigid) { return "chains: [{pdb: a.pdb, model: calvados2, rigid: " + rigid + "}]"; };
+    Scene const s = read(with("[[11, 12A]]"));
+    EXPECT_EQ(s.chains.at(0).linked.mass.size(), 2u);
+    EXPECT_EQ(notes_of(s), std::vector<std::string>{"`rigid` means the residue numbers of `a.pdb`: residues 11 to 12A are beads 2 to 4"});
+    std::string const where = " (s.yaml: chains[0].rigid[0], line 1): ";
+    EXPECT_EQ(refusal(with("[[1, 3]]")),
+              "residue 1 is not in the file" + where + "give [first, last] with the file's residue numbers, here 10 to 12A, both included");
+    EXPECT_EQ(refusal(with("[[10, 11]]")), "residues 10 to 11 are no rigid body: it needs three that do not stand on one line" + where +
+                                               "give [first, last] with the file's residue numbers, here 10 to 12A, both included");
+    EXPECT_EQ(refusal(with("[[10, 12], [12, 12A]]")).substr(0, 25), "residues 12 to 12A are no");
 }
 
 TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
     write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 4));
     for (char const* const key : {"positions: a.pdb", "conformation: {pdb: a.pdb}"}) {
-        BeadArrays const beads =
-            read(std::string("chains: [{sequence: WW, model: calvados2, links: as_given, ") + key + "}]").chains.at(0).beads;
+        Scene const s = read(std::string("chains: [{sequence: GW, model: calvados2, links: as_given, ") + key + "}]");
+        BeadArrays const& beads = s.chains.at(0).beads;
+        EXPECT_EQ(notes_of(s),
+                  std::vector<std::string>{"`a.pdb` names other residues than the sequence in 1 of 2 places: its positions are "
+                                           "taken all the same"});
         EXPECT_DOUBLE_EQ(beads.position[1][0], 0.4);
         EXPECT_DOUBLE_EQ(beads.length[1], 0.4);
     }

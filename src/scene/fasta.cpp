@@ -1,0 +1,179 @@
+#include "scene/fasta.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <sstream>
+
+#include "force/calvados2.hpp"
+#include "scene/fields.hpp"
+#include "scene/files.hpp"
+#include "scene/residue_names.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+struct Record {
+    std::string header;  // without `>`
+    std::string sequence;
+
+    std::string name() const { return header.substr(0, header.find_first_of(" \t")); }
+    /// The name, or one of its parts between bars: `sp|P37840|SYUA_HUMAN`.
+    bool bears(std::string const& wanted) const {
+        std::string const whole = name();
+        if (wanted.empty() || whole == wanted || header == wanted) return !wanted.empty();
+        std::istringstream parts(whole);
+        for (std::string part; std::getline(parts, part, '|');)
+            if (part == wanted) return true;
+        return false;
+    }
+};
+
+std::string trimmed(std::string const& text) {
+    std::size_t const first = text.find_first_not_of(" \t\r");
+    return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+/// Lines end in LF, CR LF or CR.
+std::string with_line_feeds(std::string text) {
+    if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);
+    std::replace(text.begin(), text.end(), '\r', '\n');
+    return text;
+}
+
+std::vector<Record> records_of(std::string const& path, Node const& at) {
+    std::string const bytes = read_text_file(path, at);
+    if (bytes.find('\0') != std::string::npos || bytes.starts_with("\x1F\x8B"))
+        fail(at, "`" + shown_path(path) + "` is no text", "give a FASTA file: `>name`, then one-letter codes");
+    std::istringstream stream(with_line_feeds(bytes));
+    std::vector<Record> records;
+    for (std::string line; std::getline(stream, line);) {
+        if (line = trimmed(line); line.empty()) continue;
+        if (line[0] == '>') {
+            records.push_back({trimmed(line.substr(1)), ""});
+        } else if (records.empty()) {
+            auto const n = 1 + std::count(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(bytes.find(line)), '\n');
+            throw InputError("sequence before the first record", fmt::format("{}: line {}", shown_path(path), n),
+                             "start the record with a line `>name`");
+        } else {
+            records.back().sequence += line + "\n";
+        }
+    }
+    return records;
+}
+
+std::string first_names(std::vector<Record> const& records) {
+    std::string list;
+    for (std::size_t k = 0; k < std::min<std::size_t>(records.size(), 4); ++k)
+        list += fmt::format("{}`{}`", k == 0 ? "" : ", ", shown(records[k].name()));
+    return list + (records.size() > 4 ? ", ..." : "");
+}
+
+std::vector<Record const*> bearers(std::vector<Record> const& records, std::string const& name) {
+    std::vector<Record const*> found;
+    for (Record const& record : records)
+        if (record.bears(name)) found.push_back(&record);
+    return found;
+}
+
+Record const& the_only(std::vector<Record const*> const& found, Node const& at, std::string const& name) {
+    if (found.size() > 1)
+        fail(at, fmt::format("{} records bear the name `{}`", found.size(), shown(name)), "choose one by its number: `record: 1`");
+    return *found[0];
+}
+
+Record const& recorded(std::vector<Record> const& records, Node const& record, std::string const& path) {
+    std::string const wanted = text(record);
+    if (auto const found = bearers(records, wanted); !found.empty()) return the_only(found, record, wanted);
+    double number = 0;
+    if (parse_number(wanted, number) == NumberFault::none && number >= 1 && number <= static_cast<double>(records.size()) &&
+        number == static_cast<double>(static_cast<std::size_t>(number)))
+        return records[static_cast<std::size_t>(number) - 1];
+    fail(record, fmt::format("`{}` has no record `{}`: it holds {}", shown_path(path), shown(wanted), first_names(records)),
+         fmt::format("give a name, or a number from 1 to {}", records.size()));
+}
+
+Record const& chosen(std::vector<Record> const& records, Node const& at, RecordChoice const& choice, std::string const& path) {
+    if (choice.record) return recorded(records, *choice.record, path);
+    if (records.size() == 1) return records[0];
+    if (choice.name)
+        if (auto const found = bearers(records, text(*choice.name)); !found.empty())
+            return the_only(found, *choice.name, choice.name->text);
+    fail(at, fmt::format("`{}` holds {} records: {}", shown_path(path), records.size(), first_names(records)),
+         "name the chain after one of them, or add `record: NAME` or its number");
+}
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+
+[[noreturn]] void refuse_letter(char letter, std::size_t position, Node const& source) {
+    std::string what =
+        fmt::format("`{}` at position {} of the sequence is no residue of calvados2", shown(std::string(1, letter)), position);
+    std::string remedy = "use the one-letter codes ARNDCQEGHILKMFPSTWYV";
+    if (letter == '*') what += ": a stop within the sequence", remedy = "end the sequence there";
+    if (letter == '-' || letter == '.') what += ": a gap of an alignment", remedy = "give the sequence without gaps";
+    if (std::isdigit(static_cast<unsigned char>(letter))) what += ": a number", remedy = "leave the numbers of positions out";
+    if (letter == 'U') what += ": selenocysteine", remedy = "write C";
+    fail(source, what, remedy);
+}
+
+/// Whether blanks cut the text into words of three letters each, two or more.
+bool is_cut_into_threes(std::string const& text) {
+    std::istringstream stream(text);
+    std::size_t words = 0;
+    for (std::string word; stream >> word; ++words)
+        if (word.size() != 3) return false;
+    return words >= 2;
+}
+
+/// `MET ASP VAL` and `METASPVAL` are most likely not meant as one-letter codes.
+void note_three_letters(std::string const& text, std::string const& letters, Node const& source, Scene& scene) {
+    std::size_t const threes = letters.size() / 3;
+    if (letters.size() % 3 != 0 || threes < 2) return;
+    std::size_t named = 0;
+    for (std::size_t k = 0; k < threes; ++k) named += meaning_of(letters.substr(3 * k, 3)).kind == ResidueKind::amino_acid;
+    if (is_cut_into_threes(text) ? 2 * named < threes : threes < 3 || named < threes) return;
+    scene.note(
+        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, {}, {}, ...): write one letter a residue",
+                    source.path(), letters.size(), letters[0], letters[1], letters[2]));
+}
+
+void note_nucleotides(std::string const& letters, Node const& source, Scene& scene) {
+    if (letters.size() < 20 || letters.find_first_not_of("ACGT") != std::string::npos) return;
+    for (char const base : {'A', 'C', 'G', 'T'})
+        if (letters.find(base) == std::string::npos) return;
+    scene.note(fmt::format("`{}` has the letters A, C, G and T alone and is read as a protein: it looks like DNA", source.path()));
+}
+
+}  // namespace
+
+std::string read_fasta(std::string const& path, Node const& at, RecordChoice const& choice) {
+    std::vector<Record> const records = records_of(path, at);
+    std::string sequence;
+    if (!records.empty()) sequence = trimmed(chosen(records, at, choice, path).sequence);
+    while (!sequence.empty() && is_blank(sequence.back())) sequence.pop_back();
+    if (!sequence.empty() && sequence.back() == '*') sequence.pop_back();
+    if (sequence.empty()) fail(at, "no sequence in `" + shown_path(path) + "`", "give a record: `>name`, then one-letter codes");
+    return sequence;
+}
+
+std::string one_letter_codes(std::string const& text, Node const& source, Scene& scene) {
+    std::string letters;
+    std::size_t small = 0;
+    for (char const c : text) {
+        if (is_blank(c)) continue;
+        char const letter = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        small += letter != c;
+        letters += letter;
+        if (!find_calvados2(letter)) refuse_letter(c, letters.size(), source);
+    }
+    if (letters.empty()) fail(source, "the sequence is empty", "give one-letter codes");
+    if (small > 0)
+        scene.note(fmt::format("`{}`: {} of {} letters are small and are read as capitals", source.path(), small, letters.size()));
+    note_three_letters(text, letters, source, scene);
+    note_nucleotides(letters, source, scene);
+    return letters;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,91 @@
+#include "scene/gaps.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace catena::scene {
+
+namespace {
+
+/// Alpha carbons of neighbours are 0.38 nm apart, 0.29 nm across a cis peptide bond. Frames of models with springs in the links' place
+/// (CALVADOS: 8033 kJ/mol/nm2) spread by 0.018 nm. Across one missing residue it is 0.5 nm and more in proteins.
+constexpr double least_distance = 0.25;
+constexpr double largest_distance = 0.46;            // nm, of residues with consecutive numbers: 4.5 standard deviations
+constexpr double largest_where_numbers_skip = 0.42;  // nm
+/// Carbonyl carbon to the next nitrogen: a peptide bond has 0.133 nm.
+constexpr double largest_peptide_bond = 0.2;
+
+class Neighbours {
+  public:
+    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at) : from_(from), request_(request), at_(at) {}
+
+    void check(PdbSite const& a, PdbSite const& b) {
+        std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
+        bool const wrapped = a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
+        if (step < 0 && !wrapped) refuse_order(a, b);
+        bool const skips = step > 1;
+        double const apart = distance(a.position, b.position);
+        double const peptide = a.carbonyl && b.nitrogen ? distance(*a.carbonyl, *b.nitrogen) : 0;
+        bool const bonded = peptide <= largest_peptide_bond;
+        bool const near = apart <= (skips ? largest_where_numbers_skip : largest_distance);
+        if (near && bonded && apart >= least_distance) return count(a, b, skips);
+        if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
+        if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
+    }
+    void note() const {
+        if (skips_ > 0)
+            request_.scene.note(
+                fmt::format("`{}`: residue numbers skip {} between neighbours at a link's distance (first: {}): no residue "
+                            "is missing there",
+                            from_.file, times(skips_), first_skip_));
+        if (gaps_ > 0)
+            request_.scene.note(fmt::format("`{}`: {} at which neighbours cannot stand kept as links (first: {}) as `links: as_given` asks",
+                                            from_.file, gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_), first_gap_));
+    }
+
+  private:
+    static std::string times(int n) { return n == 1 ? "once" : fmt::format("{} times", n); }
+
+    void count(PdbSite const& a, PdbSite const& b, bool skips) {
+        if (skips && skips_++ == 0) first_skip_ = fmt::format("{} to {}", a.label, b.label);
+    }
+    /// By the nearest image where the scene has a box.
+    double distance(Vec3 const& a, Vec3 const& b) const {
+        Vec3 way = b - a;
+        for (int i = 0; request_.scene.box && i < 3; ++i) {
+            double const edge = (*request_.scene.box)[i];
+            way[i] -= edge * std::round(way[i] / edge);
+        }
+        return norm(way);
+    }
+    [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
+        fail(at_, fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue, a.label, from_.file),
+             "sort the residues by their numbers, number them along the chain, or keep one chain a file");
+    }
+    [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart, double peptide) const {
+        std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label, b.residue, b.label, from_.file);
+        if (apart < least_distance)
+            fail(at_, fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
+                 "mend the file, or write `links: as_given`");
+        std::string const broken = peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide) : "";
+        fail(at_, fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
+             "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
+    }
+
+    PdbSites const& from_;
+    ChainRequest const& request_;
+    Node const& at_;
+    int skips_ = 0, gaps_ = 0;
+    std::string first_skip_, first_gap_;
+};
+
+}  // namespace
+
+void refuse_gaps(PdbSites const& from, ChainRequest const& request, Node const& at) {
+    Neighbours neighbours(from, request, at);
+    for (std::size_t k = 1; k < from.sites.size(); ++k) neighbours.check(from.sites[k - 1], from.sites[k]);
+    neighbours.note();
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,13 @@
+// Whether neighbours in a PDB file can be neighbours in a chain.
+#pragma once
+
+#include "scene/chain_request.hpp"
+#include "scene/pdb_sites.hpp"
+
+namespace catena::scene {
+
+/// InputError, with both residues and their distance, where numbers fall or residues are missing between two that no link of the model can
+/// join; with `links: as_given` a note. Numbers that skip between residues at a link's distance get a note.
+void refuse_gaps(PdbSites const& from, ChainRequest const& request, Node const& at);
+
+}  // namespace catena::scene
