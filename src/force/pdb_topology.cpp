@@ -42,7 +42,7 @@ class UniqueNames {
 
 }  // namespace
 
-std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where) {
+std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where, std::vector<std::string>* notes) {
     std::string const text = whole_text(file, where);
     std::vector<PdbChain> chains;
     scene::PdbAtom last;
@@ -55,6 +55,8 @@ std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string con
     if (summary.atoms == 0)
         throw InputError(fmt::format("{} holds no ATOM record", scene::shown_path(file)), where,
                          "name a PDB file with one atom a particle");
+    if (notes && summary.models > 1)
+        notes->push_back(fmt::format("`{}`: {} models, the first is taken", scene::shown_path(file), summary.models));
     UniqueNames names;
     for (std::size_t c = 0; c < chains.size(); ++c)
         chains[c].name = names.make(chains[c].name.empty() ? std::to_string(c + 1) : chains[c].name);

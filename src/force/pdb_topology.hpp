@@ -18,6 +18,7 @@ struct PdbChain {
 
 /// The chains of the first model, in the file's order: a new one begins after TER and where letter or segment changes.
 /// Throws InputError; `where`: scene file and key, for messages.
-std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where);
+/// `notes`, where it is given, takes what the file holds beyond that.
+std::vector<PdbChain> read_pdb_topology(std::string const& file, std::string const& where, std::vector<std::string>* notes = nullptr);
 
 }  // namespace catena

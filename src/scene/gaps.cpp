@@ -16,6 +16,12 @@ constexpr double largest_where_numbers_skip = 0.42;  // nm
 /// Carbonyl carbon to the next nitrogen: a peptide bond has 0.133 nm.
 constexpr double largest_peptide_bond = 0.2;
 
+double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const& box) {
+    Vec3 way = b - a;
+    for (int i = 0; box && i < 3; ++i) way[i] -= (*box)[i] * std::round(way[i] / (*box)[i]);
+    return norm(way);
+}
+
 class Neighbours {
   public:
     Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at) : from_(from), request_(request), at_(at) {}
@@ -51,13 +57,10 @@ class Neighbours {
         if (skips && skips_++ == 0) first_skip_ = fmt::format("{} to {}", a.label, b.label);
     }
     /// By the nearest image where the scene has a box.
-    double distance(Vec3 const& a, Vec3 const& b) const {
-        Vec3 way = b - a;
-        for (int i = 0; request_.scene.box && i < 3; ++i) {
-            double const edge = (*request_.scene.box)[i];
-            way[i] -= edge * std::round(way[i] / edge);
-        }
-        return norm(way);
+    double distance(Vec3 const& a, Vec3 const& b) const { return nearest_distance(a, b, request_.scene.box); }
+    /// Whether the chain has no gap in the cell that the file names and the scene does not.
+    bool is_wrapped(PdbSite const& a, PdbSite const& b) const {
+        return from_.cell && !request_.scene.box && nearest_distance(a.position, b.position, from_.cell) <= largest_distance;
     }
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
         fail(at_, fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue, a.label, from_.file),
@@ -67,10 +70,13 @@ class Neighbours {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label, b.residue, b.label, from_.file);
         if (apart < least_distance)
             fail(at_, fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
-                 "mend the file, or write `links: as_given`");
+                 "mend the file (its unit is angstrom), or write `links: as_given`");
         std::string const broken = peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide) : "";
         fail(at_, fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
-             "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
+             is_wrapped(a, b)
+                 ? fmt::format("the file is wrapped into its cell (CRYST1): write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`",
+                               (*from_.cell)[0], (*from_.cell)[1], (*from_.cell)[2])
+                 : "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
     }
 
     PdbSites const& from_;

@@ -124,6 +124,19 @@ void read_sequence_record(std::string_view line, PdbSummary& summary) {
         summary.sequence[std::string(columns(line, 12, 1))] = static_cast<std::int64_t>(residues);
 }
 
+/// CRYST1: edges in columns 7 to 33, angles to 54. A cube of 1 angstrom stands for no cell.
+void read_cell(std::string_view line, PdbSummary& summary) {
+    Vec3 edges{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        double edge = 0, angle = 0;
+        bool const read = parse_number(columns(line, 7 + 9 * i, 9), edge) == NumberFault::none &&
+                          parse_number(columns(line, 34 + 7 * i, 7), angle) == NumberFault::none;
+        if (!read || edge <= 1 || angle != 90) return;
+        edges[static_cast<int>(i)] = edge;
+    }
+    summary.cell = edges;
+}
+
 }  // namespace
 
 PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path, std::function<void(PdbAtom const&)> const& take) {
@@ -138,6 +151,8 @@ PdbSummary for_each_pdb_atom(std::string_view text, std::string const& path, std
             if (std::exchange(begun, false)) open = false;
         } else if (line.starts_with("TER") && blanks.find(column(line, 4)) != std::string_view::npos) {
             ++part;
+        } else if (is_record(line, "CRYST1")) {
+            read_cell(line, summary);
         } else if (is_record(line, "SEQRES")) {
             read_sequence_record(line, summary);
         } else if (is_atom(line)) {

@@ -32,6 +32,7 @@ struct PdbSummary {
     std::int64_t atoms = 0;                        // of the first model
     int models = 0;                                // 1 where the file numbers none
     std::map<std::string, std::int64_t> sequence;  // residues that SEQRES lists, by chain
+    std::optional<Vec3> cell;                      // edges of a rectangular cell (CRYST1), angstrom
 };
 
 /// Calls `take` for each atom of the first model in the file's order. Serial numbers are not read, so that none can overflow.

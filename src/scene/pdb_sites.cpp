@@ -24,6 +24,8 @@ struct Residue {
     bool is_protein() const { return meaning.kind == ResidueKind::amino_acid || meaning.kind == ResidueKind::charged; }
 };
 
+Vec3 in_nm(Vec3 const& angstrom) { return {{0.1 * angstrom[0], 0.1 * angstrom[1], 0.1 * angstrom[2]}}; }
+
 std::string label_of(PdbAtom const& atom) {
     auto const number = residue_number(atom.number);
     std::string label = number ? std::to_string(*number) : shown(atom.number);
@@ -173,8 +175,12 @@ class Selection {
     static bool is_solvent(Residue const& residue) {
         PdbAtom const& atom = residue.front();
         if (residue.meaning.kind == ResidueKind::water) return atom.residue.size() > 1 || atom.name == atom.residue;
-        if (residue.meaning.kind == ResidueKind::ion) return atom.residue.size() > 1 ? !is_carbon(atom) : atom.name == atom.residue;
-        return false;
+        if (residue.meaning.kind != ResidueKind::ion || !is_one_atom(residue)) return false;
+        return atom.residue.size() > 1 ? !is_carbon(atom) : atom.name == atom.residue;
+    }
+    static bool is_one_atom(Residue const& residue) {
+        return std::all_of(residue.atoms.begin(), residue.atoms.end(),
+                           [&](PdbAtom const& atom) { return atom.name == residue.front().name; });
     }
     static bool is_carbon(PdbAtom const& atom) { return atom.name == "CA" && !atom.at_margin && atom.element == "C"; }
 
@@ -188,7 +194,7 @@ class Selection {
         bool const has_site =
             std::any_of(residue.atoms.begin(), residue.atoms.end(), [&](PdbAtom const& a) { return is_alpha_carbon(residue, a); });
         if (!het || has_site) return nullptr;
-        return residue.atoms.size() == 1 && atom.name == atom.residue ? "ion" : "ligand";
+        return is_one_atom(residue) && atom.name == atom.residue ? "ion" : "ligand";
     }
 
     std::vector<PdbAtom const*> candidates(Residue const& residue) const {
@@ -226,7 +232,6 @@ class Selection {
         from_.push_back(&atom);
     }
     static Residue residue_of(PdbAtom const& atom) { return {{atom}, {}}; }
-    static Vec3 in_nm(Vec3 const& angstrom) { return {{0.1 * angstrom[0], 0.1 * angstrom[1], 0.1 * angstrom[2]}}; }
 
     /// Of the same alternate location, or of none.
     static std::optional<Vec3> beside(Residue const& residue, PdbAtom const& site, std::string_view name) {
@@ -268,6 +273,7 @@ PdbSites read_pdb(std::string const& path, Node const& at, bool single_chain) {
     if (summary.atoms == 0) fail(at, "no atoms in `" + shown_path(path) + "`", "give ATOM records");
     Selection selection(gathering.residues, path, at);
     selection.take_sites();
+    if (summary.cell) selection.made.cell = in_nm(*summary.cell);
     if (selection.made.sites.empty()) fail(at, "no residues of a chain in `" + shown_path(path) + "`", "give ATOM records of a chain");
     if (summary.models > 1)
         selection.made.notes.push_back(fmt::format("`{}`: {} models, the first is taken", selection.made.file, summary.models));

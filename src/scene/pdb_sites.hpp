@@ -22,6 +22,7 @@ struct PdbSite {
 struct PdbSites {
     std::string file;  // for messages
     std::vector<PdbSite> sites;
+    std::optional<Vec3> cell{};      // of the file, rectangular, nm
     std::vector<std::string> notes;  // what was left out or chosen, a sentence each
 
     std::vector<Vec3> positions() const;

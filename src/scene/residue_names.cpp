@@ -1,8 +1,8 @@
 #include "scene/residue_names.hpp"
 
-#include <algorithm>
 #include <cctype>
-#include <initializer_list>
+#include <span>
+#include <sstream>
 #include <unordered_map>
 
 namespace catena::scene {
@@ -11,68 +11,56 @@ namespace {
 
 using Meanings = std::unordered_map<std::string, ResidueMeaning>;
 
+/// Names, by blanks, that mean `parent`.
 struct Family {
     char const* parent;
-    std::initializer_list<char const*> names;
+    char const* names;
 };
 
 /// Protonation states and force fields' names (Amber, CHARMM, GROMACS), the wwPDB's common modifications without a change of charge, and
 /// mirror images, which one bead cannot tell apart.
-std::initializer_list<Family> const renamed = {
-    {"ALA", {"DAL", "AIB", "ABA"}},
-    {"ARG", {"DAR", "ARGN", "AGM"}},
-    {"ASN", {"DSG", "MEN"}},
-    {"ASP", {"ASH", "ASPH", "ASPP", "DAS"}},
-    {"CYS", {"CYX", "CYM", "CYS2", "CYSH", "CYN", "SEC", "CSO", "CSX", "CME", "CSS", "CMT", "SMC", "YCM", "DCY"}},
-    {"GLN", {"DGN", "MEQ"}},
-    {"GLU", {"GLH", "GLUH", "GLUP", "DGL"}},
-    {"GLY", {"SAR", "GLZ"}},
-    {"HIS", {"HIE", "HID", "HIP", "HSD", "HSE", "HSP", "HISA", "HISB", "HISD", "HISE", "HISH", "HIS1", "HIS2", "MHS", "HIC", "DHI"}},
-    {"ILE", {"DIL"}},
-    {"LEU", {"DLE", "NLE"}},
-    {"LYS", {"LYN", "LYSH", "LSN", "MLZ", "MLY", "M3L", "DLY"}},
-    {"MET", {"MSE", "FME", "MHO", "SME", "OMT", "MED"}},
-    {"PHE", {"DPN"}},
-    {"PRO", {"HYP", "DPR"}},
-    {"SER", {"DSN"}},
-    {"THR", {"DTH"}},
-    {"TRP", {"DTR"}},
-    {"TYR", {"DTY"}},
-    {"VAL", {"DVA", "NVA"}},
+Family const renamed[] = {
+    {"ALA", "ALA DAL AIB ABA"},
+    {"ARG", "ARG DAR ARGN AGM"},
+    {"ASN", "ASN DSG MEN"},
+    {"ASP", "ASP ASH ASPH ASPP BHD DAS"},
+    {"CYS", "CYS CYX CYM CYS2 CYSH CYN SEC CSO CSX CME CSS CMT SMC YCM DCY"},
+    {"GLN", "GLN DGN MEQ"},
+    {"GLU", "GLU GLH GLUH GLUP DGL"},
+    {"GLY", "GLY SAR"},
+    {"HIS", "HIS HIE HID HIP HSD HSE HSP HISA HISB HISD HISE HISH HIS1 HIS2 MHS HIC DHI"},
+    {"ILE", "ILE DIL"},
+    {"LEU", "LEU DLE NLE"},
+    {"LYS", "LYS LYN LYSH LSN MLZ MLY M3L DLY"},
+    {"MET", "MET MSE FME MHO SME OMT MED"},
+    {"PHE", "PHE DPN"},
+    {"PRO", "PRO HYP DPR"},
+    {"SER", "SER DSN"},
+    {"THR", "THR DTH"},
+    {"TRP", "TRP DTR"},
+    {"TYR", "TYR DTY"},
+    {"VAL", "VAL DVA NVA"},
 };
 
 /// Phosphates, sulfates, carboxylates, and lysine, arginine and glutamate that have lost their charge.
-std::initializer_list<Family> const recharged = {
-    {"SER", {"SEP", "S1P", "SP1", "SP2"}},
-    {"THR", {"TPO", "T1P", "THP"}},
-    {"TYR", {"PTR", "Y1P", "TYS", "TP1"}},
-    {"HIS", {"NEP", "HIP1", "HIP2"}},
-    {"CYS", {"CSD", "CSP", "OCS"}},
-    {"LYS", {"KCX", "ALY", "PYL", "LLP", "CRQ"}},
-    {"ARG", {"CIR"}},
-    {"GLU", {"CGU", "PCA", "PCE"}},
-    {"ASP", {"PHD", "BHD"}},
+Family const recharged[] = {
+    {"SER", "SEP S1P"},     {"THR", "TPO T1P"},         {"TYR", "PTR Y1P TYS"}, {"HIS", "NEP H1D H2D H1E H2E"},
+    {"CYS", "CSD CSP OCS"}, {"LYS", "KCX ALY PYL LLP"}, {"ARG", "CIR"},         {"GLU", "CGU PCA"},
+    {"ASP", "PHD"},
 };
 
-char const* const twenty[] = {"ALA", "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "GLY", "HIS", "ILE",
-                              "LEU", "LYS", "MET", "PHE", "PRO", "SER", "THR", "TRP", "TYR", "VAL"};
-char const* const caps[] = {"ACE", "NME", "NMA", "NH2", "NHE", "FOR", "ACT1", "CT3"};
-char const* const waters[] = {"HOH", "WAT", "DOD", "H2O", "OH2", "TIP",  "TIP2", "TIP3", "TIP4", "TIP5",
-                              "TP3", "TP4", "T3P", "T4P", "SOL", "SPCE", "SPC",  "SPE",  "HH0",  "W"};
-char const* const ions[] = {"LI",  "LI+", "LIT", "NA",  "NA+", "SOD", "NIO", "K",   "K+",  "POT", "RB",  "RB+", "RUB", "CS", "CS+",
-                            "CES", "MG",  "MG2", "CA",  "CA2", "CAL", "SR",  "BA",  "BAR", "ZN",  "ZN2", "MN",  "MN3", "FE", "FE2",
-                            "CO",  "3CO", "NI",  "3NI", "CU",  "CU1", "CD",  "CD2", "HG",  "AL",  "AG",  "AU",  "PT",  "PB", "F",
-                            "CL",  "CL-", "CLA", "CIO", "BR",  "BR-", "IOD", "YB",  "YT3", "SM",  "GD",  "GD3", "TB",  "LA", "EU",
-                            "PR",  "HO",  "LU",  "TL",  "IR",  "V",   "CR",  "GA",  "IN",  "PD",  "OS",  "RE",  "U1"};
+Family const caps[] = {{"", "ACE NME NMA NH2 NHE FOR CT3"}};
+Family const waters[] = {{"", "HOH WAT DOD H2O OH2 TIP TIP2 TIP3 TIP4 TIP5 TP3 TP4 T3P T4P SOL SPC SPCE W"}};
+Family const ions[] = {{"",
+                        "LI LI+ LIT NA NA+ SOD NIO K K+ POT RB RB+ RUB CS CS+ CES MG MG2 CA CA2 CAL SR BA BAR ZN ZN2 MN MN3 FE FE2 CO 3CO "
+                        "NI 3NI CU CU1 CD CD2 HG AL AG AU PT PB F CL CL- CLA CIO BR BR- IOD YB YT3 SM GD GD3 TB LA EU PR HO LU TL IR V CR "
+                        "GA IN PD OS RE U1"}};
 
-void add(Meanings& all, std::initializer_list<Family> const& families, ResidueKind kind) {
-    for (Family const& family : families)
-        for (char const* const name : family.names) all[name] = {kind, family.parent};
-}
-
-template <std::size_t N>
-void add(Meanings& all, char const* const (&names)[N], ResidueKind kind) {
-    for (char const* const name : names) all[name] = {kind, kind == ResidueKind::amino_acid ? name : ""};
+void add(Meanings& all, std::span<Family const> families, ResidueKind kind) {
+    for (Family const& family : families) {
+        std::istringstream names(family.names);
+        for (std::string name; names >> name;) all[name] = {kind, family.parent};
+    }
 }
 
 Meanings all_meanings() {
@@ -82,7 +70,6 @@ Meanings all_meanings() {
     add(all, caps, ResidueKind::cap);
     add(all, recharged, ResidueKind::charged);
     add(all, renamed, ResidueKind::amino_acid);
-    add(all, twenty, ResidueKind::amino_acid);
     return all;
 }
 
