@@ -46,10 +46,16 @@ std::string title_of(Scene const& scene) { return fmt::format("{} ({})", scene.t
 
 Table chain_table(Scene const& scene) {
     Table table({"chain", "copies", "bodies", "of", "base", "tip", "handles"}, {0, 3, 4, 5, 6});
+    std::size_t constexpr most_rows = 20;
+    std::size_t rows = 0;
     for (std::size_t i = 0; i < scene.chains.size();) {
         ChainSpec const& first = scene.chains[i];
         std::size_t end = i + 1;
         while (end < scene.chains.size() && alike(first, scene.chains[end])) ++end;
+        if (++rows > most_rows) {
+            table.add({"others", std::to_string(scene.chains.size() - i), "", "", "", "", ""});
+            break;
+        }
         std::string const name = end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
         table.add({name, std::to_string(end - i), std::to_string(first.size()), contents_of(first), base_name(first), tip_name(first),
                    kind_name(first)});

@@ -20,15 +20,14 @@ SolverSizes sizes() {
             dca::kept_of_run<K>(true) * 8.0};
 }
 /// Bytes a run among those that go side by side (dca/simd/runs.hpp): places of its own and of a merge, what is kept and the merge's joint,
-/// its bodies' constants. 0 where none do.
-double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes sizes, int directions, int ranks) {
+/// its bodies' constants. 0 where none do. `runs`: about how many a rank has.
+double side_by_side(Scene const& scene, ChainSpec const& chain, SolverSizes sizes, int directions, double runs) {
     SimdLevel const level = scene.solver.simd.value_or(best_simd_level());
     if (level == SimdLevel::off || scene.solver.handles != Handles::projected || scene.solver.pairwise()) return 0;
     double const places = static_cast<double>(sizeof(dca::RunsInLanes) + sizeof(dca::MergesInLanes)) / lanes_of(level);
     using InJoints = dca::BodyLeaf<5, dca::MeetingFrames<5, false>>;
     using InGround = dca::BodyLeaf<3, dca::GroundFrames<3>>;
     bool const joints = !chain.is_linked() && (!scene.dynamics.given || uses_joint_coordinates(scene.dynamics.integrator));
-    double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
     double const merge = sizes.kept / (dca::parts_of_run - 1);
     std::vector<JointType> const& types = chain.bodies.joint;
     bool const hinges =
@@ -99,6 +98,7 @@ Memory memory_of(Scene const& scene, int ranks) {
     bool const implicit = scene.dynamics.given && is_implicit(scene.dynamics.integrator);
     auto const resists = [](ChainSpec const& chain) { return scene::resists(chain); };
     bool const together = scene.solver.handles == Handles::full && std::any_of(scene.chains.begin(), scene.chains.end(), resists);
+    double const runs = static_cast<double>(scene.bodies()) / static_cast<double>(dca::longest_run * ranks);
     Memory m;
     for (ChainSpec const& chain : scene.chains) {
         bool const links = chain.is_beads() || chain.is_linked();
@@ -111,7 +111,7 @@ Memory memory_of(Scene const& scene, int ranks) {
         m.scene += scene_bytes(chain);
         m.state += n * (sizeof(double) * (numbers + 2 * k) + 5) / ranks;
         m.solver += (2 * static_cast<double>(tree.runs) * size.segment + n * size.joint) / ranks;
-        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size, k, ranks) / ranks;
+        m.solver += static_cast<double>(tree.runs) * side_by_side(scene, chain, size, k, runs) / ranks;
     }
     return m;
 }

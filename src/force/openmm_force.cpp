@@ -11,6 +11,7 @@
 #include "clock.hpp"
 #include "error.hpp"
 #include "force/force_layers.hpp"
+#include "force/openmm_box.hpp"
 #include "force/openmm_path.hpp"
 #include "force/openmm_rank.hpp"
 #include "force/openmm_subset.hpp"
@@ -351,6 +352,7 @@ std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSyste
     OpenMmPlatform platform;
     on_all(communicator, [&] {
         model = model_of(spec, beads, communicator, where);
+        refuse_box_beyond_cutoffs(*model.system, beads.scene_file + ": box");
         platform = accepted(where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
     });
     std::string const why_no_device = first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));

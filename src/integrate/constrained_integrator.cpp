@@ -76,7 +76,7 @@ bool ConstrainedIntegrator::choose_sweeps(int most, bool thermal) {
 void ConstrainedIntegrator::choose_sweeps() {
     if (is_implicit(scheme_.kind)) {
         // A sweep that gains two digits has room for joints that turn more than those of the trial.
-        int constexpr few = 8, most_parts = 64;
+        int constexpr few = 8;
         for (parts_ = 1; parts_ <= most_parts; parts_ *= 2)
             if (choose_sweeps(few, true)) return;
         parts_ = most_parts;

@@ -32,7 +32,7 @@ class ConstrainedIntegrator {
     /// Configuration, matrices and forces must be ready; the state is put back. Throws ComputationError when 30 do not suffice.
     void choose_sweeps();
 
-    static constexpr int most_sweeps = 30;
+    static constexpr int most_sweeps = 30, most_parts = 64;
     /// Of the tolerance: so many sweeps are chosen that the error is below that, and above it another one is due.
     static constexpr double early = 0.01;
     int sweeps() const { return sweeps_; }

@@ -3,6 +3,7 @@
 #include <limits>
 #include <sstream>
 
+#include "integrate/checkpoint_values.hpp"
 #include "integrate/embedded_steps.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
@@ -30,8 +31,7 @@ class DormandPrinceSteps final : public JointIntegrator {
         if (tolerance_ > 0) c.arrays[name_of_state] = {control_.state().length, control_.state().previous};
     }
     void restored(Checkpoint const& c) override {
-        if (auto const kept = c.arrays.find(name_of_state); kept != c.arrays.end())
-            control_.restore({kept->second.at(0), kept->second.at(1)});
+        if (std::vector<double> const kept = few_numbers_of(c, name_of_state, 2); !kept.empty()) control_.restore({kept[0], kept[1]});
         ready_ = carries_rates();
     }
     void prepare() override {

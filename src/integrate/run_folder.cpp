@@ -1,5 +1,6 @@
 #include "integrate/run_folder.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <utility>
@@ -28,27 +29,52 @@ bool holds_run(std::string const& folder) {
     return has("trajectory.h5md") || has("observables.csv") || has("checkpoint.h5");
 }
 
+namespace {
+
+/// Whether a run may begin in a folder as in a new one: nothing but a lock is there.
+bool is_vacant(std::string const& folder) {
+    std::error_code error;
+    fs::directory_iterator entries(folder, error);
+    if (error) return false;
+    return std::all_of(fs::begin(entries), fs::end(entries),
+                       [](fs::directory_entry const& e) { return e.path().filename() == run_lock_name; });
+}
+
+bool is_there(std::string const& folder) {
+    std::error_code error;
+    bool const exists = fs::exists(folder, error);
+    if (error) throw InputError("the output folder cannot be looked into: " + error.message(), folder, "name another with --output");
+    return exists;
+}
+
+}  // namespace
+
 RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
     : scene_(scene), communicator_(communicator), first_step_(first_step), folder_(options.output) {
     file_wish_of_run(communicator);  // a wrong one is refused before anything is replaced
     on_first_rank(communicator, [&] {
-        bool const exists = fs::exists(folder_);
+        bool const exists = is_there(folder_);
         std::error_code ignored;
-        bool const empty = !exists || fs::is_empty(folder_, ignored);
         appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
-        if (exists && !fs::is_directory(folder_)) throw InputError("the output is not a folder", folder_, "name another with --output");
-        std::string const checkpoint = newest_checkpoint();
-        std::string const go_on = options.restart.empty() && !checkpoint.empty() ? ", go on with --restart " + checkpoint : "";
-        if (!empty && !appends_ && !options.overwrite)
-            throw InputError("the output folder exists", folder_,
-                             "name another with --output" + go_on + ", or replace it with --overwrite");
-        for (char const* name : {"checkpoint.h5.writing", "checkpoint.previous.h5.writing", "topology.pdb.writing", "topology.cif.writing"})
-            fs::remove(fs::path(folder_) / name, ignored);
-        if (exists && !appends_)
-            for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name, ignored);
+        if (exists && !fs::is_directory(folder_, ignored))
+            throw InputError("the output is not a folder", folder_, "name another with --output");
+        if (exists && !appends_) refuse_unless_free(options);
         make_output_folder(folder_);
+        lock_ = std::make_unique<RunLock>(folder_);
+        if (!appends_) refuse_unless_free(options);  // a run may have come and gone
+        for (char const* name : files_of_a_run) fs::remove(path(std::string(name) + ".writing"), ignored);
+        if (exists && !appends_)
+            for (char const* name : files_of_a_run) fs::remove(path(name), ignored);
     });
     appends_ = communicator.sum(appends_ ? 1 : 0) > 0;  // rank 0 alone looked
+}
+
+void RunFolder::refuse_unless_free(RunOptions const& options) const {
+    if (!lock_) RunLock::refuse_if_taken(folder_);
+    if (options.overwrite || is_vacant(folder_)) return;
+    std::string const checkpoint = newest_checkpoint();
+    std::string const go_on = options.restart.empty() && !checkpoint.empty() ? ", go on with --restart " + checkpoint : "";
+    throw InputError("the output folder exists", folder_, "name another with --output" + go_on + ", or replace it with --overwrite");
 }
 
 /// Between two renames of a checkpoint that was being written, only the one before is there.
@@ -172,8 +198,8 @@ void RunFolder::finish(std::string const& summary, std::string const& timeline) 
     on_disk([&] {
         throw_kept();
         observables_->close();
-        write_text_file(path("summary.json"), summary);
-        write_text_file(path("timeline.json"), timeline);
+        replace_text_file(path("summary.json"), summary);
+        replace_text_file(path("timeline.json"), timeline);
         write_run_report(folder_);
     });
 }

@@ -11,6 +11,7 @@
 #include "integrate/observables.hpp"
 #include "integrate/simulation.hpp"
 #include "io/output.hpp"
+#include "io/run_lock.hpp"
 
 namespace catena {
 
@@ -46,6 +47,8 @@ class RunFolder {
     std::string path(std::string const& name) const { return folder_ + "/" + name; }
 
   private:
+    /// InputError where another run writes there, or what is there would be lost.
+    void refuse_unless_free(RunOptions const&) const;
     /// What a restart can begin with; empty: nothing.
     std::string newest_checkpoint() const;
     /// A ComputationError of the action's tells the way back as well.
@@ -68,6 +71,7 @@ class RunFolder {
     bool appends_ = false;
     std::int64_t first_step_;
     std::string folder_;
+    std::unique_ptr<RunLock> lock_;  // on rank 0
     std::unique_ptr<TopologyWriter> topology_;
     FileWay frames_way_, checkpoints_way_;
     std::unique_ptr<TrajectoryWriter> trajectory_;

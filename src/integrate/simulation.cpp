@@ -12,6 +12,7 @@
 
 #include "cuda/solver.hpp"
 #include "error.hpp"
+#include "integrate/checkpoint_values.hpp"
 #include "integrate/force_summary.hpp"
 #include "integrate/pace.hpp"
 #include "integrate/run_folder.hpp"
@@ -332,8 +333,8 @@ class Run {
                              ", whose forces round otherwise (forces.openmm.platform chooses)");
         system_.set_state(c.arrays);
         stepper_->restore(c);
-        if (auto const found = c.arrays.find("largest_constraint_error"); found != c.arrays.end()) worst_error_ = found->second.at(0);
-        if (auto const found = c.arrays.find(array_of_watch); found != c.arrays.end()) watch_.set_state(found->second);
+        for (double const error : few_numbers_of(c, "largest_constraint_error", 1)) worst_error_ = error;
+        if (std::vector<double> const watch = few_numbers_of(c, array_of_watch, 2); !watch.empty()) watch_.set_state(watch);
         return c.step;
     }
 

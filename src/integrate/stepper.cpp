@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "integrate/checkpoint_values.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
@@ -61,7 +62,7 @@ class JointStepper final : public Stepper {
     }
     void restore(Checkpoint const& c) override {
         set_time(c.step);
-        corrections_ = static_cast<int>(c.integers.at("corrections_of_tips"));
+        corrections_ = counter_of(c, "corrections_of_tips", 0, most_corrections);
         if (integrator_->carries_rates()) {
             std::vector<JointRates> const rates = system_.own_rates(c.arrays);
             std::vector<JointDynamics*> const groups = system_.joint();
@@ -161,10 +162,10 @@ class ConstrainedStepper final : public Stepper {
         c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
     }
     void restore(Checkpoint const& c) override {
-        integrator_.set_sweeps(static_cast<int>(c.integers.at("sweeps_a_drift")));
-        if (auto const kept = c.integers.find("parts_a_drift"); kept != c.integers.end())
-            integrator_.set_parts(static_cast<int>(kept->second));
-        integrator_.set_pending(0.5 * static_cast<double>(c.integers.at("pending_half_kicks")));
+        integrator_.set_sweeps(counter_of(c, "sweeps_a_drift", 0, ConstrainedIntegrator::most_sweeps));
+        if (c.integers.contains("parts_a_drift"))
+            integrator_.set_parts(counter_of(c, "parts_a_drift", 1, ConstrainedIntegrator::most_parts));
+        integrator_.set_pending(0.5 * counter_of(c, "pending_half_kicks", 0, 2));
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
     json describe() const override {

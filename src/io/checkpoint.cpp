@@ -1,10 +1,13 @@
 // Reads a checkpoint, as far as its seal and its checksums hold; what lies where in the file: checkpoint_file.hpp.
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include "error.hpp"
 #include "io/checkpoint_file.hpp"
+#include "io/descriptor.hpp"
 #include "io/seal.hpp"
 
 namespace catena {
@@ -12,25 +15,49 @@ namespace {
 
 using namespace hdf5;
 
+/// A checkpoint as it is when it is opened: a run that writes puts others under its name.
+class OpenedCheckpoint {
+  public:
+    explicit OpenedCheckpoint(std::string const& file) : file_(file), descriptor_(file, O_RDONLY | O_NONBLOCK, file, reading_checkpoint) {}
+    /// Leads to what is open, whatever has the name by now; where the system has no such paths, by the name.
+    std::string path() const {
+        std::string const opened = "/proc/self/fd/" + std::to_string(descriptor_.get());
+        return ::access(opened.c_str(), R_OK) == 0 ? opened : file_;
+    }
+
+  private:
+    std::string file_;
+    Descriptor descriptor_;
+};
+
+std::unique_ptr<OpenedCheckpoint const> open_checkpoint(std::string const& file, std::string const& remedy) {
+    try {
+        return std::make_unique<OpenedCheckpoint const>(file);
+    } catch (ComputationError const& error) {
+        throw InputError("the checkpoint cannot be read, " + std::string(error.what()), file, remedy);
+    }
+}
+
 bool is_plain_hdf5(std::string const& file) {
+    if (!std::filesystem::is_regular_file(file)) return false;
     std::string start(8, '\0');
     std::ifstream(file, std::ios::binary).read(start.data(), std::ssize(start));
     return start == "\x89HDF\r\n\x1a\n";
 }
 
-/// Throws InputError for what HDF5 had better not see.
-void require_seal(std::string const& file, bool has_previous, std::string const& remedy) {
+/// Throws InputError for what HDF5 had better not see at `path`; messages name `file`.
+void require_seal(std::string const& path, std::string const& file, bool has_previous, std::string const& remedy) {
     std::string const name_one = "name the checkpoint.h5 of a run";
     try {
-        SealKind const kind = kind_of_seal(file);
+        SealKind const kind = kind_of_seal(path);
         if (kind == SealKind::earlier)
             throw InputError("a checkpoint of another version of Catena", file, "restart with the version that wrote it");
         if (kind == SealKind::own) {
-            if (std::string const wrong = broken_seal(file); !wrong.empty())
+            if (std::string const wrong = broken_seal(path); !wrong.empty())
                 throw InputError("the checkpoint is damaged, " + wrong, file, remedy);
             return;
         }
-        if (is_plain_hdf5(file))
+        if (is_plain_hdf5(path))
             throw InputError("not a checkpoint of Catena, or one of an earlier version", file,
                              "restart with the version that wrote it, or " + name_one);
     } catch (InputError const&) {
@@ -50,19 +77,24 @@ std::string previous_checkpoint(std::string const& file) {
 
 Checkpoint read_checkpoint(std::string const& file) {
     Quiet const quiet;
-    if (!std::filesystem::exists(file)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_checkpoint(file);
-    bool const has_previous = std::filesystem::exists(previous);
+    bool const has_previous = std::filesystem::exists(previous, ignored);
     std::string const remedy = has_previous ? "use the one before, " + previous : "start anew";
-    require_seal(file, has_previous, remedy);
-    File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
-    if (!handle) throw InputError("not a checkpoint, " + cause(), file, remedy);
+    std::unique_ptr<OpenedCheckpoint const> const opened_file = open_checkpoint(file, remedy);
+    OpenedCheckpoint const& opened = *opened_file;
     try {
+        require_seal(opened.path(), file, has_previous, remedy);
+        File const handle(H5Fopen(opened.path().c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));
+        if (!handle) throw InputError("not a checkpoint, " + cause(), file, remedy);
         CheckpointRead read = read_checkpoint_file({handle.get(), file, reading_checkpoint}, Arrays::keep, {});
         if (read.checksum != checksum_of(read.contents, read.sizes, read.of_values))
             throw ComputationError("its checksum does not fit its contents");
         return std::move(read.contents);
     } catch (InputError const&) {
+        throw;
+    } catch (std::bad_alloc const&) {
         throw;
     } catch (std::exception const& error) {
         throw InputError("the checkpoint is damaged, " + std::string(error.what()), file, remedy);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <filesystem>
 
 #include "error.hpp"
 #include "io/checksum.hpp"
@@ -57,6 +56,14 @@ std::vector<std::string> keys_of(Place const& group) {
     return keys;
 }
 
+/// Of the file that the group is in, whatever it is called by now.
+std::size_t bytes_of_file(Place const& group) {
+    File const file(check(H5Iget_file_id(group.id), group.file, group.doing));
+    hsize_t bytes = 0;
+    check(H5Fget_filesize(file.get(), &bytes), group.file, group.doing);
+    return bytes;
+}
+
 /// Opens a dataset and its space; the number of elements comes with it.
 struct Entry {
     Entry(Place const& group, std::string const& key) : data(check(H5Dopen2(group.id, key.c_str(), H5P_DEFAULT), group.file, group.doing)) {
@@ -64,7 +71,7 @@ struct Entry {
         if (check(H5Sget_simple_extent_ndims(space.get()), group.file, group.doing) > 1) throw ComputationError(key + " is a table");
         size = static_cast<std::size_t>(check(H5Sget_simple_extent_npoints(space.get()), group.file, group.doing));
         // What claims to be larger than its file is damaged, and not worth the memory.
-        if (size * sizeof(double) > std::filesystem::file_size(group.file)) throw ComputationError(key + " is larger than the file");
+        if (size > bytes_of_file(group) / sizeof(double)) throw ComputationError(key + " is larger than the file");
     }
     Dataset data;
     std::size_t size = 0;
@@ -74,7 +81,7 @@ std::string get_note(Place const& group, std::string const& key) {
     Entry const entry(group, key);
     Type const type(check(H5Dget_type(entry.data.get()), group.file, group.doing));
     std::size_t const length = H5Tget_size(type.get());
-    if (entry.size != 1 || H5Tget_class(type.get()) != H5T_STRING || length > std::filesystem::file_size(group.file))
+    if (entry.size != 1 || H5Tget_class(type.get()) != H5T_STRING || H5Tis_variable_str(type.get()) > 0 || length > bytes_of_file(group))
         throw ComputationError(key + " is no text");
     std::string text(length, '\0');
     check(H5Dread(entry.data.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), group.file, group.doing);
@@ -95,6 +102,14 @@ std::int64_t get_integer(Place const& root, std::string const& name) {
     std::int64_t value = 0;
     check(H5Aread(attribute.get(), H5T_NATIVE_INT64, &value), root.file, root.doing);
     return value;
+}
+
+/// Never of variable length: HDF5 goes beyond its buffers where such texts are damaged.
+std::string get_fixed_text(Place const& root, std::string const& name) {
+    Attribute const attribute(check(H5Aopen(root.id, name.c_str(), H5P_DEFAULT), root.file, root.doing));
+    Type const type(check(H5Aget_type(attribute.get()), root.file, root.doing));
+    if (H5Tis_variable_str(type.get()) > 0) throw ComputationError(name + " is no text");
+    return get_text(root, name);
 }
 
 Group open_group(Place const& root, char const* name) { return Group(check(H5Gopen2(root.id, name, H5P_DEFAULT), root.file, root.doing)); }
@@ -155,7 +170,7 @@ void make_checkpoint_file(std::string const& name, std::string const& file, Chec
     std::string const& writing = writing_checkpoint;
     Properties const creation(check(H5Pcreate(H5P_FILE_CREATE), file, writing));
     check(H5Pset_userblock(creation.get(), seal_size), file, writing);
-    File handle(check(H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.get(), H5P_DEFAULT), file, writing));
+    File handle(check(create_anew(name, creation.get(), H5P_DEFAULT), file, writing));
     Place const root{handle.get(), file, writing};
     put_text(root, "format", format);
     put_attribute(root, "version", format_version);
@@ -199,14 +214,15 @@ void put_checksum(std::string const& name, std::string const& file, std::uint64_
 }
 
 CheckpointRead read_checkpoint_file(Place const& root, Arrays wish, Reader reader) {
-    if (get_text(root, "format") != format) throw ComputationError("it tells of no checkpoint");
+    if (get_fixed_text(root, "format") != format) throw ComputationError("it tells of no checkpoint");
     if (get_integer(root, "version") != format_version)
         throw InputError("a checkpoint of another version of Catena", root.file, "restart with the version that wrote it");
     CheckpointRead read;
     Checkpoint& contents = read.contents;
     contents.step = get_integer(root, "step");
+    if (contents.step < 0) throw ComputationError("its step is " + std::to_string(contents.step));
     contents.time = std::bit_cast<double>(get_integer(root, "time_bits"));
-    contents.scene_hash = get_text(root, "scene_hash");
+    contents.scene_hash = get_fixed_text(root, "scene_hash");
     read.checksum = std::bit_cast<std::uint64_t>(get_integer(root, "checksum"));
     Group const notes = open_group(root, "notes"), integers = open_group(root, "integers"), arrays = open_group(root, "arrays");
     Place const in_notes{notes.get(), root.file, root.doing}, in_integers{integers.get(), root.file, root.doing},

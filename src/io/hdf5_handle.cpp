@@ -50,6 +50,11 @@ std::string cause() {
 
 void fail(std::string const& file, std::string const& doing) { throw ComputationError("cannot " + doing + " (" + file + "): " + cause()); }
 
+hid_t create_anew(std::string const& file, hid_t creation, hid_t access) {
+    ::unlink(file.c_str());
+    return H5Fcreate(file.c_str(), H5F_ACC_EXCL, creation, access);
+}
+
 void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes, std::string const& file, std::string const& doing) {
     int error = 0;
     do error = fallocate(descriptor, FALLOC_FL_KEEP_SIZE, from, bytes) == 0 ? 0 : errno;

@@ -72,6 +72,9 @@ Status check(Status status, std::string const& file, std::string const& doing) {
     return status;
 }
 
+/// H5Fcreate of a file that nobody else has: what was there is removed, a link or a pipe too, and nothing is followed.
+hid_t create_anew(std::string const& file, hid_t creation, hid_t access);
+
 /// Takes these bytes of a file from the system before anybody writes them. Where the file system cannot, a full disk shows at the writes.
 void take_from_system(int descriptor, std::int64_t from, std::int64_t bytes, std::string const& file, std::string const& doing);
 /// On the disk for all that a flush writes and `more` bytes: a full one is found before anything in the file is overwritten.

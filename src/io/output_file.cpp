@@ -1,6 +1,7 @@
 #include "io/output_file.hpp"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -53,6 +54,17 @@ void rename_file(std::string const& from, std::string const& to) {
 }
 
 OutputFile OutputFile::create(std::string const& file) { return {open_file(file, O_WRONLY | O_CREAT | O_TRUNC), file}; }
+
+OutputFile OutputFile::create_anew(std::string const& file) {
+    if (::unlink(file.c_str()) != 0 && errno != ENOENT) fail("remove what is there", file, errno);
+    return {open_file(file, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW), file};
+}
+
+bool OutputFile::is_in_place() const {
+    struct stat open{}, named{};
+    return ::fstat(descriptor_, &open) == 0 && ::lstat(name_.c_str(), &named) == 0 && open.st_dev == named.st_dev &&
+           open.st_ino == named.st_ino;
+}
 
 OutputFile OutputFile::append(std::string const& file, std::int64_t size) {
     OutputFile out(open_file(file, O_WRONLY), file);
@@ -110,7 +122,7 @@ void OutputFile::close() {
     if (::close(std::exchange(descriptor_, -1)) != 0) fail("close", name_, errno);
 }
 
-AtomicFile::AtomicFile(std::string file) : file_(std::move(file)), out_(OutputFile::create(file_ + ".writing")) {}
+AtomicFile::AtomicFile(std::string file) : file_(std::move(file)), out_(OutputFile::create_anew(file_ + ".writing")) {}
 
 AtomicFile::~AtomicFile() {
     if (!published_) ::unlink(out_.name().c_str());
@@ -118,6 +130,7 @@ AtomicFile::~AtomicFile() {
 
 void AtomicFile::publish() {
     out_.sync();
+    if (!out_.is_in_place()) throw ComputationError("cannot write (" + file_ + "): another process writes there");
     out_.close();
     rename_file(out_.name(), file_);
     published_ = true;
@@ -132,6 +145,10 @@ void write_text_file(std::string const& file, std::string const& text) {
         out.sync();
         return out.close();
     }
+    replace_text_file(file, text);
+}
+
+void replace_text_file(std::string const& file, std::string const& text) {
     AtomicFile out(file);
     out.write(text);
     out.publish();

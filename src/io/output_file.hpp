@@ -22,6 +22,8 @@ class OutputFile {
     OutputFile() = default;
     /// Starts an empty file, whatever was there.
     static OutputFile create(std::string const& file);
+    /// The same, but for a file that nobody else has: what was there is removed, a link or a pipe too, and nothing is followed.
+    static OutputFile create_anew(std::string const& file);
     /// Opens a file that exists, cuts it to `size` bytes and goes on behind them.
     static OutputFile append(std::string const& file, std::int64_t size);
     OutputFile(OutputFile&&) noexcept;
@@ -37,6 +39,8 @@ class OutputFile {
     void sync();
     void close();
     std::string const& name() const { return name_; }
+    /// Whether its name still leads to it.
+    bool is_in_place() const;
 
   private:
     void hand_over(std::string_view rest);
@@ -61,6 +65,9 @@ class AtomicFile {
     OutputFile out_;
     bool published_ = false;
 };
+
+/// Puts the text under this name by an AtomicFile: a link of that name is replaced, not followed.
+void replace_text_file(std::string const& file, std::string const& text);
 
 /// With the folders above it, where they are not there yet; InputError naming it when it cannot be made.
 void make_output_folder(std::string const& folder);

@@ -118,7 +118,7 @@ void write_run_report(std::string const& folder) {
     if (fs::exists(observables)) body += "<h2>Observables</h2>\n" + charts(read_observables(observables.string()));
     if (fs::exists(timeline)) body += timeline_section(timeline);
     body += files_in(in);
-    write_text_file((in / "report.html").string(), html_page(title + " – Catena", body));
+    replace_text_file((in / "report.html").string(), html_page(title + " – Catena", body));
 }
 
 }  // namespace catena

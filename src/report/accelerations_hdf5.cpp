@@ -16,7 +16,7 @@ using namespace hdf5;
 std::string const writing = "write the accelerations";
 
 void write(std::string const& draft, std::string const& file, Solution const& s) {
-    File handle(check(H5Fcreate(draft.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT), file, writing));
+    File handle(check(create_anew(draft, H5P_DEFAULT, H5P_DEFAULT), file, writing));
     Place const root{handle.get(), file, writing};
     put_text(root, "format", "catena accelerations");
     put_attribute(root, "version", std::int64_t{1});

@@ -1,12 +1,12 @@
 #include "scene/chains.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "io/memory_limit.hpp"
 #include "scene/bodies.hpp"
 #include "scene/chain_request.hpp"
 #include "scene/conformation.hpp"
@@ -178,9 +178,9 @@ class ChainReader {
     /// What cannot fit is refused before it is tried.
     void refuse_too_large(std::int64_t size, bool beads) const {
         double const bytes = ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) * static_cast<double>(count_);
-        double const present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+        auto const present = static_cast<double>(memory_limit());
         if (bytes > present)
-            fail(request_.node, fmt::format("the chain needs about {:.3g} GB, this machine has {:.3g} GB", bytes * 1e-9, present * 1e-9),
+            fail(request_.node, fmt::format("the chain needs about {:.3g} GB, there are {:.3g} GB of memory", bytes * 1e-9, present * 1e-9),
                  "make fewer bodies or copies");
     }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -69,10 +70,16 @@ double cell_number(std::string const& cell, std::string const& path, int line) {
 
 std::string read_text_file(std::string const& path, Node const& at) {
     std::error_code ignored;
-    bool const folder = std::filesystem::is_directory(path, ignored);
-    std::ifstream stream(path, std::ios::binary);
-    if (folder || !stream)
-        fail(at, fmt::format("{} `{}`", folder ? "a folder, not a file:" : "no such file:", shown_path(path)), "check the path");
+    auto const kind = std::filesystem::status(path, ignored).type();
+    bool const folder = kind == std::filesystem::file_type::directory;
+    bool const device = kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::block;
+    std::ifstream stream;
+    if (!device) stream.open(path, std::ios::binary);
+    std::string const why = folder              ? "a folder, not a file:"
+                            : device            ? "a device, not a file:"
+                            : !stream.is_open() ? errno == EACCES ? "permission denied:" : "no such file:"
+                                                : "";
+    if (!why.empty()) fail(at, fmt::format("{} `{}`", why, shown_path(path)), "check the path");
     std::ostringstream text;
     text << stream.rdbuf();
     if (stream.bad()) fail(at, "the file cannot be read: `" + shown_path(path) + "`", "check the file and its permissions");

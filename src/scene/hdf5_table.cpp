@@ -6,15 +6,22 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <stdexcept>
 
 #include "error.hpp"
+#include "io/memory_limit.hpp"
+#include "scene/hdf5_texts.hpp"
 #include "scene/node.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-std::size_t constexpr rows_a_block = 1 << 16;
+double constexpr best_compression = 1100;  // deflate makes 1032 bytes of one
+double constexpr bytes_a_body = 256;
+hsize_t constexpr largest_chunk = hsize_t{1} << 30, widest_number = 16;  // bytes
+std::size_t constexpr rows_a_block = 1 << 16, longest_text = 1024;
 
 std::string shape_text(std::vector<hsize_t> const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
 
@@ -33,6 +40,22 @@ Hdf5Table::Hdf5Table(std::string const& path, std::string const& counted) : path
     std::vector<hsize_t> const shape = shape_of(open(counted), counted);
     if (shape.empty() || shape[0] == 0) refuse(counted, whole, "the dataset is empty", "give at least one body");
     rows_ = shape[0];
+    refuse_too_large(counted);
+}
+
+/// What a small file claims must not take the memory first.
+void Hdf5Table::refuse_too_large(std::string const& name) const {
+    hdf5::Dataset const data = open(name);
+    hdf5::Type const type(sound(H5Dget_type(data.get()), name));
+    double const rows = static_cast<double>(rows_), claimed = rows * static_cast<double>(H5Tget_size(type.get()));
+    if (claimed > best_compression * static_cast<double>(H5Dget_storage_size(data.get())))
+        refuse(name, whole, fmt::format("the dataset has {} rows, which the file does not hold", rows_), "write the whole of it");
+    auto const present = static_cast<double>(memory_limit());
+    if (rows * bytes_a_body > present)
+        refuse(
+            name, whole,
+            fmt::format("{} bodies need about {:.3g} GB, there are {:.3g} GB of memory", rows_, rows * bytes_a_body * 1e-9, present * 1e-9),
+            "make fewer bodies, or use a larger machine");
 }
 
 bool Hdf5Table::has(std::string const& name) const { return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0; }
@@ -84,30 +107,38 @@ bool Hdf5Table::is_text(std::string const& name) const {
     return H5Tget_class(type.get()) == H5T_STRING;
 }
 
-void Hdf5Table::for_each_text(std::string const& name, std::function<void(std::size_t, std::string const&)> const& read) const {
+void Hdf5Table::for_each_text(std::string const& name, ReadText const& read) const {
     hdf5::Dataset const data = open(name);
     std::vector<hsize_t> const shape = shape_of(data, name);
     if (shape != std::vector<hsize_t>{rows_})
         refuse(name, whole, fmt::format("the dataset has shape {}, not [{}]", shape_text(shape), rows_), "give one text a body");
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
-    bool const variable = H5Tis_variable_str(type.get()) > 0;
-    std::size_t const length = variable ? sizeof(char*) : H5Tget_size(type.get());
+    if (H5Tis_variable_str(type.get()) > 0) return for_each_variable_text(data, name, read);
+    std::size_t const length = H5Tget_size(type.get());
+    if (length == 0 || length > longest_text)
+        refuse(name, whole, fmt::format("the dataset holds texts of {} bytes", length), fmt::format("give {} or fewer", longest_text));
     std::vector<char> block(std::min(rows_, rows_a_block) * length);
     for (std::size_t first = 0; first < rows_; first += rows_a_block) {
         std::size_t const count = std::min(rows_a_block, rows_ - first);
         read_block(data, name, shape, first, count, type.get(), block.data());
-        std::vector<std::string> texts;
         for (std::size_t i = 0; i < count; ++i) {
-            char const* text = block.data() + i * length;
-            if (variable) std::memcpy(static_cast<void*>(&text), block.data() + i * length, sizeof text);
-            texts.emplace_back(text ? std::string(text, variable ? std::strlen(text) : strnlen(text, length)) : "");
+            char const* const text = block.data() + i * length;
+            read(first + i, std::string(text, strnlen(text, length)));
         }
-        if (variable) {
-            hsize_t const extent = count;
-            hdf5::Space const memory(sound(H5Screate_simple(1, &extent, nullptr), name));
-            sound(H5Dvlen_reclaim(type.get(), memory.get(), H5P_DEFAULT, block.data()), name);
+    }
+}
+
+void Hdf5Table::for_each_variable_text(hdf5::Dataset const& data, std::string const& name, ReadText const& read) const {
+    std::optional<VariableTexts> texts;
+    for (std::size_t k = 0; k < rows_; ++k) {
+        std::string text;
+        try {
+            if (!texts) texts.emplace(file_, data, rows_);
+            text = texts->at(k);
+        } catch (std::runtime_error const& error) {
+            refuse(name, k == 0 && !texts ? whole : k, error.what(), "check the file, or store numbers or texts of fixed length");
         }
-        for (std::size_t i = 0; i < count; ++i) read(first + i, texts[i]);
+        read(k, text);
     }
 }
 
@@ -143,7 +174,16 @@ std::vector<hsize_t> Hdf5Table::shape_of(hdf5::Dataset const& data, std::string 
 void Hdf5Table::refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
     H5T_class_t const kind = H5Tget_class(type.get());
-    if (kind != H5T_FLOAT && kind != H5T_INTEGER) refuse(name, whole, "the dataset holds no numbers", "store it as float64");
+    std::size_t const width = H5Tget_size(type.get());
+    if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || width > widest_number)
+        refuse(name, whole, "the dataset holds no numbers", "store it as float64");
+    hsize_t extent[H5S_MAX_RANK], chunk = width;
+    hdf5::Properties const how(sound(H5Dget_create_plist(data.get()), name));
+    if (H5Pget_layout(how.get()) != H5D_CHUNKED) return;
+    int const rank = sound(H5Pget_chunk(how.get(), H5S_MAX_RANK, extent), name);
+    for (int i = 0; i < rank && chunk <= largest_chunk; ++i) chunk *= extent[i];
+    if (chunk > largest_chunk)
+        refuse(name, whole, "a chunk of the dataset is larger than a gigabyte, which is read at once", "write it in smaller chunks");
 }
 
 void Hdf5Table::read_block(hdf5::Dataset const& data, std::string const& name, std::vector<hsize_t> const& shape, std::size_t first,

@@ -25,7 +25,8 @@ class Hdf5Table {
     std::size_t for_each(std::string const& name, std::vector<Shape> const& shapes, Read const& read) const;
     /// Whole numbers, or texts where `is_text`.
     bool is_text(std::string const& name) const;
-    void for_each_text(std::string const& name, std::function<void(std::size_t, std::string const&)> const& read) const;
+    using ReadText = std::function<void(std::size_t, std::string const&)>;
+    void for_each_text(std::string const& name, ReadText const& read) const;
     /// A lone vector of three.
     bool vector(std::string const& name, double (&values)[3]) const;
 
@@ -36,7 +37,9 @@ class Hdf5Table {
   private:
     hdf5::Dataset open(std::string const& name) const;
     std::vector<hsize_t> shape_of(hdf5::Dataset const& data, std::string const& name) const;
+    void refuse_too_large(std::string const& name) const;
     void refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const;
+    void for_each_variable_text(hdf5::Dataset const& data, std::string const& name, ReadText const& read) const;
     void read_block(hdf5::Dataset const& data, std::string const& name, std::vector<hsize_t> const& shape, std::size_t first,
                     std::size_t count, hid_t type, void* values) const;
     /// InputError with HDF5's own reason where the status is negative.

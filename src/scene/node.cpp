@@ -16,16 +16,27 @@ namespace {
 
 std::string at_line(std::string const& file, int line) { return line > 0 ? fmt::format("{}: line {}", file, line) : file; }
 
-std::int64_t size_of(Node const& node) {
-    std::int64_t size = 1;
-    for (Node const& item : node.items) size += size_of(item);
-    return size;
+std::size_t bytes_of(Node const& node) {
+    std::size_t bytes = sizeof(Node) + node.key.size() + node.text.size();
+    for (Node const& item : node.items) bytes += bytes_of(item);
+    return bytes;
 }
+
+std::size_t depth_of(Node const& node) {
+    std::size_t deepest = 0;
+    for (Node const& item : node.items) deepest = std::max(deepest, depth_of(item));
+    return 1 + deepest;
+}
+
+/// Values within values: yaml-cpp stops there, and everything that walks the tree calls itself as often.
+std::size_t constexpr deepest = 500;
+/// Of what anchors keep and aliases repeat. Large files may repeat what they hold.
+std::size_t allowed_copies(std::size_t file) { return std::max(std::size_t{512} << 20, 128 * file); }
 
 /// Builds the tree from yaml-cpp's events.
 class TreeBuilder : public YAML::EventHandler {
   public:
-    TreeBuilder(std::string file, bool lines) : file_(std::move(file)), lines_(lines) {}
+    TreeBuilder(std::string file, bool lines, std::size_t allowed) : file_(std::move(file)), lines_(lines), allowed_(allowed) {}
 
     Node root;
     bool complete = false;
@@ -43,9 +54,10 @@ class TreeBuilder : public YAML::EventHandler {
         auto const found = anchors_.find(anchor);
         if (found == anchors_.end())
             throw InputError("an alias refers to the value it stands in", at_line(file_, line(mark)), "write the value out");
-        aliased_ += size_of(found->second);
-        if (aliased_ > 10'000'000)
-            throw InputError("aliases multiply to more than 1e7 values", at_line(file_, line(mark)), "write the values out");
+        if (open_.size() + depth_of(found->second) > deepest)
+            throw InputError(fmt::format("values nest deeper than {} levels", deepest), at_line(file_, line(mark)),
+                             "write the values out, or nest fewer");
+        count_copy(found->second, line(mark));
         add(found->second, 0);
     }
     void OnScalar(YAML::Mark const& mark, std::string const& tag, YAML::anchor_t anchor, std::string const& value) override {
@@ -117,9 +129,19 @@ class TreeBuilder : public YAML::EventHandler {
         open_.pop_back();
         add(std::move(done.node), done.anchor);
     }
+    /// Before the copy is made.
+    void count_copy(Node const& node, int at) {
+        copied_ += bytes_of(node);
+        if (copied_ > allowed_)
+            throw InputError(fmt::format("anchors and aliases multiply the values to more than {} MB", allowed_ >> 20), at_line(file_, at),
+                             "write the values out, or give fewer of them anchors");
+    }
     void add(Node node, YAML::anchor_t anchor) {
         node.key.clear();
-        if (anchor != 0) anchors_[anchor] = node;
+        if (anchor != 0) {
+            count_copy(node, node.line);
+            anchors_[anchor] = node;
+        }
         if (open_.empty()) {
             root = std::move(node);
             complete = true;
@@ -136,18 +158,18 @@ class TreeBuilder : public YAML::EventHandler {
 
     std::string file_;
     bool lines_;
+    std::size_t allowed_, copied_ = 0;
     std::vector<Open> open_;
     std::map<YAML::anchor_t, Node> anchors_;
-    std::int64_t aliased_ = 0;
 };
 
 Node parse_tree(std::string const& text, std::string const& file, bool lines) {
     std::istringstream stream(text);
-    TreeBuilder builder(file, lines);
+    TreeBuilder builder(file, lines, allowed_copies(text.size()));
     try {
         YAML::Parser parser(stream);
         parser.HandleNextDocument(builder);
-        TreeBuilder second(file, lines);
+        TreeBuilder second(file, lines, allowed_copies(text.size()));
         if (builder.complete && parser.HandleNextDocument(second) && second.complete)
             throw InputError("holds more than one YAML document", at_line(file, second.root.line), "keep one document, without `---`");
     } catch (YAML::Exception const& error) {

@@ -8,16 +8,14 @@
 
 #include "scene/outline.hpp"
 #include "scene/packing.hpp"
+#include "scene/place_grid.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-struct Sphere {
-    Vec3 centre = Vec3::zero();
-    double radius = 0;
-    double gap = 0;  // two links
-};
+/// Of a coordinate: a double tells places apart there that are 1e-7 from each other.
+double constexpr farthest = 1e9;
 
 Sphere sphere_around(ChainSpec const& chain) {
     Outline const outline = outline_of(chain);
@@ -46,55 +44,18 @@ void move(ChainSpec& chain, Vec3 const& by) {
 
 bool is_regrown(Draft const* draft) { return draft->regrown == Regrown::yes; }
 
-class Grid {
-  public:
-    Grid(std::vector<Sphere> const& placed, double width, std::optional<Vec3> const& box) : placed_(placed), width_(width), box_(box) {}
+void refuse_far(Draft const& draft, Sphere const& sphere) {
+    double reach = 0;
+    for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius + sphere.gap);
+    if (reach <= farthest) return;
+    fail(*draft.node, fmt::format("chain `{}` reaches {:.3g} from the origin, beyond what positions hold", shown(draft.chain.name), reach),
+         fmt::format("correct its coordinates: {:g} is the most", farthest));
+}
 
-    /// Middles of the cells of an n0 x n1 x n2 grid which are clear of the placed chains, at most `wanted` of them.
-    std::vector<Vec3> clear_cells(std::array<std::int64_t, 3> const& n, std::size_t wanted) const {
-        std::vector<Vec3> cells;
-        for (std::int64_t z = 0; z < n[2]; ++z)
-            for (std::int64_t y = 0; y < n[1]; ++y)
-                for (std::int64_t x = 0; x < n[0] && cells.size() < wanted; ++x)
-                    if (Vec3 const cell = middle({x, y, z}, n); is_clear(cell)) cells.push_back(cell);
-        return cells;
-    }
-
-  private:
-    Vec3 middle(std::array<std::int64_t, 3> const& at, std::array<std::int64_t, 3> const& n) const {
-        Vec3 cell;
-        for (std::size_t i = 0; i < 3; ++i) {
-            double const index = static_cast<double>(at[i]), count = static_cast<double>(n[i]);
-            int const axis = static_cast<int>(i);
-            cell[axis] = box_ ? (index + 0.5) * (*box_)[axis] / count : (index - 0.5 * (count - 1)) * width_;
-        }
-        return cell;
-    }
-    bool is_clear(Vec3 const& cell) const {
-        return std::none_of(placed_.begin(), placed_.end(), [&](Sphere const& other) {
-            Vec3 apart = cell - other.centre;
-            for (int i = 0; i < 3 && box_; ++i) apart[i] -= (*box_)[i] * std::round(apart[i] / (*box_)[i]);
-            return norm(apart) < 0.5 * width_ + other.radius + 0.5 * other.gap;
-        });
-    }
-
-    std::vector<Sphere> const& placed_;
-    double width_;
-    std::optional<Vec3> const& box_;
-};
-
-/// Middles of clear cells: `wanted` of them or, where the box has no room, all that were found.
-std::vector<Vec3> find_cells(Grid const& grid, std::size_t wanted, double width, std::optional<Vec3> const& box) {
-    std::array<std::int64_t, 3> most{INT64_MAX, INT64_MAX, INT64_MAX};
-    for (int i = 0; i < 3 && box; ++i) most[static_cast<std::size_t>(i)] = static_cast<std::int64_t>(std::floor((*box)[i] / width));
-    std::int64_t const largest = *std::max_element(most.begin(), most.end());
-    std::vector<Vec3> cells;
-    // The coarsest grid that has room, so that few chains spread over the box and a lone one lies in its middle.
-    for (auto n = static_cast<std::int64_t>(std::ceil(std::cbrt(static_cast<double>(wanted)) - 1e-9)); cells.size() < wanted; ++n) {
-        cells = grid.clear_cells({std::min(n, most[0]), std::min(n, most[1]), std::min(n, most[2])}, wanted);
-        if (n >= largest) break;
-    }
-    return cells;
+Sphere sphere_of(Draft const& draft) {
+    Sphere const sphere = sphere_around(draft.chain);
+    refuse_far(draft, sphere);
+    return sphere;
 }
 
 [[noreturn]] void refuse(Draft const& draft, Vec3 const& box, std::size_t room, double width, std::size_t wanted) {
@@ -113,17 +74,19 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
     std::vector<Sphere> spheres;
     double width = 0;
     for (Draft const* const draft : moving) {
-        spheres.push_back(sphere_around(draft->chain));
+        spheres.push_back(sphere_of(*draft));
         width = std::max(width, 2 * spheres.back().radius + spheres.back().gap);
     }
     if (width == 0) width = 1;  // lone beads: any distance will do
-    Grid const grid(placed, width, box);
-    std::vector<Vec3> const cells = find_cells(grid, moving.size(), width, box);
+    std::vector<Vec3> const cells = PlaceGrid(placed, width, box).find(moving.size());
     if (cells.size() < moving.size()) {
         if (std::any_of(moving.begin(), moving.end(), is_regrown)) return false;
         refuse(*moving.front(), *box, cells.size(), width, moving.size());
     }
-    for (std::size_t i = 0; i < moving.size(); ++i) move(moving[i]->chain, cells[i] - spheres[i].centre);
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        refuse_far(*moving[i], {cells[i], spheres[i].radius, 0});
+        move(moving[i]->chain, cells[i] - spheres[i].centre);
+    }
     return true;
 }
 
@@ -136,7 +99,7 @@ void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std
         if (draft.movable)
             moving.push_back(&draft);
         else
-            placed.push_back(sphere_around(draft.chain));
+            placed.push_back(sphere_of(draft));
     }
     if (moving.empty() || place_side_by_side(moving, placed, box)) return;
     // Chains that keep their shape take their places first, the others grow around them.

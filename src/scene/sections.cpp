@@ -107,6 +107,9 @@ bool is_level_count(std::string const& text) {
     return one(text.substr(0, comma)) && (comma == std::string::npos || one(text.substr(comma + 1)));
 }
 
+/// Beyond them a double no longer tells places in the box apart.
+double constexpr shortest_edge = 1e-30, longest_edge = 1e9;
+
 }  // namespace
 
 std::optional<Vec3> read_box(Node const& box) {
@@ -114,8 +117,12 @@ std::optional<Vec3> read_box(Node const& box) {
     if (box.kind != Node::Kind::map) fail(box, describe(box) + " is no box", "give `{periodic: [60, 60, 60]}` or `none`");
     Node const& edges = Fields(box, {"periodic"}).need("periodic", "periodic: [60, 60, 60]");
     Vec3 const lengths = vector3(edges);
-    for (double const length : lengths.data)
+    for (double const length : lengths.data) {
         if (!(length > 0)) fail(edges, fmt::format("box edge {} is not positive", length), "give three edges above 0");
+        if (length < shortest_edge || length > longest_edge)
+            fail(edges, fmt::format("box edge {} is beyond what positions hold", length),
+                 fmt::format("give edges from {:g} to {:g}", shortest_edge, longest_edge));
+    }
     return lengths;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string_view>
+#include <unordered_map>
 
 #include "force/calvados2.hpp"
 #include "scene/fields.hpp"
@@ -147,12 +149,14 @@ std::vector<std::string> const& residues_of(ChainSpec const& chain) {
 }
 
 void check_map(Node const& at, OpenMmSpec const& openmm, std::vector<Draft> const& drafts) {
-    for (auto const& [name, range] : openmm.map) {
-        auto const found =
-            std::find_if(drafts.begin(), drafts.end(), [&, &chain_name = name](Draft const& d) { return d.chain.name == chain_name; });
-        Node const& entry = *at.find("map")->find(name);
-        if (found == drafts.end()) fail(entry, fmt::format("no chain is named `{}`", shown(name)), "use the chains' names");
-        auto const size = static_cast<std::int64_t>(residues_of(found->chain).size()), given = range.second - range.first + 1;
+    std::unordered_map<std::string_view, Draft const*> of_name;
+    for (Draft const& draft : drafts) of_name.emplace(draft.chain.name, &draft);
+    for (std::size_t i = 0; i < openmm.map.size(); ++i) {
+        auto const& [name, range] = openmm.map[i];
+        auto const found = of_name.find(name);
+        Node const& entry = at.find("map")->items[i];  // in the order of the file
+        if (found == of_name.end()) fail(entry, fmt::format("no chain is named `{}`", shown(name)), "use the chains' names");
+        auto const size = static_cast<std::int64_t>(residues_of(found->second->chain).size()), given = range.second - range.first + 1;
         if (given != size)
             fail(entry, fmt::format("{} particles for the {} beads of chain `{}`", given, size, shown(name)),
                  "give [first, last], both included");
