@@ -17,8 +17,8 @@ bool same_folder(fs::path const& a, fs::path const& b) {
     return fs::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, ignored);
 }
 
-char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", "topology.cif",  "observables.csv", "checkpoint.h5",
-                                      "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
+char const* const files_of_a_run[] = {"trajectory.h5md", "topology.pdb",           "topology.cif", "topology.psf",  "observables.csv",
+                                      "checkpoint.h5",   "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
 
 }  // namespace
 
@@ -32,17 +32,20 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
     : scene_(scene), communicator_(communicator), first_step_(first_step), folder_(options.output) {
     file_wish_of_run(communicator);  // a wrong one is refused before anything is replaced
     on_first_rank(communicator, [&] {
-        bool const exists = fs::exists(folder_);
-        std::error_code ignored;
+        std::error_code ignored, unseen;
+        bool const exists = fs::exists(folder_, unseen);
+        if (unseen) throw InputError("the output folder cannot be looked at: " + unseen.message(), folder_, "name another with --output");
         bool const empty = !exists || fs::is_empty(folder_, ignored);
         appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_)) throw InputError("the output is not a folder", folder_, "name another with --output");
+        if (appends_ && options.branch) throw InputError("a branch needs a folder of its own", folder_, "name another with --output");
         std::string const checkpoint = newest_checkpoint();
         std::string const go_on = options.restart.empty() && !checkpoint.empty() ? ", go on with --restart " + checkpoint : "";
         if (!empty && !appends_ && !options.overwrite)
             throw InputError("the output folder exists", folder_,
                              "name another with --output" + go_on + ", or replace it with --overwrite");
-        for (char const* name : {"checkpoint.h5.writing", "checkpoint.previous.h5.writing", "topology.pdb.writing", "topology.cif.writing"})
+        for (char const* name : {"checkpoint.h5.writing", "checkpoint.previous.h5.writing", "topology.pdb.writing", "topology.cif.writing",
+                                 "topology.psf.writing"})
             fs::remove(fs::path(folder_) / name, ignored);
         if (exists && !appends_)
             for (char const* name : files_of_a_run) fs::remove(fs::path(folder_) / name, ignored);
@@ -59,10 +62,8 @@ std::string RunFolder::newest_checkpoint() const {
     return {};
 }
 
-void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns) {
-    // The frame of the checkpoint's step is written anew, if it is one of this run's: it may have been none of the run's before.
-    bool const anew = first_step_ % scene_.output.every == 0;
-    std::optional<std::int64_t> const after = appends_ ? std::optional(anew ? first_step_ - 1 : first_step_) : std::nullopt;
+void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns, std::int64_t records) {
+    std::optional<GoOn> const after = appends_ ? std::optional(GoOn(first_step_ - 1, records)) : std::nullopt;
     on_first_rank(communicator_, [&] {
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
     });
@@ -74,6 +75,8 @@ void RunFolder::open(Topology const& topology, std::vector<std::string> const& c
         observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");
     });
 }
+
+std::int64_t RunFolder::records_before(std::int64_t n) const { return trajectory_ ? trajectory_->frames() - (step_ == n ? 1 : 0) : 0; }
 
 std::string RunFolder::way_back() const {
     std::string const checkpoint = newest_checkpoint();

@@ -1,6 +1,7 @@
 // Reads a checkpoint, as far as its seal and its checksums hold; what lies where in the file: checkpoint_file.hpp.
 #include <filesystem>
 #include <fstream>
+#include <system_error>
 #include <utility>
 
 #include "error.hpp"
@@ -50,9 +51,12 @@ std::string previous_checkpoint(std::string const& file) {
 
 Checkpoint read_checkpoint(std::string const& file) {
     Quiet const quiet;
-    if (!std::filesystem::exists(file)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
+    std::error_code unseen;
+    bool const exists = std::filesystem::exists(file, unseen);
+    if (unseen) throw InputError("the checkpoint cannot be looked at, " + unseen.message(), file, "name the checkpoint.h5 of a run");
+    if (!exists) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_checkpoint(file);
-    bool const has_previous = std::filesystem::exists(previous);
+    bool const has_previous = std::filesystem::exists(previous, unseen);
     std::string const remedy = has_previous ? "use the one before, " + previous : "start anew";
     require_seal(file, has_previous, remedy);
     File const handle(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT));

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "scene/fields.hpp"
 
@@ -95,11 +97,16 @@ std::vector<PdbAtom> atoms_of(std::string const& path, Node const& at) {
 }  // namespace
 
 std::string read_text_file(std::string const& path, Node const& at) {
-    std::error_code ignored;
-    bool const folder = std::filesystem::is_directory(path, ignored);
+    std::error_code unseen;
+    auto const kind = std::filesystem::status(path, unseen).type();
+    auto const refuse = [&](std::string const& what) { fail(at, fmt::format("{} `{}`", what, shown_path(path)), "check the path"); };
+    if (kind == std::filesystem::file_type::not_found) refuse("no such file:");
+    if (unseen) refuse("the file cannot be looked at, " + unseen.message() + ":");
+    if (kind == std::filesystem::file_type::directory) refuse("a folder, not a file:");
+    if (kind != std::filesystem::file_type::regular) refuse("a device or pipe, not a file:");
+    errno = 0;
     std::ifstream stream(path, std::ios::binary);
-    if (folder || !stream)
-        fail(at, fmt::format("{} `{}`", folder ? "a folder, not a file:" : "no such file:", shown_path(path)), "check the path");
+    if (!stream) refuse("the file cannot be opened, " + std::generic_category().message(errno) + ":");
     std::ostringstream text;
     text << stream.rdbuf();
     if (stream.bad()) fail(at, "the file cannot be read: `" + shown_path(path) + "`", "check the file and its permissions");
