@@ -20,7 +20,7 @@ struct RunOptions {
     std::string restart;                // checkpoint to go on from
     bool overwrite = false;
     bool quiet = false;
-    bool branch = false;  // from `restart`, in a folder of its own: values of the scene may differ from the checkpoint's
+    bool branch = false;                  // from `restart`, in a folder of its own: values of the scene may differ from the checkpoint's
     StopAgreement::Wish stop;             // the run ends after the step that is under way, with a checkpoint and what it has
     std::string command_line;             // for the summary
     std::int64_t bodies_beside = 100000;  // in the scene, from which on frames on one rank are written beside the steps that follow
