@@ -33,7 +33,7 @@ struct Words {
         suite, cases;
     std::vector<std::string> scenes;
     SamplingWords sampling;
-    bool quick = false, overwrite = false, explain = false, measure = false, calibrate = false, alike = false;
+    bool quick = false, overwrite = false, branch = false, explain = false, measure = false, calibrate = false, alike = false;
 };
 
 void add_common(CLI::App& command, Words& words) {
@@ -125,11 +125,16 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--output", words.output, "folder (default: the scene's name with -run; with --restart the checkpoint's)")
         ->type_name("DIR");
     command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
+    command->add_flag(
+        "--branch", words.branch,
+        "with --restart and --output: go on from there in a folder of its own, with another temperature, friction, seed, step, "
+        "integrator of the same coordinates, or forces; without --steps for dynamics.steps more");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     add_refine(*command, words);
     command->footer(
         "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
         "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
+        "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --branch --set dynamics.temperature=310 --output warm\n"
         "SIGINT, SIGTERM or SIGUSR1 on any rank: all finish their step, write a checkpoint and end with status 3.");
 
     command = app.add_subcommand("report", "error against run time of solver, integrators and forces, as page, tables, JSON and pictures");
@@ -287,6 +292,10 @@ RunRequest run_request(Words const& words) {
     request.output = words.output;
     request.restart = words.restart;
     request.overwrite = words.overwrite;
+    request.branch = words.branch;
+    if (request.branch && (request.restart.empty() || request.output.empty()))
+        throw InputError("--branch without --restart or --output", "command line",
+                         "name the checkpoint with --restart and a folder of the branch's own with --output");
     if (request.overwrite && !request.restart.empty())
         throw InputError("both --overwrite and --restart", "command line", "a restart goes on with what is there: leave --overwrite out");
     return request;

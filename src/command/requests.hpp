@@ -40,6 +40,7 @@ struct RunRequest : SceneOptions {
     std::string output;  // folder; empty: see output_folder()
     std::string restart;
     bool overwrite = false;
+    bool branch = false;  // at the checkpoint, into a folder of its own
 };
 struct ReportRequest : CommonOptions {
     std::vector<std::string> scenes;  // empty: generated ones

@@ -136,6 +136,7 @@ Outcome run_scene(Scene given, Communicator const& communicator, RunRequest cons
     options.output = output_folder(given, request);
     options.steps = request.steps;
     options.restart = request.restart;
+    options.branch = request.branch;
     options.overwrite = request.overwrite;
     options.quiet = request.quiet || communicator.rank() != 0;
     options.command_line = request.command_line;

@@ -23,7 +23,11 @@ namespace {
 
 constexpr int stopped_status = 3;
 
+constexpr char const* out_of_memory = "the computation does not fit into memory: run it on more ranks, or make fewer bodies";
+
+/// What rank 0 shares of a failure is its text alone.
 void say_error(std::string line) {
+    if (line.find("std::bad_alloc") != std::string::npos || line.find("std::bad_array_new_length") != std::string::npos) line = out_of_memory;
     std::replace(line.begin(), line.end(), '\n', ' ');
     std::fflush(stdout);
     std::fprintf(stderr, "catena: %s\n", line.c_str());
@@ -61,7 +65,7 @@ int run_request(Communicator const& communicator, int argc, char** argv,
         if (speaks) say_error(error.what());
         return 1;
     } catch (std::bad_alloc const&) {
-        return fail(communicator, "the computation does not fit into memory: run it on more ranks, or make fewer bodies");
+        return fail(communicator, out_of_memory);
     } catch (std::exception const& error) {
         return fail(communicator, error.what());
     } catch (...) {

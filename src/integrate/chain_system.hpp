@@ -1,6 +1,7 @@
 // A scene made ready to compute: executor, groups, solvers and forces, on this rank.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <map>
 #include <memory>
@@ -60,16 +61,18 @@ class ChainSystem {
     struct Bodies {
         std::int64_t first = 0;
         Snapshot motion;
-        std::vector<Vector<double, 6>> joint_force;  // where they are asked for
+        std::vector<Vector<double, 6>> joint_force;         // where they are asked for
+        std::vector<std::array<double, 4>> joint_position;  // as BodyArrays::q, where they are asked for; zeros in absolute coordinates
+        std::vector<Vec3> joint_rate;                       // as BodyArrays::qd, as joint_position
     };
     void pass_bodies(bool joint_forces, std::function<void(Bodies const&)> const& take) { pass_bodies(own_bodies(joint_forces), take); }
     /// This rank's bodies as they are now.
     struct OwnBodies {
-        bool turning = false, joint_forces = false;  // what a row holds beside position and velocity
-        std::vector<std::vector<double>> rows;       // of each group, one a body
-        int width() const { return (turning ? 13 : 6) + (joint_forces ? 6 : 0); }
+        bool turning = false, joint_forces = false, joint_states = false;  // what a row holds beside position and velocity
+        std::vector<std::vector<double>> rows;                             // of each group, one a body
+        int width() const { return (turning ? 13 : 6) + (joint_forces ? 6 : 0) + (joint_states ? 7 : 0); }
     };
-    OwnBodies own_bodies(bool joint_forces);
+    OwnBodies own_bodies(bool joint_forces, bool joint_states = false);
     void pass_bodies(OwnBodies const&, std::function<void(Bodies const&)> const& take) const;
     /// They alone, in scene order, in rounds of bounded size, as many on every rank: neighbours together. Collective.
     void pass_own_bodies(OwnBodies const&, std::function<void(std::vector<Bodies> const&)> const& take) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "chain/gather.hpp"
@@ -44,13 +45,13 @@ std::size_t ChainSystem::index_of(ChainGroup const& group) const {
     return static_cast<std::size_t>(found - groups_.begin());
 }
 
-/// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega, joint force.
-ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
+/// Rows of numbers, one a body: position, velocity, of bodies that may turn orientation and omega, joint force, joint position and rate.
+ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces, bool joint_states) {
     bool const turning = std::any_of(groups_.begin(), groups_.end(), [](auto const& group) { return !group->beads; });
-    OwnBodies own{turning, joint_forces, std::vector<std::vector<double>>(groups_.size())};
+    OwnBodies own{turning, joint_forces, joint_states, std::vector<std::vector<double>>(groups_.size())};
     std::vector<BodyResults> const found = joint_forces ? results() : std::vector<BodyResults>();
     std::size_t result = 0;
-    auto const add = [&](ChainGroup const& group, auto const& row) {
+    auto const add = [&](ChainGroup const& group, auto const& row, JointState const* joints = nullptr) {
         std::vector<double>& rows = own.rows[index_of(group)];
         rows.resize(static_cast<std::size_t>(group.size * own.width()));
         executor_->for_each(group.size, [&](std::int64_t k) {
@@ -58,6 +59,9 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
             auto const put = [&to](double const* numbers, int count) { to = std::copy_n(numbers, count, to); };
             row(k, put);
             if (joint_forces) put(found[result].joint_force[static_cast<std::size_t>(k)].data, 6);
+            if (!joint_states || joints == nullptr) return;
+            put(Vector<double, 4>(joints->q[k]).data, 4);
+            put(Vec3(joints->qd[k]).data, 3);
         });
         ++result;
     };
@@ -79,7 +83,9 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
     for (auto const& dynamics : joint_) {
         ChainGroup const& group = dynamics->group();
         BodyMotion const motion = dynamics->motion();
-        add(group, [&](std::int64_t k, auto const& put) {
+        std::optional<JointState> joints;
+        if (joint_states) joints = dynamics->state();
+        auto const row = [&](std::int64_t k, auto const& put) {
             Vector<double, 4> const q = motion.orientation[k];
             Mat3 const turn = to_matrix(Quat{q[0], q[1], q[2], q[3]});
             Vec3 const omega = motion.omega[k], x = motion.origin[k] - turn * group.r1[k];
@@ -88,7 +94,8 @@ ChainSystem::OwnBodies ChainSystem::own_bodies(bool joint_forces) {
             put(v.data, 3);
             put(q.data, 4);
             put(omega.data, 3);
-        });
+        };
+        add(group, row, joints ? &*joints : nullptr);
     }
     return own;
 }
@@ -106,6 +113,10 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
     motion.orientation.resize(count, Quat::identity());
     motion.omega.resize(count, Vec3::zero());
     if (own.joint_forces) bodies.joint_force.resize(count);
+    if (own.joint_states) {
+        bodies.joint_position.resize(count);
+        bodies.joint_rate.resize(count);
+    }
     executor.for_each(static_cast<std::int64_t>(count), [&](std::int64_t body) {
         auto const k = static_cast<std::size_t>(body);
         double const* row = values.data() + body * own.width();
@@ -118,6 +129,9 @@ ChainSystem::Bodies bodies_of(ChainSystem::OwnBodies const& own, std::int64_t fi
             motion.omega[k] = three();
         }
         if (own.joint_forces) bodies.joint_force[k] = {{next(), next(), next(), next(), next(), next()}};
+        if (!own.joint_states) return;
+        bodies.joint_position[k] = {next(), next(), next(), next()};
+        bodies.joint_rate[k] = three();
     });
     return bodies;
 }

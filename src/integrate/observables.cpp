@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
 
 #include "scene/freedom.hpp"
 
@@ -42,15 +42,28 @@ void Shape::add(double mass, Vec3 const& position) {
     Vec3 const from_first = position - first_, before = from_first - mean_;
     mean_ = plus_scaled(mean_, mass / mass_, before);
     square_ += mass * dot(before, from_first - mean_);
+    Vec3 const from_mean = from_first - unweighted_mean_;
+    unweighted_mean_ = plus_scaled(unweighted_mean_, 1 / static_cast<double>(sites_), from_mean);
+    unweighted_square_ += dot(from_mean, from_first - unweighted_mean_);
 }
 
 double Shape::radius_of_gyration() const { return std::sqrt(square_ / mass_); }
+double Shape::unweighted_radius_of_gyration() const { return std::sqrt(unweighted_square_ / static_cast<double>(sites_)); }
 
 namespace {
 
+struct ShapeColumn {
+    char const* name;
+    double (Shape::*value)() const;
+};
+constexpr ShapeColumn unweighted = {"unweighted_radius_of_gyration", &Shape::unweighted_radius_of_gyration};
+constexpr ShapeColumn shape_columns[] = {
+    {"radius_of_gyration", &Shape::radius_of_gyration}, unweighted, {"end_to_end_distance", &Shape::end_to_end_distance}};
+
 bool asks_for(Scene const& scene, std::string const& name) {
     auto const& asked = scene.output.observables;
-    return asked.empty() || std::find(asked.begin(), asked.end(), name) != asked.end();
+    if (asked.empty()) return name != unweighted.name;
+    return std::find(asked.begin(), asked.end(), name) != asked.end();
 }
 
 }  // namespace
@@ -68,14 +81,14 @@ Observables::Observables(Scene const& scene, Topology const& topology, std::vect
     }
     if (wants("temperature")) columns_.push_back("temperature [K]");
     if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
-    for (char const* const shape : {"radius_of_gyration", "end_to_end_distance"}) {
+    for (auto const& [shape, value] : shape_columns) {
         if (!wants(shape)) continue;
         if (scene.chains.size() == 1)
             columns_.push_back(shape + length);
         else if (scene.chains.size() <= most_single_chains_)
             for (ChainSpec const& chain : scene.chains) columns_.push_back(shape + ("_" + chain.name) + length);
         else
-            columns_.push_back("mean_" + std::string(shape) + length);
+            columns_.push_back(std::string("mean_") + shape + length);
     }
 }
 
@@ -88,8 +101,7 @@ void Observables::begin() {
     kinetic_ = KineticEnergy(scene_);
     chain_ = site_ = 0;
     shape_ = Shape();
-    gyration_.clear();
-    distance_.clear();
+    shapes_.clear();
 }
 
 void Observables::add(ChainSystem::Snapshot const& bodies, std::vector<Vec3> const& positions) {
@@ -97,9 +109,7 @@ void Observables::add(ChainSystem::Snapshot const& bodies, std::vector<Vec3> con
     for (Vec3 const& position : positions) {
         shape_.add(topology_.mass[site_++], position);
         if (static_cast<std::int64_t>(site_) < topology_.chains[chain_].first + topology_.chains[chain_].count) continue;
-        gyration_.push_back(shape_.radius_of_gyration());
-        distance_.push_back(shape_.end_to_end_distance());
-        shape_ = Shape();
+        shapes_.push_back(std::exchange(shape_, Shape()));
         ++chain_;
     }
 }
@@ -117,14 +127,15 @@ std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms, doubl
     }
     if (wants("temperature")) row.push_back(2.0 * kinetic / (scene_.boltzmann() * static_cast<double>(dof_)));
     if (wants("constraint_error")) row.push_back(constraint_error);
-    for (bool const gyration : {true, false}) {
-        if (!wants(gyration ? "radius_of_gyration" : "end_to_end_distance")) continue;
-        std::vector<double> const& values = gyration ? gyration_ : distance_;
-        if (values.size() <= most_single_chains_) {
-            row.insert(row.end(), values.begin(), values.end());
-            continue;
+    for (auto const& [name, value] : shape_columns) {
+        if (!wants(name)) continue;
+        double sum = 0;
+        for (Shape const& shape : shapes_) {
+            double const one = (shape.*value)();
+            sum += one;
+            if (shapes_.size() <= most_single_chains_) row.push_back(one);
         }
-        row.push_back(std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size()));
+        if (shapes_.size() > most_single_chains_) row.push_back(sum / static_cast<double>(shapes_.size()));
     }
     return row;
 }

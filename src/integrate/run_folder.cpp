@@ -18,8 +18,8 @@ bool same_folder(fs::path const& a, fs::path const& b) {
     return fs::equivalent(a.empty() ? "." : a, b.empty() ? "." : b, ignored);
 }
 
-char const* const files_of_a_run[] = {"trajectory.h5md",        "topology.pdb", "topology.cif",  "observables.csv", "checkpoint.h5",
-                                      "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
+char const* const files_of_a_run[] = {"trajectory.h5md", "topology.pdb",           "topology.cif", "topology.psf",  "observables.csv",
+                                      "checkpoint.h5",   "checkpoint.previous.h5", "summary.json", "timeline.json", "report.html"};
 
 }  // namespace
 
@@ -58,6 +58,7 @@ RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOp
         appends_ = exists && !options.restart.empty() && same_folder(fs::path(options.restart).parent_path(), folder_);
         if (exists && !fs::is_directory(folder_, ignored))
             throw InputError("the output is not a folder", folder_, "name another with --output");
+        if (appends_ && options.branch) throw InputError("a branch needs a folder of its own", folder_, "name another with --output");
         if (exists && !appends_) refuse_unless_free(options);
         make_output_folder(folder_);
         lock_ = std::make_unique<RunLock>(folder_);
@@ -85,10 +86,8 @@ std::string RunFolder::newest_checkpoint() const {
     return {};
 }
 
-void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns) {
-    // The frame of the checkpoint's step is written anew, if it is one of this run's: it may have been none of the run's before.
-    bool const anew = first_step_ % scene_.output.every == 0;
-    std::optional<std::int64_t> const after = appends_ ? std::optional(anew ? first_step_ - 1 : first_step_) : std::nullopt;
+void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns, std::int64_t records) {
+    std::optional<GoOn> const after = appends_ ? std::optional(GoOn(first_step_ - 1, records)) : std::nullopt;
     on_first_rank(communicator_, [&] {
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
     });
@@ -100,6 +99,8 @@ void RunFolder::open(Topology const& topology, std::vector<std::string> const& c
         observables_ = std::make_unique<ObservablesWriter>(path("observables.csv"), columns, after, scene_.si ? "s" : "ps");
     });
 }
+
+std::int64_t RunFolder::records_before(std::int64_t n) const { return trajectory_ ? trajectory_->frames() - (step_ == n ? 1 : 0) : 0; }
 
 std::string RunFolder::way_back() const {
     std::string const checkpoint = newest_checkpoint();

@@ -23,7 +23,9 @@ class RunFolder {
     /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Throws InputError on every rank.
     RunFolder(Scene const&, Communicator const&, RunOptions const&, std::int64_t first_step);
 
-    void open(Topology const&, std::vector<std::string> const& columns);
+    /// `records`: that an earlier run left there before the first step, at least. Where it goes on there, what lies at that step or beyond
+    /// is cut: an earlier run may have ended there, with a frame that is none of the undisturbed run's.
+    void open(Topology const&, std::vector<std::string> const& columns, std::int64_t records);
     /// Whether the topology's files are wanted: the first state's parts, and the end of it. What fails there is kept for check().
     bool wants_topology() const { return !appends_; }
     void put_topology(Frame const& part, Executor const&);
@@ -37,6 +39,8 @@ class RunFolder {
     void end(std::vector<Vector<double, 6>> const& tip_forces, std::vector<double> const& observables);
     /// Throws what was kept of failures: of the topology, and of frames that are not written together. Collective.
     void check();
+    /// Frames in the trajectory, and lines in the table, before step n; for rank 0.
+    std::int64_t records_before(std::int64_t n) const;
     /// With the arrays of bodies that ranks have of the system.
     void write_checkpoint(Checkpoint const&, ChainSystem const&, ChainSystem::OwnState const&);
     /// How the last one was written.
@@ -77,7 +81,7 @@ class RunFolder {
     std::unique_ptr<TrajectoryWriter> trajectory_;
     std::unique_ptr<ObservablesWriter> observables_;
     std::exception_ptr failure_;
-    std::int64_t step_ = 0;
+    std::int64_t step_ = -1;  // of the last frame that was begun here
     double time_ = 0;
 };
 

@@ -12,6 +12,7 @@
 
 #include "cuda/solver.hpp"
 #include "error.hpp"
+#include "integrate/branch.hpp"
 #include "integrate/checkpoint_values.hpp"
 #include "integrate/force_summary.hpp"
 #include "integrate/pace.hpp"
@@ -62,23 +63,27 @@ class Run {
         stepper_ = make_stepper(system_, scene_.dynamics);
         if (root_) sites_ = sites_of_scene_.get();
         notes_ = scene_.notes;
+        if (root_) keep_values(scene_, values_of_scene_);
         warn_of_shared_gpus();
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
 
     json run() {
         std::int64_t const first = options_.restart.empty() ? 0 : restore();
+        first_ = first;
         if (last_ < first)
             throw InputError(
                 "the checkpoint stands at step " + std::to_string(first) + " and the run ends at step " + std::to_string(last_),
                 options_.restart, "ask for more with --steps");
+        note_outputs(first);
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
         std::int64_t const rounds = communicator_.rounds();
-        StopAgreement stop(communicator_, options_.stop, first);
+        StopAgreement agreement(communicator_, [this] { return wish(); }, first);
+        saved_at_ = seconds_now();
         for (std::int64_t n = first;; ++n) {
             if (frame_.valid() && frame_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) end_frame();  // it may have failed
-            bool const writes = n % scene_.output.every == 0;
+            bool const writes = is_frame(n);
             bool const saves = scene_.output.checkpoint_every > 0 && n % scene_.output.checkpoint_every == 0 && n > first;
             bool const looks =
                 writes || saves || n % check_every == 0 || (n < check_every && std::has_single_bit(static_cast<std::uint64_t>(n)));
@@ -89,14 +94,18 @@ class Run {
             at_step(n, [&] { stepper_->prepare(timeline); });
             Traffic of_step = chains_traffic() - before;
             if (n == first) open(n);  // nothing is written or replaced before forces have been found
-            stopped_by_ = n == last_ ? 0 : stop.reason_at(n);
+            int const agreed = n == last_ ? 0 : agreement.reason_at(n);
+            bool const saves_by_time = agreed == save_wish;
+            stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
             double const error = looks || ends ? constraint_error(n) : 0;
             if (looks) adapt(n, error);
             if (writes) output(n, error);
-            at_start_.reset();
-            if (saves || ends) checkpoint(n);
+            if (!ends) at_start_.reset();
+            if (saves || saves_by_time || ends) checkpoint(n);
             if (ends) {
+                if (!writes) output(n, error);  // after the checkpoint: a restart from there is the undisturbed run, without this frame
+                end_frame();
                 reached_ = n;
                 error_at_end_ = error;
                 break;
@@ -126,7 +135,24 @@ class Run {
             notes_.push_back("warning: " + std::to_string(ranks) +
                              " ranks share a GPU, where each waits for the others: start one rank a GPU");
     }
-    double time(std::int64_t n) const { return static_cast<double>(n) * scene_.dynamics.step; }
+    void note_outputs(std::int64_t first) {
+        if (std::int64_t const every = scene_.output.every; every > last_ - first && last_ > first)
+            notes_.push_back("output.every = " + std::to_string(every) + " exceeds the " + std::to_string(last_ - first) +
+                             " steps of this run: its frames are the first state at most and the last one");
+        if (scene_.output.coordinates && root_ && sites_.topology().bodies.empty())
+            notes_.push_back("output.coordinates: no chain has bodies that turn, so that there are none to write");
+    }
+    double time(std::int64_t n) const { return time_origin_ + static_cast<double>(n) * scene_.dynamics.step; }
+    /// Frames that hang on the step alone, not on where a run ends; a branch begins with one.
+    bool is_frame(std::int64_t n) const { return n % scene_.output.every == 0 || (options_.branch && n == first_); }
+
+    /// What ranks agree on at a step: to save, or by which signal, a number above it, to stop.
+    static constexpr int save_wish = 1;
+    int wish() const {
+        if (int const stop = options_.stop ? options_.stop() : 0; stop != 0) return save_wish + stop;
+        double const minutes = scene_.output.checkpoint_minutes;
+        return root_ && minutes > 0 && seconds_now() - saved_at_ >= 60 * minutes ? save_wish : 0;
+    }
 
     StepTimeline* new_timeline(std::int64_t n, bool wanted) {
         if (!wanted || timelines_.size() >= most_timelines) return nullptr;
@@ -136,15 +162,13 @@ class Run {
     }
 
     void open(std::int64_t n) {
-        first_ = n;
         folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
         at_start_ = observed(true);
         observables_ = std::make_unique<Observables>(scene_, sites_.topology(), at_start_->terms);
-        folder_->open(sites_.topology(), observables_->columns());
+        folder_->open(sites_.topology(), observables_->columns(), records_before_);
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
-        bool const has_frame = n % scene_.output.every == 0;
-        topology_is_due_ = has_frame && may_write_beside() && options_.topology_beside.value_or(uses_gpu(system_.backend()));
+        topology_is_due_ = is_frame(n) && may_write_beside() && options_.topology_beside.value_or(uses_gpu(system_.backend()));
         if (topology_is_due_) return;
         at_start_->bodies = own_bodies();
         write_topology(*at_start_->bodies);
@@ -166,7 +190,9 @@ class Run {
         stepper_->observe({.joint_forces = scene_.output.joint_forces, .energies = anyway || has_energies(scene_)});
         return {has_energies(scene_) ? system_.potential_energy() : std::vector<EnergyTerm>()};
     }
-    ChainSystem::OwnBodies own_bodies() { return system_.own_bodies(scene_.output.joint_forces); }
+    ChainSystem::OwnBodies own_bodies() {
+        return system_.own_bodies(scene_.output.joint_forces, scene_.output.coordinates && axes_ == Axes::joint);
+    }
 
     struct PendingFrame {
         std::int64_t step;
@@ -279,6 +305,10 @@ class Run {
         c.step = n;
         c.time = time(n);
         c.scene_hash = scene_.hash;
+        c.arrays[array_of_step] = {scene_.dynamics.step};
+        if (time_origin_ != 0) c.arrays[array_of_origin] = {time_origin_};
+        c.integers[number_of_records] = folder_->records_before(n);
+        if (root_) c.notes.insert(values_of_scene_.begin(), values_of_scene_.end());
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
         if (system_.openmm()) c.notes[note_of_platform] = platform();
@@ -289,22 +319,25 @@ class Run {
         ChainSystem::OwnState own = system_.own_state();
         stepper_->save(own);
         folder_->write_checkpoint(c, system_, own);
+        saved_at_ = seconds_now();
     }
 
-    static constexpr char const *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
+    static constexpr char const *number_of_records = "records_before", *note_of_platform = "openmm_platform",
+                                *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
     }
 
     /// The checkpoint to go on from, on every rank but for its notes and arrays of bodies. Collective.
-    Checkpoint read_start() const {
+    Checkpoint read_start() {
         Checkpoint c;
         on_first_rank(communicator_, [&] {
             c = read_checkpoint(options_.restart);
-            if (c.scene_hash != scene_.hash)
-                throw InputError("the checkpoint belongs to another scene", options_.restart,
-                                 "restart with the scene that made it (solver, steps and how often it writes may differ)");
+            if (options_.branch)
+                changes_ = branch_changes(c, scene_, options_.restart);
+            else
+                require_own(c, scene_, options_.restart);
             if (c.notes["tree_table"] != std::to_string(dca::tree_table_version))
                 throw InputError("the checkpoint was made with tree table " + c.notes["tree_table"] + ", this version has " +
                                      std::to_string(dca::tree_table_version),
@@ -332,9 +365,24 @@ class Run {
             notes_.push_back("the checkpoint was made on OpenMM's platform " + made_on->second + ", this run goes on on " + platform() +
                              ", whose forces round otherwise (forces.openmm.platform chooses)");
         system_.set_state(c.arrays);
+        if (options_.branch) return branch(c);
+        time_origin_ = number_in(c, array_of_origin, 0);
+        if (auto const found = c.integers.find(number_of_records); found != c.integers.end()) records_before_ = found->second;
         stepper_->restore(c);
         for (double const error : few_numbers_of(c, "largest_constraint_error", 1)) worst_error_ = error;
         if (std::vector<double> const watch = few_numbers_of(c, array_of_watch, 2); !watch.empty()) watch_.set_state(watch);
+        return c.step;
+    }
+
+    /// Time goes on where it was, whatever the step. Without `steps` there are as many more as the scene says.
+    std::int64_t branch(Checkpoint c) {
+        double const h = scene_.dynamics.step;
+        time_origin_ = number_in(c, array_of_origin, 0);
+        if (number_in(c, array_of_step, h) != h) time_origin_ = c.time - static_cast<double>(c.step) * h;
+        c.arrays[array_of_origin] = {time_origin_};
+        stepper_->branch(c);
+        if (!options_.steps) last_ = c.step + scene_.dynamics.steps;
+        if (root_) notes_.push_back(note_of_branch(options_.restart, c.step, changes_));
         return c.step;
     }
 
@@ -361,6 +409,7 @@ class Run {
                     {"bodies", scene_.bodies()},
                     {"dof", degrees_of_freedom(scene_)}};
         if (json const inner = stepper_->inner_steps(); !inner.is_null()) s["inner_steps"] = inner;
+        if (options_.branch) s["branch"] = json_of_branch(options_.restart, first, changes_);
         if (stopped_by_ != 0) s["run"].update({{"stopped_by", stopped_by_}, {"steps", last_}});
         s["speed"] = {{"seconds", seconds_}, {"steps_per_second", seconds_ > 0 ? steps / seconds_ : 0.0}};
         if (first_step_after_ > 0) s["speed"]["seconds_to_first_step"] = first_step_after_;
@@ -406,8 +455,9 @@ class Run {
         for (char const* name :
              {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
             s["files"][name] = folder_->path(name);
-        if (std::error_code ignored; root_ && std::filesystem::exists(folder_->path("topology.cif"), ignored))
-            s["files"]["topology.cif"] = folder_->path("topology.cif");
+        for (char const* name : {"topology.cif", "topology.psf"})
+            if (std::error_code ignored; root_ && std::filesystem::exists(folder_->path(name), ignored))
+                s["files"][name] = folder_->path(name);
         return s;
     }
 
@@ -432,7 +482,8 @@ class Run {
     Sites sites_;
     Axes axes_;
     double implicit_step_;
-    std::optional<Checkpoint> from_;  // until it is restored
+    std::vector<scene::ChangedValue> changes_;  // of a branch, on rank 0
+    std::optional<Checkpoint> from_;            // until it is restored
     bool shares_are_stored_ = false;
     dca::Shares shares_;                 // empty: equal
     std::future<Sites> sites_of_scene_;  // found while the system is made; after ranks have measured their speeds
@@ -453,6 +504,9 @@ class Run {
     Pace pace_;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;
     int stopped_by_ = 0;
+    std::map<std::string, std::string> values_of_scene_;  // for checkpoints, on rank 0
+    double time_origin_ = 0, saved_at_ = 0;               // of time: at step 0; when the last checkpoint was written
+    std::int64_t records_before_ = 0;                     // frames that the run before left, at least
     std::optional<PendingFrame> pending_;
     std::future<void> frame_;  // last: it ends before what it uses
 };
@@ -462,7 +516,7 @@ class Run {
 json run_simulation(Scene const& scene, Communicator const& communicator, RunOptions const& options) {
     if (!scene.dynamics.given)
         throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
-    if (!options.steps && scene.dynamics.steps == 0)
+    if (!options.steps && scene.dynamics.steps == 0 && !scene.dynamics.has_steps)
         throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
     // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
     if (uses_joint_coordinates(scene.dynamics.integrator)) {

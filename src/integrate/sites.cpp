@@ -11,6 +11,8 @@ Sites::Sites(Scene const& scene, std::vector<SceneWindows::Run> const& runs, boo
     topology_.title = scene.title;
     topology_.box = scene.box;
     topology_.si = scene.si;
+    topology_.body_states = scene.output.coordinates;
+    topology_.joint_states = scene.output.coordinates && uses_joint_coordinates(scene.dynamics.integrator);
     std::size_t most = 0;
     for (ChainSpec const& chain : scene.chains) most += std::max(chain.size(), chain.bead_count());
     if (with_topology) {
@@ -93,8 +95,22 @@ Frame Sites::part(ChainSystem::Bodies const& bodies, bool velocities, Executor c
         if (velocities) part.velocities[i] = s.velocity[k] + turn * cross(s.omega[k], site.place);
         if (!bodies.joint_force.empty() && site.is_first) part.joint_forces[i] = bodies.joint_force[k];
     });
-    for (auto one = turning; one != turning_.end() && one->body < end; ++one) part.orientations.push_back(s.orientation[one->body - first]);
+    for (auto one = turning; one != turning_.end() && one->body < end; ++one) add_state(bodies, one->body - first, part);
     return part;
+}
+
+/// Of the body of this number among `bodies`.
+void Sites::add_state(ChainSystem::Bodies const& bodies, std::size_t k, Frame& part) const {
+    ChainSystem::Snapshot const& s = bodies.motion;
+    part.orientations.push_back(s.orientation[k]);
+    if (topology_.body_states) {
+        part.body_positions.push_back(s.position[k]);
+        part.body_velocities.push_back(s.velocity[k]);
+        part.angular_velocities.push_back(s.omega[k]);
+    }
+    if (!topology_.joint_states) return;
+    part.joint_positions.push_back(bodies.joint_position[k]);
+    part.joint_rates.push_back(bodies.joint_rate[k]);
 }
 
 }  // namespace catena

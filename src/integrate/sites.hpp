@@ -31,6 +31,7 @@ class Sites {
     };
     Sites(Scene const&, std::vector<SceneWindows::Run> const& runs, bool with_topology);
     void add(ChainSpec const&, bool with_topology);
+    void add_state(ChainSystem::Bodies const&, std::size_t k, Frame&) const;
     bool shows_next();
 
     Topology topology_;

@@ -60,8 +60,12 @@ class JointStepper final : public Stepper {
         if (!integrator_->carries_rates()) return;
         for (JointDynamics const* const group : system_.joint()) system_.add_rates(group->group(), group->carried_rates(), own);
     }
-    void restore(Checkpoint const& c) override {
+    void branch(Checkpoint const& c) override {
+        origin_ = number_in(c, array_of_origin, 0);
         set_time(c.step);
+    }
+    void restore(Checkpoint const& c) override {
+        branch(c);
         corrections_ = counter_of(c, "corrections_of_tips", 0, most_corrections);
         if (integrator_->carries_rates()) {
             std::vector<JointRates> const rates = system_.own_rates(c.arrays);
@@ -88,7 +92,7 @@ class JointStepper final : public Stepper {
 
   private:
     void set_time(std::int64_t step) {
-        for (JointDynamics* const group : system_.joint()) group->set_time(static_cast<double>(step) * h_);
+        for (JointDynamics* const group : system_.joint()) group->set_time(origin_ + static_cast<double>(step) * h_);
     }
     bool has_tips() const {
         auto const groups = system_.joint();
@@ -109,7 +113,7 @@ class JointStepper final : public Stepper {
 
     static constexpr int most_corrections = 10;
     ChainSystem& system_;
-    double h_, tolerance_;
+    double h_, tolerance_, origin_ = 0;  // of time: at step 0
     SweepsAStep sweeps_;
     Sum sum_;
     int corrections_ = JointDynamics::usual_corrections;  // of tips' positions after a step
@@ -160,12 +164,19 @@ class ConstrainedStepper final : public Stepper {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
         c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
+        c.arrays[array_of_kick] = {integrator_.pending()};
+    }
+    /// The half kick that ends the last step is of that step's length.
+    void branch(Checkpoint const& c) override {
+        double const h = system_.scene().dynamics.step, before = number_in(c, array_of_step, h);
+        integrator_.set_pending((pending_in(c) - 0.5) * before / h + 0.5);
+        for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
     void restore(Checkpoint const& c) override {
         integrator_.set_sweeps(counter_of(c, "sweeps_a_drift", 0, ConstrainedIntegrator::most_sweeps));
         if (c.integers.contains("parts_a_drift"))
             integrator_.set_parts(counter_of(c, "parts_a_drift", 1, ConstrainedIntegrator::most_parts));
-        integrator_.set_pending(0.5 * counter_of(c, "pending_half_kicks", 0, 2));
+        integrator_.set_pending(pending_in(c));
         for (AbsoluteDynamics* group : system_.absolute()) group->update_configuration();
     }
     json describe() const override {
@@ -177,6 +188,9 @@ class ConstrainedStepper final : public Stepper {
     }
 
   private:
+    static double pending_in(Checkpoint const& c) {
+        return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2));
+    }
     void draw_velocities(DynamicsSpec const& d) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             std::vector<bool> thermal;
@@ -193,6 +207,11 @@ class ConstrainedStepper final : public Stepper {
 };
 
 }  // namespace
+
+double number_in(Checkpoint const& c, char const* array, double otherwise) {
+    auto const found = c.arrays.find(array);
+    return found == c.arrays.end() ? otherwise : found->second.at(0);
+}
 
 bool Stepper::adapt(SweepWatch& watch, double error, double tolerance) {
     if (!watch.is_due(error, early() * tolerance, tolerance) || !add_sweep()) return false;

@@ -15,6 +15,12 @@ struct Asked {
     bool joint_forces = false, energies = false;
 };
 
+/// Arrays of one number in checkpoints: the length of a step, the time at step 0 where it is not 0 (of branches with another step), and the
+/// kick that is due, in steps, where it is no whole number of halves.
+inline constexpr char const *array_of_step = "step_length", *array_of_origin = "time_origin", *array_of_kick = "pending_kick";
+/// The number in one of them, else `otherwise`.
+double number_in(Checkpoint const&, char const* array, double otherwise);
+
 /// One way to take a step. Between steps the state is that of a whole step.
 class Stepper {
   public:
@@ -40,6 +46,8 @@ class Stepper {
     virtual void save(ChainSystem::OwnState&) const {}
     virtual void restore(Checkpoint const&) = 0;
     virtual nlohmann::json describe() const = 0;
+    /// As restore(), for a run that goes on from there in another way: nothing of how the checkpoint's run stepped is kept.
+    virtual void branch(Checkpoint const&) = 0;
 
   protected:
     /// Of the tolerance: above that another sweep is due.

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <memory>
 #include <new>
+#include <system_error>
 #include <utility>
 
 #include "error.hpp"
@@ -77,10 +78,12 @@ std::string previous_checkpoint(std::string const& file) {
 
 Checkpoint read_checkpoint(std::string const& file) {
     Quiet const quiet;
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored)) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
+    std::error_code unseen;
+    bool const exists = std::filesystem::exists(file, unseen);
+    if (unseen) throw InputError("the checkpoint cannot be looked at, " + unseen.message(), file, "name the checkpoint.h5 of a run");
+    if (!exists) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_checkpoint(file);
-    bool const has_previous = std::filesystem::exists(previous, ignored);
+    bool const has_previous = std::filesystem::exists(previous, unseen);
     std::string const remedy = has_previous ? "use the one before, " + previous : "start anew";
     std::unique_ptr<OpenedCheckpoint const> const opened_file = open_checkpoint(file, remedy);
     OpenedCheckpoint const& opened = *opened_file;

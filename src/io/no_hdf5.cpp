@@ -9,11 +9,11 @@ InputError without(std::string const& use) { return built_without("HDF5", use, "
 
 }  // namespace
 
-std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool, bool, std::optional<std::int64_t>) {
+std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool, bool, std::optional<GoOn> const&) {
     throw without("trajectory " + file);
 }
 
-TrajectoryOfRanks make_trajectory(Communicator const&, std::string const& file, Topology const&, bool, bool, std::optional<std::int64_t>) {
+TrajectoryOfRanks make_trajectory(Communicator const&, std::string const& file, Topology const&, bool, bool, std::optional<GoOn> const&) {
     throw without("trajectory " + file);
 }
 

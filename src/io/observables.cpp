@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 
 #include "error.hpp"
 #include "io/observables_table.hpp"
@@ -24,20 +25,29 @@ std::optional<std::int64_t> step_of(std::string_view line) {
     return step;
 }
 
-/// How many bytes of an earlier run's table stay: its header and the whole lines up to `after_step`.
-std::int64_t kept_size(std::string const& file, std::string const& header, std::int64_t after_step) {
+/// How many bytes of an earlier run's table stay: its header and the whole lines up to a step.
+std::int64_t kept_size(std::string const& file, std::string const& header, GoOn const& go_on) {
+    std::string const beside = GoOn::way_beside;
+    if (!std::filesystem::exists(file)) throw InputError("no table of observables to go on with", file, "put it back, or " + beside);
     std::string const text = read_text_file(file);
     if (!text.starts_with(header))
-        throw InputError("the table of observables has other columns than this run", file, "restart with the same observables");
+        throw InputError("the table of observables has other columns than this run", file,
+                         "restart with the same observables, or " + beside);
     std::size_t kept = header.size();
+    std::int64_t records = 0;
     for (std::size_t line = 2; kept < text.size(); ++line) {
         std::size_t const end = text.find('\n', kept);
         if (end == std::string::npos) break;  // a run that was killed while it wrote
         auto const step = step_of(std::string_view(text).substr(kept, end - kept));
-        if (!step) throw InputError("not a record of observables", file + ", line " + std::to_string(line), "mend or remove the line");
-        if (*step > after_step) break;
+        if (!step) throw InputError("not a record of observables", file + ", line " + std::to_string(line), "mend the line, or " + beside);
+        if (*step > go_on.after_step) break;
         kept = end + 1;
+        ++records;
     }
+    if (records < go_on.records)
+        throw InputError(
+            fmt::format("the table of observables has lost lines: {} of the {} before the checkpoint are there", records, go_on.records),
+            file, "put the whole file back, or " + beside);
     return static_cast<std::int64_t>(kept);
 }
 
@@ -66,11 +76,11 @@ struct ObservablesWriter::File {
     std::size_t columns;
 };
 
-ObservablesWriter::ObservablesWriter(std::string const& file, std::vector<std::string> const& columns,
-                                     std::optional<std::int64_t> after_step, std::string const& time_unit) {
+ObservablesWriter::ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<GoOn> const& go_on,
+                                     std::string const& time_unit) {
     std::string const header = header_of(columns, time_unit);
-    OutputFile out = after_step ? OutputFile::append(file, kept_size(file, header, *after_step)) : OutputFile::create(file);
-    if (!after_step) out.write(header);
+    OutputFile out = go_on ? OutputFile::append(file, kept_size(file, header, *go_on)) : OutputFile::create(file);
+    if (!go_on) out.write(header);
     out.sync();
     file_ = std::make_unique<File>(File{std::move(out), columns.size()});
 }

@@ -3,6 +3,7 @@
 // disk included); bad existing files give InputError.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstdio>
 #include <map>
@@ -35,6 +36,8 @@ struct Topology {
     std::vector<double> mass;
     std::vector<std::int64_t> bodies;  // a rigid body's site, or the first of those it carries
     std::vector<std::int64_t> tips;    // chains whose last body is on a joint to the ground
+    bool body_states = false;          // the trajectory has positions, velocities and angular velocities of `bodies`
+    bool joint_states = false;         // and their joint coordinates and rates
     std::optional<Vec3> box;
     bool si = false;  // units stay the user's: no unit attributes are written but "m", "s", ...
 };
@@ -43,13 +46,26 @@ struct Topology {
 struct Frame {
     std::int64_t step = 0;
     double time = 0;
-    std::size_t first_site = 0, first_body = 0;  // where a part begins, among the topology's sites and bodies
-    std::vector<Vec3> positions;                 // W, unwrapped
-    std::vector<Vec3> velocities;                // empty: not written
-    std::vector<Quat> orientations;              // of the topology's bodies, W
+    std::size_t first_site = 0, first_body = 0;          // where a part begins, among the topology's sites and bodies
+    std::vector<Vec3> positions;                         // W, unwrapped
+    std::vector<Vec3> velocities;                        // empty: not written
+    std::vector<Quat> orientations;                      // of the topology's bodies, W
+    std::vector<Vec3> body_positions, body_velocities,   // of their centres of mass, W; empty: not written
+        angular_velocities;                              // B; empty: not written
+    std::vector<std::array<double, 4>> joint_positions;  // as BodyArrays::q; empty: not written
+    std::vector<Vec3> joint_rates;                       // as BodyArrays::qd; empty: not written
     std::vector<Vector<double, 6>>
         joint_forces,  // [torque, force] on each site at its inboard joint (on a body's first), W; empty: not written
         tip_forces;    // the same at each of the topology's tips, on the last body
+};
+
+/// Where a run goes on in files that are there.
+struct GoOn {
+    static constexpr char const* way_beside = "go on in another folder: --restart CHECKPOINT --output OTHER";
+
+    GoOn(std::int64_t step, std::int64_t least = 0) : after_step(step), records(least) {}  // NOLINT(google-explicit-constructor)
+    std::int64_t after_step;                                                               // what is later is cut
+    std::int64_t records;                                                                  // frames or lines up to there, at least
 };
 
 /// H5MD 1.1 file for MDAnalysis and others.
@@ -67,14 +83,15 @@ class TrajectoryWriter {
         put(whole);
         end(whole.tip_forces);
     }
+    /// How many there are in the file.
+    virtual std::int64_t frames() const = 0;
     /// All frames so far are on disk when this returns.
     virtual void flush() = 0;
     virtual void close() = 0;
 };
-/// Makes `file`; with `after_step`, opens an existing one and cuts the frames later than that step. "built without HDF5" where it is
-/// absent.
+/// Makes `file`; with `go_on`, opens an existing one and cuts the frames later than that step. "built without HDF5" where it is absent.
 std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const&, bool velocities, bool joint_forces,
-                                                  std::optional<std::int64_t> after_step);
+                                                  std::optional<GoOn> const& go_on);
 /// The same for all ranks, of rank 0's topology: written by all of them where that can be (CATENA_HDF5), else by rank 0, and the writer is
 /// null on the others. Collective.
 struct TrajectoryOfRanks {
@@ -82,9 +99,9 @@ struct TrajectoryOfRanks {
     FileWay way;
 };
 TrajectoryOfRanks make_trajectory(Communicator const&, std::string const& file, Topology const&, bool velocities, bool joint_forces,
-                                  std::optional<std::int64_t> after_step);
+                                  std::optional<GoOn> const& go_on);
 
-/// PDB; beyond 99,999 sites mmCIF beside it as well.
+/// PDB, and beside it PSF, which has masses and bonds; beyond 99,999 sites mmCIF in its place.
 class TopologyWriter {
   public:
     TopologyWriter(std::string const& folder, Topology const&);
@@ -137,9 +154,10 @@ Checkpoint read_checkpoint(std::string const& file);
 /// observables.csv: a header of names with units, then one line a record, %.17g.
 class ObservablesWriter {
   public:
-    /// Column names as in "total_energy [kJ/mol]". With `after_step`, keeps the lines of an existing file up to that step and appends.
-    /// The first two columns, "step" and "time [<time_unit>]", are the writer's own. InputError for a file of other columns.
-    ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<std::int64_t> after_step,
+    /// Column names as in "total_energy [kJ/mol]". With `go_on`, keeps the lines of an existing file up to that step and appends.
+    /// The first two columns, "step" and "time [<time_unit>]", are the writer's own. InputError for a file that is missing, of other
+    /// columns or of fewer lines than `go_on` says.
+    ObservablesWriter(std::string const& file, std::vector<std::string> const& columns, std::optional<GoOn> const& go_on,
                       std::string const& time_unit = "ps");
     ~ObservablesWriter();
     void write(std::int64_t step, double time, std::vector<double> const& values);

@@ -1,4 +1,5 @@
-// topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) and, where its columns are too narrow, topology.cif.
+// topology.pdb (wwPDB format 3.3, https://www.wwpdb.org/documentation/file-format) with topology.psf and, where its columns are too narrow,
+// topology.cif.
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
@@ -13,6 +14,7 @@
 #include "io/decimals.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
+#include "io/psf.hpp"
 
 namespace catena {
 namespace {
@@ -68,11 +70,6 @@ double angstrom_per_unit(Topology const& topology, std::vector<Vec3> const& posi
     return *middle > 0 && std::isfinite(*middle) ? std::pow(10.0, -std::floor(std::log10(*middle))) : 1;
 }
 
-std::string residue_of(Topology const& topology, std::size_t site) {
-    std::string const name = site < topology.residue.size() && !topology.residue[site].empty() ? plain(topology.residue[site]) : "UNK";
-    return name.substr(0, 3);
-}
-
 void write_remarks(AtomicFile& out, Topology const& topology, double scale) {
     std::string const title = plain(topology.title);
     for (std::size_t at = 0, part = 1; at < title.size(); at += 68, ++part)
@@ -100,13 +97,6 @@ void write_bonds(AtomicFile& out, Topology const& topology) {
         }
 }
 
-/// A, B, ..., Z, AA, AB, ...: mmCIF's chain names have no width.
-std::string chain_name(std::size_t number) {
-    std::string name;
-    for (++number; number > 0; number = (number - 1) / 26) name.insert(name.begin(), static_cast<char>('A' + (number - 1) % 26));
-    return name;
-}
-
 void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
     std::string title = plain(topology.title);
     std::replace(title.begin(), title.end(), '"', '\'');
@@ -127,6 +117,17 @@ void write_cif_head(AtomicFile& out, Topology const& topology, double scale) {
 
 }  // namespace
 
+std::string chain_name(std::size_t number) {
+    std::string name;
+    for (++number; number > 0; number = (number - 1) / 26) name.insert(name.begin(), static_cast<char>('A' + (number - 1) % 26));
+    return name;
+}
+
+std::string residue_of(Topology const& topology, std::size_t site) {
+    std::string const name = site < topology.residue.size() && !topology.residue[site].empty() ? plain(topology.residue[site]) : "UNK";
+    return name.substr(0, 3);
+}
+
 struct TopologyWriter::Files {
     /// Of neighbouring sites, in both files.
     struct Lines {
@@ -136,7 +137,11 @@ struct TopologyWriter::Files {
     Files(std::string const& folder, Topology const& of) : topology(of), pdb((std::filesystem::path(folder) / "topology.pdb").string()) {
         written.push_back((std::filesystem::path(folder) / "topology.pdb").string());
         for (Topology::Chain const& each : topology.chains) sites += each.count;
-        if (sites <= most_pdb_serials) return;
+        if (sites <= most_pdb_serials) {
+            written.push_back((std::filesystem::path(folder) / "topology.psf").string());
+            psf.emplace(written[1]);
+            return;
+        }
         written.push_back((std::filesystem::path(folder) / "topology.cif").string());
         cif.emplace(written[1]);
     }
@@ -201,6 +206,10 @@ struct TopologyWriter::Files {
         if (sites <= most_pdb_serials) write_bonds(pdb, topology);
         pdb.write("END\n");
         pdb.publish();
+        if (psf) {
+            write_psf(*psf, topology);
+            psf->publish();
+        }
         if (!cif) return;
         cif->write("#\n");
         cif->publish();
@@ -208,7 +217,7 @@ struct TopologyWriter::Files {
 
     Topology const& topology;
     AtomicFile pdb;
-    std::optional<AtomicFile> cif;
+    std::optional<AtomicFile> cif, psf;
     std::vector<std::string> written;
     std::vector<Lines> lines;          // a thread
     std::int64_t sites = 0, next = 0;  // in all; the one that comes next

@@ -47,13 +47,13 @@ static_assert(std::is_trivially_copyable_v<Standing>, "goes from rank to rank as
 
 class H5mdWriter final : public TrajectoryWriter {
   public:
-    H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces, std::optional<std::int64_t> after_step)
+    H5mdWriter(std::string file, Topology const& topology, bool velocities, bool joint_forces, std::optional<GoOn> const& go_on)
         : name_(std::move(file)),
           writers_(one_writer()),
           at_{contents_of(topology, velocities, joint_forces), topology.box.value_or(Vec3::zero())} {
         Quiet const quiet;
-        if (after_step)
-            open(*after_step);
+        if (go_on)
+            open(*go_on);
         else
             create(topology);
         flush();
@@ -115,6 +115,7 @@ class H5mdWriter final : public TrajectoryWriter {
         check(file_.close(), name_, writing);
     }
 
+    std::int64_t frames() const override { return static_cast<std::int64_t>(at_.frames); }
     Standing const& standing() const { return at_; }
     bool is_for_all() const { return series_.position.is_for_all(place()); }
 
@@ -140,10 +141,19 @@ class H5mdWriter final : public TrajectoryWriter {
         auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == sites; };
         bool const in_order = writers_->are_several() || (part.first_site == sites_ && part.first_body == bodies_);
         if (!in_order || part.first_site + sites > contents.sites || part.first_body + bodies > contents.bodies ||
-            !fits(part.velocities.size(), contents.velocities) || !fits(part.joint_forces.size(), contents.joint_forces))
+            !fits(part.velocities.size(), contents.velocities) || !fits(part.joint_forces.size(), contents.joint_forces) ||
+            !states_fit(part))
             refuse_arrays();
         sites_ += sites;
         bodies_ += bodies;
+    }
+
+    bool states_fit(Frame const& part) const {
+        std::size_t const bodies = part.orientations.size();
+        auto const fits = [&](std::size_t size, bool wanted) { return !wanted || size == bodies; };
+        return fits(part.body_positions.size(), at_.contents.body_states) && fits(part.body_velocities.size(), at_.contents.body_states) &&
+               fits(part.angular_velocities.size(), at_.contents.body_states) &&
+               fits(part.joint_positions.size(), at_.contents.joint_states) && fits(part.joint_rates.size(), at_.contents.joint_states);
     }
 
     void make_room_for_frame() {
@@ -163,10 +173,22 @@ class H5mdWriter final : public TrajectoryWriter {
         put_all(series_.position, sites, parts, &Frame::positions);
         if (at_.contents.velocities) put_all(series_.velocity, sites, parts, &Frame::velocities);
         if (at_.contents.bodies > 0) put_all(series_.orientation, bodies, parts, &Frame::orientations);
+        put_states(bodies, parts);
         if (!at_.contents.joint_forces) return;
         auto const [torque, force] = halves_of(parts, &Frame::joint_forces);
         series_.torque.put(place(), at_.frames, sites, torque.data(), writers_->transfer());
         series_.force.put(place(), at_.frames, sites, force.data(), writers_->transfer());
+    }
+
+    void put_states(std::span<Series::Part const> bodies, std::span<Frame const> parts) {
+        if (at_.contents.body_states) {
+            put_all(series_.body_position, bodies, parts, &Frame::body_positions);
+            put_all(series_.body_velocity, bodies, parts, &Frame::body_velocities);
+            put_all(series_.angular_velocity, bodies, parts, &Frame::angular_velocities);
+        }
+        if (!at_.contents.joint_states) return;
+        put_all(series_.joint_position, bodies, parts, &Frame::joint_positions);
+        put_all(series_.joint_rate, bodies, parts, &Frame::joint_rates);
     }
 
     template <class Value>
@@ -201,7 +223,8 @@ class H5mdWriter final : public TrajectoryWriter {
         put_from_first(series_.step, &step_);
         ++at_.frames;
         at_.last_step = step_;
-        bool const due = writers_->is_first() && seconds_now() - flushed_ >= seconds_between_flushes;
+        bool const at_once = std::exchange(is_first_here_, false);  // so that a run can be looked at from its first frame on
+        bool const due = writers_->is_first() && (at_once || seconds_now() - flushed_ >= seconds_between_flushes);
         if (writers_->sum(due ? 1 : 0) == 0) return;
         writers_->make_room(file_, 0, name_, writing);
         check(H5Fflush(file_.get(), H5F_SCOPE_LOCAL), name_, writing);
@@ -216,20 +239,26 @@ class H5mdWriter final : public TrajectoryWriter {
         series_ = create_trajectory(place(), topology, at_.contents);
     }
 
-    void open(std::int64_t after_step) {
-        if (!std::filesystem::exists(name_)) throw InputError("no trajectory to go on with", name_, "restart in the folder that holds it");
+    void open(GoOn const& go_on) {
+        if (!std::filesystem::exists(name_))
+            throw InputError("no trajectory to go on with", name_, std::string("put it back, or ") + GoOn::way_beside);
         Properties const access = access_of(*writers_, name_);
         file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
         if (!file_)
-            throw InputError("the trajectory cannot be opened, " + cause(), name_, "close it elsewhere, or start anew with --overwrite");
+            throw InputError("the trajectory cannot be opened, " + cause(), name_,
+                             std::string("close it elsewhere, or ") + GoOn::way_beside);
         std::vector<std::int64_t> steps;
         try {
             series_ = open_trajectory(place(), at_.contents);
             steps = read_steps();
         } catch (ComputationError const& error) {
-            throw InputError("the trajectory is damaged, " + std::string(error.what()), name_, "start anew with --overwrite");
+            throw InputError("the trajectory is damaged, " + std::string(error.what()), name_, GoOn::way_beside);
         }
-        auto const kept = std::find_if(steps.begin(), steps.end(), [&](std::int64_t step) { return step > after_step; });
+        auto const kept = std::find_if(steps.begin(), steps.end(), [&](std::int64_t step) { return step > go_on.after_step; });
+        if (kept - steps.begin() < go_on.records)
+            throw InputError("the trajectory has lost frames: " + std::to_string(kept - steps.begin()) + " of the " +
+                                 std::to_string(go_on.records) + " before the checkpoint are there",
+                             name_, std::string("put the whole file back, or ") + GoOn::way_beside);
         at_.frames = static_cast<hsize_t>(kept - steps.begin());
         if (at_.frames > 0) at_.last_step = steps[at_.frames - 1];
         for (Series* series : series_.present()) series->cut(place(), at_.frames);
@@ -260,22 +289,23 @@ class H5mdWriter final : public TrajectoryWriter {
     double time_ = 0;
     std::size_t sites_ = 0, bodies_ = 0;  // of it, from this rank, so far
     double flushed_ = 0;
+    bool is_first_here_ = true;  // the next frame
 };
 
 }  // namespace
 
 std::unique_ptr<TrajectoryWriter> make_trajectory(std::string const& file, Topology const& topology, bool velocities, bool joint_forces,
-                                                  std::optional<std::int64_t> after_step) {
-    return std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, after_step);
+                                                  std::optional<GoOn> const& go_on) {
+    return std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, go_on);
 }
 
 TrajectoryOfRanks make_trajectory(Communicator const& communicator, std::string const& file, Topology const& topology, bool velocities,
-                                  bool joint_forces, std::optional<std::int64_t> after_step) {
+                                  bool joint_forces, std::optional<GoOn> const& go_on) {
     std::unique_ptr<H5mdWriter> writer;
     bool fits = false;
     std::int64_t bytes = 0;
     on_first_rank(communicator, [&] {
-        writer = std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, after_step);
+        writer = std::make_unique<H5mdWriter>(file, topology, velocities, joint_forces, go_on);
         fits = writer->is_for_all();
         bytes = writer->standing().contents.bytes_of_frame();
     });

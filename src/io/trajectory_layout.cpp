@@ -15,12 +15,12 @@ constexpr std::int64_t format_version = 1;
 std::string const position_group = "particles/trajectory/position";
 
 struct Units {
-    std::string length, time, velocity, mass, torque, force;
+    std::string length, time, velocity, mass, torque, force, rate;
 };
 
 Units units_of(bool si) {
-    if (si) return {"m", "s", "m s-1", "kg", "N m", "N"};
-    return {"nm", "ps", "nm ps-1", "u", "kJ mol-1", "kJ mol-1 nm-1"};
+    if (si) return {"m", "s", "m s-1", "kg", "N m", "N", "rad s-1"};
+    return {"nm", "ps", "nm ps-1", "u", "kJ mol-1", "kJ mol-1 nm-1", "rad ps-1"};
 }
 
 std::string author() {
@@ -80,6 +80,7 @@ class Builder {
             std::vector<hsize_t> const site(topology_.bodies.begin(), topology_.bodies.end());
             put_array(at(element), "site", H5T_NATIVE_HSIZE, site.data(), std::span(&contents_.bodies, 1));
         }
+        add_coordinates(at(own));
         if (!contents_.joint_forces) return;
         std::string const frame = "W, on each body at its inboard joint; at the first of its sites";
         add_element(at(own), "joint_torque", {contents_.sites, 3}, units_.torque, series_.torque, frame);
@@ -89,6 +90,18 @@ class Builder {
         Group const torque = add_element(at(own), "tip_torque", {contents_.tips, 3}, units_.torque, series_.tip_torque, at_tip);
         Group const force = add_element(at(own), "tip_force", {contents_.tips, 3}, units_.force, series_.tip_force, at_tip);
         for (Group const* const element : {&torque, &force}) put_array(at(*element), "chain", topology_.tips);
+    }
+
+    void add_coordinates(Place const& own) {
+        std::string const at_centre = "W, of the centre of mass";
+        if (contents_.body_states) {
+            add_element(own, "body_position", {contents_.bodies, 3}, units_.length, series_.body_position, at_centre);
+            add_element(own, "body_velocity", {contents_.bodies, 3}, units_.velocity, series_.body_velocity, at_centre);
+            add_element(own, "angular_velocity", {contents_.bodies, 3}, units_.rate, series_.angular_velocity, "B, body axes");
+        }
+        if (!contents_.joint_states) return;
+        add_element(own, "joint_position", {contents_.bodies, 4}, "", series_.joint_position, "of the inboard joint, as q in the scene");
+        add_element(own, "joint_rate", {contents_.bodies, 3}, "", series_.joint_rate, "of the inboard joint, as qd in the scene");
     }
 
     void describe_chains(Place const& own) {
@@ -145,7 +158,7 @@ class Builder {
 };
 
 [[noreturn]] void refuse(Place const& root, std::string const& what) {
-    throw InputError("the trajectory " + what, root.file, "restart with the scene and folder that it was written with");
+    throw InputError("the trajectory " + what, root.file, std::string("restart with the scene that wrote it, or ") + GoOn::way_beside);
 }
 
 void require(Place const& root, std::string const& group, bool wanted, std::string const& what) {
@@ -166,12 +179,15 @@ TrajectoryContents contents_of(Topology const& topology, bool velocities, bool j
     contents.sites = topology.mass.size();
     contents.tips = topology.tips.size();
     contents.bodies = topology.bodies.size();
+    contents.body_states = topology.body_states && contents.bodies > 0;
+    contents.joint_states = topology.joint_states && contents.bodies > 0;
     return contents;
 }
 
 std::vector<Series*> TrajectorySeries::present() {
     std::vector<Series*> all;
-    for (Series* series : {&position, &velocity, &edges, &orientation, &torque, &force, &tip_torque, &tip_force, &time, &step})
+    for (Series* series : {&position, &velocity, &edges, &orientation, &body_position, &body_velocity, &angular_velocity, &joint_position,
+                           &joint_rate, &torque, &force, &tip_torque, &tip_force, &time, &step})
         if (*series) all.push_back(series);
     return all;
 }
@@ -200,12 +216,22 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     require(root, "particles/trajectory/box/edges", contents.periodic, "box edges");
     require(root, "catena/orientation", contents.bodies > 0, "orientations");
     require(root, "catena/joint_force", contents.joint_forces, "joint forces");
+    require(root, "catena/angular_velocity", contents.body_states, "coordinates of bodies");
+    require(root, "catena/joint_position", contents.joint_states, "coordinates of joints");
     series.step = Series::open(root, position_group + "/step", H5T_NATIVE_INT64);
     series.time = Series::open(root, position_group + "/time", H5T_NATIVE_DOUBLE);
     if (contents.velocities) series.velocity = Series::open(root, "particles/trajectory/velocity/value", H5T_NATIVE_DOUBLE);
     if (contents.periodic) series.edges = Series::open(root, "particles/trajectory/box/edges/value", H5T_NATIVE_DOUBLE);
     if (contents.bodies > 0) series.orientation = Series::open(root, "catena/orientation/value", H5T_NATIVE_DOUBLE);
     if (series.orientation && series.orientation.row()[0] != contents.bodies) refuse(root, "has another number of bodies");
+    auto const open = [&](Series& to, bool wanted, char const* name) {
+        if (wanted) to = Series::open(root, std::string("catena/") + name + "/value", H5T_NATIVE_DOUBLE);
+    };
+    open(series.body_position, contents.body_states, "body_position");
+    open(series.body_velocity, contents.body_states, "body_velocity");
+    open(series.angular_velocity, contents.body_states, "angular_velocity");
+    open(series.joint_position, contents.joint_states, "joint_position");
+    open(series.joint_rate, contents.joint_states, "joint_rate");
     if (!contents.joint_forces) return series;
     series.torque = Series::open(root, "catena/joint_torque/value", H5T_NATIVE_DOUBLE);
     series.force = Series::open(root, "catena/joint_force/value", H5T_NATIVE_DOUBLE);

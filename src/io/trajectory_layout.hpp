@@ -9,6 +9,13 @@
 //       chains                    first, count, beads, ring, name: [chains]
 //       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to ground axes; site [bodies] from 0, the
 //                                 body's or that of its first bead
+//       body_position, body_velocity, angular_velocity
+//                                 with output.coordinates: {step, time, value [frames][bodies][3]}, in the order of orientation: of the
+//                                 centre of mass in ground axes; angular velocity in body axes
+//       joint_position            {step, time, value [frames][bodies][4]}, with output.coordinates in joint coordinates: as a joint's `q`
+//       in
+//                                 a scene: angle or shift, two angles, or w x y z (spherical, free); the rest of the four is 0
+//       joint_rate                the same for `qd`: value [frames][bodies][3]
 //       joint_torque, joint_force {step, time, value [frames][sites][3]}, on each body (at its first site) at its inboard joint, ground
 //                                 axes
 //       tip_torque, tip_force     {step, time, value [frames][tips][3]}, on the last body of each chain with a joint from there to the
@@ -30,12 +37,13 @@ namespace catena::hdf5 {
 
 /// What of the optional parts a trajectory has.
 struct TrajectoryContents {
-    bool velocities = false, joint_forces = false, periodic = false, si = false;
+    bool velocities = false, joint_forces = false, periodic = false, si = false, body_states = false, joint_states = false;
     hsize_t sites = 0, bodies = 0, tips = 0;
 
     std::int64_t bytes_of_frame() const {
         hsize_t const of_site = 3 + (velocities ? 3 : 0) + (joint_forces ? 6 : 0);
-        return static_cast<std::int64_t>(sizeof(double) * (sites * of_site + 4 * bodies));
+        hsize_t const of_body = 4 + (body_states ? 9 : 0) + (joint_states ? 7 : 0);
+        return static_cast<std::int64_t>(sizeof(double) * (sites * of_site + of_body * bodies));
     }
 };
 TrajectoryContents contents_of(Topology const&, bool velocities, bool joint_forces);
@@ -43,6 +51,7 @@ TrajectoryContents contents_of(Topology const&, bool velocities, bool joint_forc
 /// The growing datasets; those that a run does not write are empty.
 struct TrajectorySeries {
     Series step, time, position, velocity, edges, orientation, torque, force, tip_torque, tip_force;
+    Series body_position, body_velocity, angular_velocity, joint_position, joint_rate;
 
     /// `step` is the last: a frame counts when its step is there.
     std::vector<Series*> present();

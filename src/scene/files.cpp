@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <sstream>
+#include <system_error>
 
 #include "scene/fields.hpp"
 
@@ -69,17 +70,16 @@ double cell_number(std::string const& cell, std::string const& path, int line) {
 }  // namespace
 
 std::string read_text_file(std::string const& path, Node const& at) {
-    std::error_code ignored;
-    auto const kind = std::filesystem::status(path, ignored).type();
-    bool const folder = kind == std::filesystem::file_type::directory;
-    bool const device = kind == std::filesystem::file_type::character || kind == std::filesystem::file_type::block;
-    std::ifstream stream;
-    if (!device) stream.open(path, std::ios::binary);
-    std::string const why = folder              ? "a folder, not a file:"
-                            : device            ? "a device, not a file:"
-                            : !stream.is_open() ? errno == EACCES ? "permission denied:" : "no such file:"
-                                                : "";
-    if (!why.empty()) fail(at, fmt::format("{} `{}`", why, shown_path(path)), "check the path");
+    std::error_code unseen;
+    auto const kind = std::filesystem::status(path, unseen).type();
+    auto const refuse = [&](std::string const& what) { fail(at, fmt::format("{} `{}`", what, shown_path(path)), "check the path"); };
+    if (kind == std::filesystem::file_type::not_found) refuse("no such file:");
+    if (unseen) refuse("the file cannot be looked at, " + unseen.message() + ":");
+    if (kind == std::filesystem::file_type::directory) refuse("a folder, not a file:");
+    if (kind != std::filesystem::file_type::regular) refuse("a device or pipe, not a file:");
+    errno = 0;
+    std::ifstream stream(path, std::ios::binary);
+    if (!stream) refuse("the file cannot be opened, " + std::generic_category().message(errno) + ":");
     std::ostringstream text;
     text << stream.rdbuf();
     if (stream.bad()) fail(at, "the file cannot be read: `" + shown_path(path) + "`", "check the file and its permissions");

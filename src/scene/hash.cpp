@@ -63,6 +63,7 @@ class Fingerprint {
     void add_each(T const&... values) {
         (add(values), ...);
     }
+    std::string short_text() const { return fmt::format("{:016x}", mixed(a_ + b_)); }
     std::string text() const { return fmt::format("{:016x}{:016x}", mixed(a_), mixed(b_)); }
 
   private:
@@ -181,6 +182,52 @@ std::string fingerprint(Scene const& scene) {
     add_named(print, "fixman", d.fixman);
     add_named(print, "tolerance", d.tolerance > 0, d.tolerance);
     return print.text();
+}
+
+namespace {
+
+void add_kind(Fingerprint& print, ChainSpec const& chain) {
+    BodyArrays const& b = chain.bodies;
+    LinkedArrays const& l = chain.linked;
+    print.add_each(chain.name, chain.base, chain.tip);
+    print.add_each(chain.beads.mass, chain.beads.length, chain.beads.residue, chain.beads.anchor);
+    print.add_each(b.mass, b.com, b.inertia, b.joint, b.axis, b.rotation, b.translation, b.first_axis, b.pitch);
+    print.add_each(l.mass, l.inertia, l.inboard, l.outboard, l.length, l.anchor);
+    add_carried(print, chain.carried());
+    if (chain.tip == Tip::jointed) add_tip(print, chain.tip_joint);
+}
+
+void add_loads(Fingerprint& print, BodyArrays const& b) {
+    print.add_each(b.torque, b.stiffness, b.damping, b.rest, b.wrench, b.drag);
+    add_driven(print, b.driven);
+}
+
+void add_positions(Fingerprint& print, ChainSpec const& chain) {
+    print.add_each(chain.beads.position, chain.bodies.q, chain.bodies.free_position, chain.linked.position, chain.linked.orientation);
+}
+
+void add_velocities(Fingerprint& print, ChainSpec const& chain) {
+    print.add_each(chain.velocities, chain.beads.velocity, chain.bodies.qd, chain.bodies.free_velocity, chain.linked.velocity,
+                   chain.linked.omega);
+}
+
+}  // namespace
+
+ChainPrints prints_of(std::span<ChainSpec const> chains) {
+    Fingerprint kind, loads, positions, velocities;
+    for (ChainSpec const& chain : chains) {
+        add_kind(kind, chain);
+        add_loads(loads, chain.bodies);
+        add_positions(positions, chain);
+        add_velocities(velocities, chain);
+    }
+    return {kind.short_text(), loads.short_text(), positions.short_text(), velocities.short_text()};
+}
+
+std::string content_print(std::string const& path) {
+    Fingerprint print;
+    print.add(content_of(path));
+    return print.short_text();
 }
 
 }  // namespace catena::scene

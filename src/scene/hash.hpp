@@ -1,6 +1,7 @@
 // A fingerprint of what decides the motion.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "scene/scene.hpp"
@@ -11,5 +12,14 @@ namespace catena::scene {
 /// files, not how and where they are computed) and dynamics but `steps`. Two 64-bit lanes of multiply-and-rotate over the values' bits:
 /// tells scenes apart, no protection against forgery. Throws InputError when a file that the scene names cannot be read any more.
 std::string fingerprint(Scene const& scene);
+
+/// Fingerprints of what chains are and of how they start, 16 hexadecimal digits each.
+struct ChainPrints {
+    std::string kind;  // name, ends, bodies, links and joints
+    std::string loads, positions, velocities;
+};
+ChainPrints prints_of(std::span<ChainSpec const> chains);
+/// Of a file's content. Throws as fingerprint().
+std::string content_print(std::string const& path);
 
 }  // namespace catena::scene

@@ -194,6 +194,7 @@ struct DynamicsSpec {
     double constraint_tolerance = 1e-10;
     double tolerance = 0;  // of an adaptive step; 0: steps are as long as `step` says
     bool fixman = false;   // rigid links sample as stiff springs would
+    bool has_steps = false;  // the scene says how many: 0 of them are one frame, not a key that is missing
 
     /// Why a GPU cannot do it; empty where it can.
     std::string why_host_alone() const;
@@ -230,11 +231,12 @@ struct SolverSpec {
 
 struct OutputSpec {
     std::int64_t every = 100;              // steps between frames and observables
-    std::int64_t checkpoint_every = 0;     // 0: only at the end
+    std::int64_t checkpoint_every = 0;     // 0: none by steps
     std::vector<std::string> observables;  // columns, in order; empty: the default set
     bool joint_forces = false;             // constraint forces in the trajectory
     bool velocities = false;               // velocities in the trajectory
     bool coordinates = false;              // orientations of bodies, joint coordinates and rates in the trajectory
+    float checkpoint_minutes = 30;         // of wall time between checkpoints; 0: none by time
 };
 
 /// How far the reader moved the positions that the user gave: links take their lengths, wrapped chains are made whole, overlaps relaxed.

@@ -161,6 +161,7 @@ DynamicsSpec read_dynamics(Node const& node, bool si) {
                                              {"implicit-midpoint"});
     dynamics.step = positive(fields.need("step", "step: 0.01"));
     take(fields, "steps", dynamics.steps, [](Node const& n) { return whole(n, 0); });
+    dynamics.has_steps = fields.find("steps") != nullptr;
     take(fields, "temperature", dynamics.temperature, non_negative);
     take(fields, "friction", dynamics.friction, non_negative);
     take(fields, "seed", dynamics.seed, seed64);
@@ -212,15 +213,19 @@ SolverSpec read_solver(Node const& node) {
 }
 
 OutputSpec read_output(Node const& node) {
-    Fields const fields(node, {"every", "checkpoint_every", "observables", "joint_forces", "velocities"});
+    Fields const fields(node,
+                        {"every", "checkpoint_every", "checkpoint_minutes", "observables", "joint_forces", "velocities", "coordinates"});
     OutputSpec output;
     take(fields, "every", output.every, [](Node const& n) { return whole(n, 1); });
     take(fields, "checkpoint_every", output.checkpoint_every, [](Node const& n) { return whole(n, 0); });
+    take(fields, "checkpoint_minutes", output.checkpoint_minutes, non_negative);
     take(fields, "joint_forces", output.joint_forces, truth);
     take(fields, "velocities", output.velocities, truth);
+    take(fields, "coordinates", output.coordinates, truth);
     Node const* const observables = fields.find("observables");
     if (!observables) return output;
-    static constexpr std::string_view known[] = {"energy", "temperature", "constraint_error", "radius_of_gyration", "end_to_end_distance"};
+    static constexpr std::string_view known[] = {
+        "energy", "temperature", "constraint_error", "radius_of_gyration", "unweighted_radius_of_gyration", "end_to_end_distance"};
     for (Node const& item : list(*observables).items) {
         std::string const name = text(item);
         if (std::find(std::begin(known), std::end(known), name) == std::end(known)) {

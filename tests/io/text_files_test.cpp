@@ -71,12 +71,12 @@ TEST(Observables, RestartRefusesOtherColumnsAndBrokenLines) {
     TemporaryFolder const folder;
     std::string const file = folder / "observables.csv";
     auto const restart = [&] { return message_of([&] { write_records(file, {}, 100); }); };
-    EXPECT_NE(restart().find("cannot be read (" + file + ")"), std::string::npos) << restart();
+    EXPECT_EQ(restart(), "no table of observables to go on with (" + file + "): put it back, or " + GoOn::way_beside);
     std::ofstream(file) << "step,time [ps],other\n";
     EXPECT_NE(restart().find("other columns"), std::string::npos) << restart();
     write_records(file, {0});
     std::ofstream(file, std::ios::app) << "not a record\n";
-    EXPECT_EQ(restart(), "not a record of observables (" + file + ", line 3): mend or remove the line");
+    EXPECT_EQ(restart(), "not a record of observables (" + file + ", line 3): mend the line, or " + GoOn::way_beside);
     std::string const before = read_text_file(file);
     EXPECT_THROW(write_records(file, {}, 100), InputError);
     EXPECT_EQ(read_text_file(file), before) << "a refused restart changed the file";

@@ -39,7 +39,7 @@ TEST(Topology, PdbColumnsAreThoseOfTheFormat) {
     Topology topology = sample_topology();
     Frame frame = sample_frame(1, topology);
     frame.positions[0] = {{1.23456, -0.5, 12.3}};
-    EXPECT_EQ(write_topology(folder.path(), topology, frame), (std::vector<std::string>{folder / "topology.pdb"}));
+    EXPECT_EQ(write_topology(folder.path(), topology, frame), (std::vector<std::string>{folder / "topology.pdb", folder / "topology.psf"}));
     auto const atoms = lines_of(folder / "topology.pdb", "ATOM");
     ASSERT_EQ(atoms.size(), 8U);
     EXPECT_EQ(atoms[0], "ATOM      1  CA  MET A   1      12.346  -5.000 123.000  1.00  0.00           C");

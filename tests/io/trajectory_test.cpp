@@ -217,7 +217,7 @@ TEST(Trajectory, RefusesWhatItDidNotWrite) {
             }
         });
     };
-    EXPECT_EQ(restart(topology), "no trajectory to go on with (" + file + "): restart in the folder that holds it");
+    EXPECT_EQ(restart(topology), "no trajectory to go on with (" + file + "): put it back, or " + GoOn::way_beside);
     std::ofstream(file) << "no HDF5 at all";
     EXPECT_NE(restart(topology).find("cannot be opened"), std::string::npos) << restart(topology);
     File(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT)).close();

@@ -135,6 +135,11 @@ def check_with_mdanalysis(topology, trajectory, seen, arguments):
         if arguments.link:
             worst = max(worst, np.abs(link_lengths(nm, seen["chains"]) - arguments.link).max())
     check(worst < 1e-5, f"a link deviates by {worst:.3g} nm through MDAnalysis")
+    bonded = os.path.join(arguments.folder, "topology.psf")
+    if os.path.isfile(bonded):
+        with h5py.File(trajectory, "r") as file:
+            masses = file["particles/trajectory/mass"][:]
+        check(np.allclose(MDAnalysis.Universe(bonded, trajectory).atoms.masses, masses, rtol=1e-9), "the masses differ")
     alone = MDAnalysis.Universe(topology)
     check(np.allclose(alone.atoms.positions, ANGSTROM_PER_NM * seen["positions"][0], atol=1e-3), "the topology shows another first frame")
     return worst

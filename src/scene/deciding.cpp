@@ -1,0 +1,111 @@
+#include "scene/deciding.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "scene/hash.hpp"
+
+namespace catena::scene {
+namespace {
+
+constexpr std::size_t most_single_chains = 1000;
+
+using Values = std::vector<DecidingValue>;
+
+template <class Number>
+void add(Values& values, std::string key, Number const& number, Role role = Role::free) {
+    values.push_back({std::move(key), fmt::format("{}", number), role});
+}
+
+std::string text_of(Vec3 const& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
+
+void add_dynamics(Values& values, DynamicsSpec const& d) {
+    if (!d.given) return;
+    add(values, "dynamics.integrator", name_of(d.integrator));
+    add(values, "dynamics.step", d.step);
+    add(values, "dynamics.temperature", d.temperature);
+    add(values, "dynamics.friction", d.friction);
+    add(values, "dynamics.seed", d.seed);
+    add(values, "dynamics.constraint_tolerance", d.constraint_tolerance);
+    if (d.tolerance > 0) add(values, "dynamics.tolerance", d.tolerance);
+    if (d.fixman) add(values, "dynamics.fixman", d.fixman);
+}
+
+void add_openmm(Values& values, OpenMmSpec const& o) {
+    std::string const at = "forces.openmm.";
+    auto const content = [&](char const* key, std::string const& path) {
+        if (!path.empty()) add(values, at + key, "content " + content_print(path));
+    };
+    if (!o.builder.empty()) add(values, at + "builder", o.builder);
+    content("system", o.system);
+    content("topology", o.topology);
+    std::vector<std::string> map;
+    for (auto const& [chain, range] : o.map) map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
+    if (!map.empty()) add(values, at + "map", fmt::format("{}", fmt::join(map, ", ")));
+    add(values, at + "temperature", o.temperature);
+    add(values, at + "ionic_strength", o.ionic_strength);
+    if (o.ph) add(values, at + "ph", *o.ph);
+    add(values, at + "switch_width", o.switch_width);
+    if (!o.force_groups.empty()) add(values, at + "force_groups", fmt::format("{}", fmt::join(o.force_groups, ", ")));
+}
+
+void add_forces(Values& values, ForceSpec const& f) {
+    add(values, "forces.gravity", text_of(f.gravity));
+    add(values, "forces.drag.linear", f.linear_drag);
+    add(values, "forces.drag.angular", f.angular_drag);
+    if (f.openmm) add_openmm(values, *f.openmm);
+}
+
+/// `holds_start`: the ground holds a tip where the start puts it.
+void add_prints(Values& values, std::string const& whose, ChainPrints const& prints, bool holds_start) {
+    add(values, whose + ", bodies and joints", prints.kind, Role::fixed);
+    add(values, whose + ", springs and loads", prints.loads);
+    add(values, whose + ", start positions", prints.positions, holds_start ? Role::fixed : Role::start);
+    add(values, whose + ", start velocities", prints.velocities, Role::start);
+}
+
+bool has_held_tip(ChainSpec const& chain) { return chain.tip == Tip::jointed && !chain.is_ring(); }
+
+void add_chains(Values& values, std::span<ChainSpec const> chains) {
+    add(values, "chains", chains.size(), Role::fixed);
+    std::size_t const single = std::min(chains.size(), most_single_chains);
+    for (std::size_t i = 0; i < single; ++i)
+        add_prints(values, "chain " + std::to_string(i + 1), prints_of(chains.subspan(i, 1)), has_held_tip(chains[i]));
+    std::span<ChainSpec const> const further = chains.subspan(single);
+    if (further.empty()) return;
+    add_prints(values, "chains from " + std::to_string(single + 1) + " on", prints_of(further),
+               std::any_of(further.begin(), further.end(), has_held_tip));
+}
+
+}  // namespace
+
+std::vector<DecidingValue> deciding_values(Scene const& scene) {
+    Values values;
+    add_dynamics(values, scene.dynamics);
+    add_forces(values, scene.forces);
+    add(values, "box", scene.box ? text_of(*scene.box) : "none");
+    add(values, "units", scene.si ? "si" : "md", Role::fixed);
+    add_chains(values, scene.chains);
+    return values;
+}
+
+std::vector<ChangedValue> changes(std::map<std::string, std::string> const& before, std::vector<DecidingValue> const& now) {
+    std::vector<ChangedValue> changed;
+    std::map<std::string, std::string> gone = before;
+    for (DecidingValue const& each : now) {
+        auto const found = before.find(each.key);
+        gone.erase(each.key);
+        std::string const old = found == before.end() ? "none" : found->second;
+        if (old != each.value) changed.push_back({each.key, old, each.value, each.role});
+    }
+    for (auto const& [key, value] : gone) {
+        changed.push_back({key, value, "none", key.starts_with("chain") ? Role::fixed : Role::free});
+    }
+    return changed;
+}
+
+}  // namespace catena::scene
