@@ -135,7 +135,7 @@ void add_commands(CLI::App& app, Words& words) {
         "Examples:\n  mpirun -np 2 catena run inputs/alpha-synuclein.yaml --output asyn\n"
         "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --steps 20000\n"
         "  catena run inputs/alpha-synuclein.yaml --restart asyn/checkpoint.h5 --branch --set dynamics.temperature=310 --output warm\n"
-        "SIGINT, SIGTERM or SIGUSR1 on any rank: all finish their step, write a checkpoint and end with status 3.");
+        "SIGINT, SIGTERM, SIGUSR1, SIGHUP or SIGXCPU on any rank: all finish their step, write a checkpoint and end with status 3.");
 
     command = app.add_subcommand("report", "error against run time of solver, integrators and forces, as page, tables, JSON and pictures");
     command

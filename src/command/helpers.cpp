@@ -8,6 +8,8 @@
 #include <cerrno>
 #include <cstdlib>
 
+#include "command/process.hpp"
+
 namespace catena::command {
 namespace {
 
@@ -39,7 +41,7 @@ int run_quietly(std::vector<std::string> words) {
     if (::posix_spawn_file_actions_init(&actions) != 0) return -1;
     for (int const stream : {STDOUT_FILENO, STDERR_FILENO}) ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
     pid_t child = -1;
-    int const started = ::posix_spawnp(&child, argv[0], &actions, nullptr, argv.data(), environ);
+    int const started = ::posix_spawnp(&child, argv[0], &actions, DefaultSignals().get(), argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     if (started != 0) return -1;
     int status = 0;

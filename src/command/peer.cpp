@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "command/helpers.hpp"
+#include "command/process.hpp"
 #include "command/text.hpp"
 #include "error.hpp"
 
@@ -75,7 +76,7 @@ Peer::Peer(PeerProgram const& program, std::string const& chain_file, std::strin
     ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
     ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
     ::posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, errors_file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    int const started = ::posix_spawn(&child_, argv[0], &actions, nullptr, argv.data(), environ);
+    int const started = ::posix_spawn(&child_, argv[0], &actions, DefaultSignals().get(), argv.data(), environ);
     ::posix_spawn_file_actions_destroy(&actions);
     ::close(ends[1]);
     talk_ = ends[0];

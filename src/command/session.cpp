@@ -1,37 +1,27 @@
 #include "command/session.hpp"
 
-#include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
 #include <new>
 #include <thread>
 
 #include "clock.hpp"
 #include "command/command_line.hpp"
+#include "command/process.hpp"
+#include "command/terminal.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
 #include "mpi/gather_way.hpp"
 #include "mpi/gpu_exchange.hpp"
 #include "mpi/launcher.hpp"
+#include "scene/printable.hpp"
 
 namespace catena::command {
 namespace {
 
 constexpr int stopped_status = 3;
-
-constexpr char const* out_of_memory = "the computation does not fit into memory: run it on more ranks, or make fewer bodies";
-
-/// What rank 0 shares of a failure is its text alone.
-void say_error(std::string line) {
-    if (line.find("std::bad_alloc") != std::string::npos || line.find("std::bad_array_new_length") != std::string::npos) line = out_of_memory;
-    std::replace(line.begin(), line.end(), '\n', ' ');
-    std::fflush(stdout);
-    std::fprintf(stderr, "catena: %s\n", line.c_str());
-}
 
 /// Longer than launchers let the other ranks live once one has given up (jobs/common.sh).
 constexpr std::chrono::seconds patience(4);
@@ -76,11 +66,8 @@ int run_request(Communicator const& communicator, int argc, char** argv,
 }  // namespace
 
 Session::Session(Communicator const& communicator, CommonOptions const& options) : communicator_(communicator), options_(options) {
-    auto const logger = std::make_shared<spdlog::logger>("catena", std::make_shared<spdlog::sinks::stderr_sink_st>());
-    logger->set_pattern("catena: %l: %v");
-    logger->set_level(communicator.rank() != 0 ? spdlog::level::off : spdlog::level::from_str(options.log_level));
-    if (options.quiet && logger->level() < spdlog::level::err) logger->set_level(spdlog::level::err);
-    spdlog::set_default_logger(logger);
+    start_log(communicator.rank() != 0 ? "off" : options.log_level);
+    if (options.quiet && spdlog::get_level() < spdlog::level::err) spdlog::set_level(spdlog::level::err);
     on_first_rank(communicator, [&] {
         std::filesystem::path const file = options.json;
         if (file.empty() || file == "-") return;
@@ -102,12 +89,11 @@ Scene Session::load(std::string const& file) const {
 int Session::conclude(Outcome const& outcome) const {
     on_first_rank(communicator_, [&] {
         if (options_.json == "-")
-            std::fputs(json_text(outcome.json).c_str(), stdout);
+            print(json_text(outcome.json));
         else if (!options_.quiet)
-            std::fputs(outcome.text.c_str(), stdout);
+            print(printable(outcome.text));
         if (!outcome.valid && (options_.quiet || options_.json == "-")) spdlog::error("INVALID: {}", outcome.complaint);
         if (outcome.valid && !outcome.whole) say_error(outcome.complaint);
-        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) throw ComputationError("cannot write to standard output");
         if (options_.json.empty() || options_.json == "-" || outcome.json.is_null()) return;
         write_text_file(options_.json, json_text(outcome.json));
         spdlog::info("wrote {}", options_.json);
@@ -117,6 +103,7 @@ int Session::conclude(Outcome const& outcome) const {
 }
 
 int guarded(int argc, char** argv, std::function<int(Communicator const&, Request const&)> const& execute) {
+    prepare_process();
     try {
         start_hdf5();
         std::unique_ptr<Communicator> const world = world_communicator(&argc, &argv);

@@ -10,8 +10,11 @@ struct Signal {
     char const* name;
     int flags;
 };
-constexpr Signal signals[] = {
-    {SIGTERM, "SIGTERM", SA_RESTART}, {SIGINT, "SIGINT", SA_RESTART | static_cast<int>(SA_RESETHAND)}, {SIGUSR1, "SIGUSR1", SA_RESTART}};
+constexpr Signal signals[] = {{SIGTERM, "SIGTERM", SA_RESTART},
+                              {SIGINT, "SIGINT", SA_RESTART | static_cast<int>(SA_RESETHAND)},
+                              {SIGUSR1, "SIGUSR1", SA_RESTART},
+                              {SIGHUP, "SIGHUP", SA_RESTART},
+                              {SIGXCPU, "SIGXCPU", SA_RESTART}};
 
 std::atomic<int> last{0};
 static_assert(std::atomic<int>::is_always_lock_free, "signal handlers may not wait");
@@ -28,6 +31,7 @@ StopSignals::StopSignals() {
         action.sa_handler = note;
         action.sa_flags = signals[i].flags;
         ::sigaction(signals[i].number, &action, &before_[i]);
+        if (signals[i].number == SIGHUP && before_[i].sa_handler == SIG_IGN) ::sigaction(SIGHUP, &before_[i], nullptr);  // nohup
     }
 }
 

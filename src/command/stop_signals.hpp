@@ -6,7 +6,8 @@
 
 namespace catena::command {
 
-/// While it lives SIGTERM, SIGUSR1 and the first SIGINT are noted; a second SIGINT ends the process at once. One at a time.
+/// While it lives SIGTERM, SIGUSR1, SIGHUP, SIGXCPU and the first SIGINT are noted; a second SIGINT ends the process at once. A SIGHUP that
+/// was ignored before (nohup) stays ignored. One at a time.
 class StopSignals {
   public:
     StopSignals();
@@ -20,7 +21,7 @@ class StopSignals {
     static std::string name_of(int signal);
 
   private:
-    static constexpr int how_many = 3;
+    static constexpr int how_many = 5;
     struct sigaction before_[how_many];
 };
 

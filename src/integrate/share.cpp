@@ -64,7 +64,8 @@ void share(Communicator const& communicator, Checkpoint& c) {
 }
 
 json gather_timelines(Communicator const& communicator, std::vector<StepTimeline> const& own) {
-    std::vector<std::string> const texts = gather_texts(communicator, timeline_json(own).dump());
+    std::vector<std::string> const texts =
+        gather_texts(communicator, timeline_json(own).dump(-1, ' ', false, json::error_handler_t::replace));
     json timeline{{"ranks", json::array()}};
     for (std::size_t rank = 0; rank < texts.size(); ++rank)
         timeline["ranks"].push_back({{"rank", rank}, {"steps", json::parse(texts[rank])}});

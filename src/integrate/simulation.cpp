@@ -390,7 +390,7 @@ class Run {
         bool const valid = std::max(worst_error_, error_at_end_) <= scene_.dynamics.constraint_tolerance;
         json const summary = summarise(first, valid, summary_of_forces(system_, reached_ - first));
         json const timeline = gather_timelines(communicator_, timelines_);
-        folder_->finish(summary.dump(2) + "\n", timeline.dump() + "\n");
+        folder_->finish(summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n", timeline.dump() + "\n");
         return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
     }
 

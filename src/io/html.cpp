@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/printable.hpp"
+
 namespace catena {
 namespace {
 
@@ -53,7 +55,7 @@ svg text.inside { fill: #ffffff; font-size: 11px; }
 
 std::string escaped(std::string_view text) {
     std::string safe;
-    for (char const c : text) switch (c) {
+    for (char const c : printable(text)) switch (c) {
             case '&':
                 safe += "&amp;";
                 break;

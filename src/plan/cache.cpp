@@ -45,7 +45,7 @@ bool write_cache(Machine const& machine, Calibration const& calibration) {
         std::filesystem::create_directories(std::filesystem::path(file).parent_path());
         nlohmann::json json = calibration.json();
         json["machine"] = machine.identity;
-        write_text_file(file, json.dump(1) + "\n");
+        write_text_file(file, json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
         return true;
     } catch (std::exception const&) {
         return false;

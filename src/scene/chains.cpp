@@ -16,6 +16,7 @@
 #include "scene/generator_entry.hpp"
 #include "scene/hdf5_bodies.hpp"
 #include "scene/linked.hpp"
+#include "scene/printable.hpp"
 #include "scene/sequences.hpp"
 #include "scene/tip.hpp"
 
@@ -88,6 +89,7 @@ class ChainReader {
     void append_to(std::vector<Draft>& drafts) {
         Node const* const named = request_.fields.find("name");
         std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
+        if (printable(name) != name) fail(*named, "the name has control characters or bytes that are not UTF-8", "give printable UTF-8");
         if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
         ChainSpec first = make(0);
         refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());

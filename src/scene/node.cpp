@@ -10,6 +10,8 @@
 #include <map>
 #include <sstream>
 
+#include "scene/printable.hpp"
+
 namespace catena::scene {
 
 namespace {
@@ -235,7 +237,7 @@ void link_parents(Node& node) {
 std::string shown(std::string_view text, std::size_t longest) {
     std::string line;
     for (char const c : text.substr(0, longest)) line += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? ' ' : c;
-    return text.size() > longest ? line + "..." : line;
+    return printable(line) + (text.size() > longest ? "..." : "");
 }
 
 std::string describe(Node const& node) {

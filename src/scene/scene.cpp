@@ -14,6 +14,7 @@
 #include "scene/node.hpp"
 #include "scene/overrides.hpp"
 #include "scene/placement.hpp"
+#include "scene/printable.hpp"
 #include "scene/sections.hpp"
 #include "scene/validation.hpp"
 
@@ -30,6 +31,10 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     made.file = name;
     Node const* const title = fields.find("title");
     made.title = title ? scene::text(*title) : std::filesystem::path(name).stem().string();
+    if (std::string const safe = printable(made.title); safe != made.title) {
+        made.title = safe;
+        made.note("title: bytes that are not UTF-8 stand as U+FFFD, control characters as `?`: save the scene as UTF-8");
+    }
     if (Node const* const units = fields.find("units")) made.si = scene::choice<bool>(*units, {{"md", false}, {"si", true}});
     Node const* const dynamics = fields.find("dynamics");
     if (dynamics) made.dynamics = scene::read_dynamics(*dynamics, made.si);
