@@ -42,15 +42,25 @@ Calvados2Residue const* find_calvados2(std::string_view name) {
 
 namespace calvados2 {
 
-double bead_mass(Calvados2Residue const& residue, std::int64_t k, std::int64_t n) {
-    return residue.mass + (k == 0 ? first_bead_mass : 0) + (k == n - 1 ? last_bead_mass : 0);
+ChainEnds::ChainEnds(OpenMmSpec const& spec) {
+    for (auto const& [name, charged] : spec.map) ends_[name] = {charged.first != 0, charged.second != 0};
+}
+
+ChargedTermini ChainEnds::of(std::string const& chain) const {
+    auto const named = ends_.find(chain);
+    auto const found = named == ends_.end() ? ends_.find("") : named;
+    return found == ends_.end() ? ChargedTermini{} : found->second;
+}
+
+double bead_mass(Calvados2Residue const& residue, ChainPlace const& at) {
+    return residue.mass + (at.is_n_terminus() ? first_bead_mass : 0) + (at.is_c_terminus() ? last_bead_mass : 0);
 }
 
 double histidine_charge(std::optional<double> ph) { return ph ? 1 / (1 + std::pow(10.0, *ph - 6)) : 0; }
 
-double bead_charge(Calvados2Residue const& residue, std::int64_t k, std::int64_t n, std::optional<double> ph) {
+double bead_charge(Calvados2Residue const& residue, ChainPlace const& at, std::optional<double> ph) {
     double const inside = residue.letter == 'H' ? residue.charge + histidine_charge(ph) : residue.charge;
-    return inside + (k == 0 ? first_bead_charge : 0) + (k == n - 1 ? last_bead_charge : 0);
+    return inside + (at.is_n_terminus() ? first_bead_charge : 0) + (at.is_c_terminus() ? last_bead_charge : 0);
 }
 
 Yukawa yukawa(double temperature, double ionic_strength) {

@@ -6,7 +6,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
+
+#include "scene/scene.hpp"
 
 namespace catena {
 
@@ -38,15 +41,39 @@ inline constexpr double epsilon = 0.8368;             // kJ/mol, Ashbaugh-Hatch
 inline constexpr double ashbaugh_hatch_cutoff = 2.0;  // nm
 inline constexpr double yukawa_cutoff = 4.0;          // nm
 
-/// Mass of bead k (from 0) of a chain of n residues: the residue's, plus what its terminus carries.
-double bead_mass(Calvados2Residue const&, std::int64_t k, std::int64_t n);
+/// Ends of a chain of residues that are charged, and have the mass of, free termini: N before the first bead, C after the last.
+struct ChargedTermini {
+    bool n = true, c = true;
+    bool operator==(ChargedTermini const&) const = default;
+};
+/// Those of every chain, as OpenMmSpec::map of a builder has them: 1 or 0 for the first and the last bead, by the chain's name; "" stands
+/// for chains that are not named. Where it says nothing, both ends are charged.
+class ChainEnds {
+  public:
+    explicit ChainEnds(OpenMmSpec const&);
+    ChargedTermini of(std::string const& chain) const;
+
+  private:
+    std::unordered_map<std::string, ChargedTermini> ends_;
+};
+
+/// Bead k (from 0) of a chain of n residues.
+struct ChainPlace {
+    std::int64_t k, n;
+    ChargedTermini termini = {};
+    bool is_n_terminus() const { return k == 0 && termini.n; }
+    bool is_c_terminus() const { return k == n - 1 && termini.c; }
+};
+
+/// The residue's mass, plus what a charged terminus carries.
+double bead_mass(Calvados2Residue const&, ChainPlace const&);
 
 /// Charge of histidine in e: its protonated fraction 1 / (1 + 10^(pH - 6)), as the authors' own simulations take it;
 /// without a pH it is neutral.
 double histidine_charge(std::optional<double> ph);
 
-/// Charge of bead k (from 0) of a chain of n residues in e, termini included.
-double bead_charge(Calvados2Residue const&, std::int64_t k, std::int64_t n, std::optional<double> ph);
+/// In e, charged termini included.
+double bead_charge(Calvados2Residue const&, ChainPlace const&, std::optional<double> ph);
 
 /// Screened Coulomb energy between charges q_i, q_j: q_i q_j prefactor exp(-kappa r) / r.
 struct Yukawa {

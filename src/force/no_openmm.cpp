@@ -16,7 +16,11 @@ std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem con
     throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
 }
 
-ImportedSystem import_openmm_system(std::string const&, std::string const&, std::string const& scene_file) {
+SystemLinks read_system_links(OpenMmSpec const&, std::string const& scene_file) {
+    throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
+}
+
+ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_file) {
     throw built_without("OpenMM", scene_file + ": forces.openmm", remedy);
 }
 

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "error.hpp"
 #include "force/calvados2.hpp"
+#include "force/charges.hpp"
 #include "force/openmm_model.hpp"
 
 namespace catena {
@@ -14,13 +16,16 @@ namespace {
 struct Place {
     std::string chain;
     std::int64_t k, length;
+    calvados2::ChargedTermini termini;
 };
 
 template <class Visit>
-void for_each_bead(BeadSystem const& beads, Visit visit) {
+void for_each_bead(OpenMmSpec const& spec, BeadSystem const& beads, Visit visit) {
+    calvados2::ChainEnds const ends(spec);
     for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c) {
         std::int64_t const first = beads.chain_offset[c], length = beads.chain_offset[c + 1] - first;
-        for (std::int64_t k = 0; k < length; ++k) visit(first + k, Place{beads.chain_name[c], k, length});
+        Place place{beads.chain_name[c], 0, length, ends.of(beads.chain_name[c])};
+        for (; place.k < length; ++place.k) visit(first + place.k, place);
     }
 }
 
@@ -103,9 +108,11 @@ std::string rigid_note(BeadSystem const& beads) {
 std::vector<std::string> notes_on(OpenMmSpec const& spec, BeadSystem const& beads, calvados2::Yukawa const& y) {
     std::string const histidine = spec.ph ? fmt::format("histidine {:.3g} e (pH {})", calvados2::histidine_charge(spec.ph), *spec.ph)
                                           : "histidine neutral (no ph given)";
+    auto const histidines = std::count(beads.residue.begin(), beads.residue.end(), "HIS");
+    std::string const number = histidines > 0 ? fmt::format(", {} of them", histidines) : "";
     std::string const edge = spec.switch_width > 0 ? fmt::format("switched off over {} nm", spec.switch_width) : "cut";
-    return {fmt::format("CALVADOS 2 at {} K, {} mol/l: Debye length {:.4g} nm, {}", spec.temperature, spec.ionic_strength, 1 / y.kappa,
-                        histidine),
+    return {fmt::format("CALVADOS 2 at {} K, {} mol/l: Debye length {:.4g} nm, {}{}", spec.temperature, spec.ionic_strength, 1 / y.kappa,
+                        histidine, number),
             fmt::format("ashbaugh-hatch {} at {} nm, yukawa at {} nm", edge, calvados2::ashbaugh_hatch_cutoff, calvados2::yukawa_cutoff),
             fmt::format("{}{} links replace the model's harmonic bonds of {} nm", rigid_note(beads), beads.links.size(),
                         calvados2::bond_length)};
@@ -121,13 +128,16 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     auto charges = yukawa_force(y);
 
     OpenMmModel model;
+    std::vector<double> charge_of;  // e, by bead
     model.system = std::make_shared<OpenMM::System>();
     if (beads.box) model.system->setDefaultPeriodicBoxVectors({(*beads.box)[0], 0, 0}, {0, (*beads.box)[1], 0}, {0, 0, (*beads.box)[2]});
-    for_each_bead(beads, [&](std::int64_t bead, Place const& at) {
+    for_each_bead(spec, beads, [&](std::int64_t bead, Place const& at) {
         auto const& residue = residue_of(beads, bead, at);
         model.system->addParticle(beads.mass[bead]);
         contact->addParticle({residue.sigma / 2, residue.lambda / 2});
-        charges->addParticle({unit * calvados2::bead_charge(residue, at.k, at.length, spec.ph)});
+        double const charge = calvados2::bead_charge(residue, {at.k, at.length, at.termini}, spec.ph);
+        charges->addParticle({unit * charge});
+        charge_of.push_back(charge);
         model.bead_of_particle.push_back(bead);
     });
     finish(*contact, spec, beads, 0);
@@ -136,6 +146,7 @@ OpenMmModel calvados2_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     model.system->addForce(contact.release());
     model.system->addForce(charges.release());
     model.notes = notes_on(spec, beads, y);
+    model.notes.push_back(charge_text(charge_of, beads));
     return model;
 }
 

@@ -17,10 +17,13 @@
 #include "force/openmm_subset.hpp"
 #include "force/worker.hpp"
 #include "mpi/first_rank.hpp"
+#include "scene/node.hpp"
 
 namespace catena {
 
 namespace {
+
+std::size_t constexpr longest_message = 300;  // of OpenMM's
 
 std::string join(std::vector<std::string> const& words) { return fmt::format("{}", fmt::join(words, ", ")); }
 
@@ -183,7 +186,7 @@ void OpenMmForces::finish(View<3> forces) {
     } catch (ComputationError const&) {
         throw;
     } catch (std::exception const& e) {
-        throw ComputationError(fmt::format("OpenMM failed: {}", e.what()));
+        throw ComputationError(fmt::format("OpenMM failed: {}", scene::shown(e.what(), longest_message)));
     }
     for (std::int64_t k = 0; k < own_count(); ++k)
         for (int c = 0; c < 3; ++c) forces.at(k, c) += forces_[k][c];
@@ -339,7 +342,8 @@ auto accepted(std::string const& where, Action const& action) {
     } catch (std::bad_alloc const&) {
         throw;
     } catch (std::exception const& e) {  // OpenMM's exceptions have no common base below this
-        throw InputError(fmt::format("OpenMM refuses these forces: {}", e.what()), where, "mend the System, or take another platform");
+        throw InputError(fmt::format("OpenMM refuses these forces: {}", scene::shown(e.what(), longest_message)), where,
+                         "mend the System, or take another platform");
     }
 }
 

@@ -2,76 +2,85 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-
 #include "error.hpp"
+#include "force/openmm_links.hpp"
 #include "force/openmm_model.hpp"
 #include "force/pdb_topology.hpp"
+#include "scene/node.hpp"
 
 namespace catena {
 
 namespace {
 
-/// Lengths of the bonds and constraints between particle p - 1 and p, by p.
-std::map<int, double> lengths_to_neighbours(OpenMM::System const& system) {
-    std::map<int, double> lengths;
-    int a, b;
-    double length, k;
-    auto const note = [&] {
-        if (std::abs(a - b) == 1) lengths[std::max(a, b)] = length;
-    };
-    for (int i = 0; i < system.getNumForces(); ++i) {
-        auto const* bonds = dynamic_cast<OpenMM::HarmonicBondForce const*>(&system.getForce(i));
-        for (int j = 0; bonds != nullptr && j < bonds->getNumBonds(); ++j) {
-            bonds->getBondParameters(j, a, b, length, k);
-            note();
-        }
-    }
-    for (int i = 0; i < system.getNumConstraints(); ++i) {  // these hold exactly, so they have the last word
-        system.getConstraintParameters(i, a, b, length);
-        note();
-    }
-    return lengths;
-}
-
-ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system, std::map<int, double> const& lengths,
+/// Adds the chain's links to `links`.
+ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const& system, Joinings const& joinings, StiffLinks& links,
                            std::string const& where) {
     ImportedChain chain{from.name, from.residue, {}, from.position, {}};
     for (int k = 0; k < static_cast<int>(from.size()); ++k) {
-        chain.mass.push_back(system.getParticleMass(first + k));
-        auto const link = lengths.find(first + k);
-        if (k > 0 && link == lengths.end())
-            throw InputError(
-                fmt::format("particles {} and {} (from 0) are joined by no harmonic bond and no constraint", first + k - 1, first + k),
-                fmt::format("{}, chain {}, body {}", where, from.name, k + 1),
-                "join neighbours in a chain, or end the chain between them in the topology (TER)");
-        chain.length.push_back(k > 0 ? link->second : 0);
+        int const p = first + k;
+        chain.mass.push_back(system.getParticleMass(p));
+        Joining const joining = k > 0 ? joinings.to_previous(p) : Joining{};
+        if (k > 0 && !joining.holds())
+            joinings.refuse_gap(p, first, fmt::format("{}, chain {}, body {}", where, scene::shown(from.name), k + 1));
+        if (k > 0) links.add(p - 1, p, joining);
+        chain.length.push_back(k > 0 ? joining.length : 0);
     }
     return chain;
 }
 
+/// Where the ends of chains are joined as stiffly as their first links: a sentence, or none.
+std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings) {
+    int first = 0, rings = 0;
+    std::string name;
+    for (PdbChain const& chain : chains) {
+        int const size = static_cast<int>(chain.size()), last = first + size - 1;
+        if (size > 2 && joinings.between(first, last).stiffness >= 0.5 * joinings.to_previous(first + 1).stiffness &&
+            joinings.between(first, last).holds()) {
+            if (rings++ == 0) name = scene::shown(chain.name);
+        }
+        first += size;
+    }
+    if (rings == 0) return {};
+    return {
+        fmt::format("{} into a ring by a harmonic bond, which stays a spring (write `chains` with `tip: {{ring: {{type: link}}}}` for a "
+                    "link).",
+                    rings == 1 ? fmt::format("Chain {} is closed", name) : fmt::format("{} chains are closed", rings))};
+}
+
 }  // namespace
 
-ImportedSystem import_openmm_system(std::string const& system_file, std::string const& topology, std::string const& scene_file) {
+SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_file) {
     std::string const where = openmm_key(scene_file, "system");
-    auto const system = read_openmm_system(system_file, where);
-    refuse_movers(*system, where);
-    auto const chains = read_pdb_topology(topology, openmm_key(scene_file, "topology"));
+    auto const system = read_openmm_system(spec.system, where);
+    SystemLinks links;
+    links.notes = leave_movers_out(*system, spec.force_groups, where);
+    Joinings const joinings(*system, where);
+    links.to_previous.resize(static_cast<std::size_t>(system->getNumParticles()));
+    for (int p = 1; p < system->getNumParticles(); ++p) links.to_previous[static_cast<std::size_t>(p)] = joinings.to_previous(p);
+    return links;
+}
+
+ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& scene_file) {
+    std::string const where = openmm_key(scene_file, "system");
+    auto const system = read_openmm_system(spec.system, where);
+    ImportedSystem imported;
+    imported.notes = leave_movers_out(*system, spec.force_groups, where);
+    auto const chains = read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"));
     std::size_t atoms = 0;
     for (auto const& chain : chains) atoms += chain.size();
     if (static_cast<int>(atoms) != system->getNumParticles())
         throw InputError(fmt::format("the topology has {} atoms and the System {} particles", atoms, system->getNumParticles()),
                          openmm_key(scene_file, "topology"), "give one atom a particle, in the System's order");
 
-    ImportedSystem imported;
-    auto const lengths = lengths_to_neighbours(*system);
+    Joinings const joinings(*system, where);
+    StiffLinks links(spec.temperature, where);
     int first = 0;
     for (auto const& chain : chains) {
-        imported.chains.push_back(import_chain(chain, first, *system, lengths, where));
+        imported.chains.push_back(import_chain(chain, first, *system, joinings, links, where));
         first += static_cast<int>(chain.size());
     }
+    for (auto const& notes : {links.notes(), note_rings(chains, joinings)})
+        imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.periodic = system->usesPeriodicBoundaryConditions();
     OpenMM::Vec3 a, b, c;
     system->getDefaultPeriodicBoxVectors(a, b, c);

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "dca/linear.hpp"
+#include "force/stiff_links.hpp"
+#include "scene/scene.hpp"
 
 namespace catena {
 
@@ -21,11 +23,24 @@ struct ImportedSystem {
     std::vector<ImportedChain> chains;  // the topology's, in its order
     bool periodic = false;              // some force uses the box
     Vec3 box = Vec3::zero();            // edges of the System's box
+    std::vector<std::string> notes;     // what was left out or is doubtful, a sentence each
+};
+
+/// What the System says of chains that the scene writes down.
+struct SystemLinks {
+    std::vector<Joining> to_previous;  // by particle: what joins it to the one before
+    std::vector<std::string> notes;    // what was left out, a sentence each
 };
 
 /// Particle order is topology order. Neighbours in a chain are joined by a link as long as the harmonic bond or constraint between them.
-/// Throws InputError: unreadable files, different counts, neighbours that nothing joins, and what Catena cannot drive (virtual sites,
-/// CMMotionRemover, barostats, ...). "built without OpenMM" where the build lacks it.
-ImportedSystem import_openmm_system(std::string const& system, std::string const& topology, std::string const& scene_file);
+/// Throws InputError: unreadable files, different counts, neighbours that nothing joins or a soft spring, and what Catena cannot drive
+/// (virtual sites, barostats, ...). "built without OpenMM" where the build lacks it.
+ImportedSystem import_openmm_system(OpenMmSpec const&, std::string const& scene_file);
+
+/// Throws as import_openmm_system does, but not for neighbours.
+SystemLinks read_system_links(OpenMmSpec const&, std::string const& scene_file);
+
+/// "scene.yaml: forces.openmm.system"
+inline std::string openmm_key(std::string const& scene_file, std::string const& key) { return scene_file + ": forces.openmm." + key; }
 
 }  // namespace catena

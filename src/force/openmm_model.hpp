@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "force/openmm_force.hpp"
+#include "force/openmm_import.hpp"
 
 namespace catena {
 
@@ -34,15 +35,16 @@ OpenMmModel system_model(OpenMmSpec const&, BeadSystem const&);
 /// "CustomNonbondedForce".
 std::string kind_of(OpenMM::Force const&);
 
+/// Names of these forces of a System, all different and without characters that mean something in tables, pages or terminals: those they
+/// bear; where these are OpenMM's own, yukawa and ashbaugh-hatch by the expression, else the kind of the force.
+std::vector<std::string> term_names(OpenMM::System const&, std::vector<int> const& forces);
+
 /// The whole serialised System in `file`. `where`: scene file and key, for messages. Throws InputError with one line; for a System that
 /// this OpenMM cannot read it names both versions.
 std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std::string const& where);
 
-/// Refuses what a simulation with rigid links driven by Catena cannot have: virtual sites, massless particles, and forces that move
-/// particles (thermostats, barostats, removal of the centre of mass's motion), by name.
-void refuse_movers(OpenMM::System const&, std::string const& where);
-
-/// "scene.yaml: forces.openmm.system"
-inline std::string openmm_key(std::string const& scene_file, std::string const& key) { return scene_file + ": forces.openmm." + key; }
+/// Takes what moves particles off a System, and says so in a sentence each: a CMMotionRemover, and thermostats and barostats in groups that
+/// `groups` (empty: all) does not name. Refuses the others, virtual sites and particles without a mass: throws InputError.
+std::vector<std::string> leave_movers_out(OpenMM::System&, std::vector<int> const& groups, std::string const& where);
 
 }  // namespace catena

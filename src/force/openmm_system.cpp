@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "error.hpp"
+#include "force/charges.hpp"
 #include "force/openmm_model.hpp"
 #include "force/pdb_topology.hpp"
+#include "scene/node.hpp"
 
 namespace catena {
 
@@ -174,9 +176,24 @@ std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
     return kept;
 }
 
+/// Forces get the names of their terms in the System's order, before those that lose bonds move to its end; `links` take others whole.
+void name_in_order(System& system, LinkTable const& links) {
+    auto const vanishes = [&](OpenMM::Force const& force) {
+        auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&force);
+        LeftOut ignored;
+        return bonds != nullptr && without_links(*bonds, links, ignored)->getNumBonds() == 0;
+    };
+    std::vector<int> remaining;
+    for (int i = 0; i < system.getNumForces(); ++i)
+        if (!vanishes(system.getForce(i))) remaining.push_back(i);
+    std::vector<std::string> const names = term_names(system, remaining);
+    for (std::size_t n = 0; n < names.size(); ++n) system.getForce(remaining[n]).setName(names[n]);
+}
+
 /// Takes the bonds along links out, and forces that are left without a term with them.
 std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links) {
     LeftOut left_out;
+    name_in_order(system, links);
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&system.getForce(i));
         if (bonds == nullptr) continue;
@@ -217,27 +234,60 @@ std::vector<std::string> remove_other_groups(System& system, std::vector<int> co
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         auto const& force = system.getForce(i);
         if (std::find(groups.begin(), groups.end(), force.getForceGroup()) != groups.end()) continue;
-        notes.insert(notes.begin(), fmt::format("{} (group {}) left out by force_groups", force.getName(), force.getForceGroup()));
+        notes.insert(notes.begin(),
+                     fmt::format("{} (group {}) left out by force_groups", scene::shown(force.getName()), force.getForceGroup()));
         system.removeForce(i);
     }
     return notes;
 }
 
-/// Every force its own group and its own name.
+/// Every force its own group; it has its own name.
 std::vector<std::string> name_terms(System& system, std::string const& where) {
     if (system.getNumForces() > force_groups_of_openmm)
         throw InputError(fmt::format("the System has {} forces", system.getNumForces()), where,
                          fmt::format("merge forces of one kind: OpenMM tells {} groups apart", force_groups_of_openmm));
     std::vector<std::string> names;
-    std::map<std::string, int> seen;
     for (int i = 0; i < system.getNumForces(); ++i) {
         auto& force = system.getForce(i);
+        names.push_back(force.getName());
         force.setForceGroup(i);
         if (auto* charges = dynamic_cast<OpenMM::NonbondedForce*>(&force)) charges->setReciprocalSpaceForceGroup(-1);  // with the rest
-        int const before = seen[force.getName()]++;
-        names.push_back(before == 0 ? force.getName() : fmt::format("{} {}", force.getName(), before + 1));
     }
     return names;
+}
+
+/// The particles' charges where the force has any: those of a NonbondedForce, or a parameter that is called so.
+std::vector<double> charges_of(OpenMM::Force const& force) {
+    std::vector<double> charges, parameters;
+    if (auto const* nonbonded = dynamic_cast<OpenMM::NonbondedForce const*>(&force))
+        for (int p = 0; p < nonbonded->getNumParticles(); ++p) {
+            double charge, sigma, epsilon;
+            nonbonded->getParticleParameters(p, charge, sigma, epsilon);
+            charges.push_back(charge);
+        }
+    auto const* custom = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force);
+    for (int i = 0; custom != nullptr && charges.empty() && i < custom->getNumPerParticleParameters(); ++i) {
+        std::string const& name = custom->getPerParticleParameterName(i);
+        if (name != "q" && name != "Q" && name != "charge") continue;
+        for (int p = 0; p < custom->getNumParticles(); ++p) {
+            custom->getParticleParameters(p, parameters);
+            charges.push_back(parameters[static_cast<std::size_t>(i)]);
+        }
+    }
+    return charges;
+}
+
+/// What the first force with charges says of the chains' net charges; none where no particle is charged.
+std::vector<std::string> note_charges(OpenMmModel const& model, BeadSystem const& beads) {
+    for (int i = 0; i < model.system->getNumForces(); ++i) {
+        std::vector<double> const charges = charges_of(model.system->getForce(i));
+        if (std::ssize(charges) != beads.size()) continue;
+        if (std::all_of(charges.begin(), charges.end(), [](double q) { return q == 0; })) continue;
+        std::vector<double> of_bead(charges.size());
+        for (std::size_t p = 0; p < charges.size(); ++p) of_bead[static_cast<std::size_t>(model.bead_of_particle[p])] = charges[p];
+        return {fmt::format("{} ({})", charge_text(of_bead, beads), model.terms[static_cast<std::size_t>(i)])};
+    }
+    return {};
 }
 
 /// A periodic System takes the scene's box, which must be its own.
@@ -263,7 +313,7 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::string const where = openmm_key(beads.scene_file, "system");
     OpenMmModel model;
     model.system = read_openmm_system(spec.system, where);
-    refuse_movers(*model.system, where);
+    std::vector<std::string> const movers = leave_movers_out(*model.system, spec.force_groups, where);
     check_counts(*model.system, spec, beads);
     check_topology(spec, beads);
     model.bead_of_particle = beads_of_particles(spec, beads);
@@ -272,13 +322,15 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     std::vector<int> const particle_of_bead = particles_of_beads(model.bead_of_particle);
     LinkTable const links(beads, particle_of_bead);
     auto const add = [&](std::vector<std::string> const& notes) { model.notes.insert(model.notes.end(), notes.begin(), notes.end()); };
-    add({fmt::format("System {}", spec.system)});
+    add({fmt::format("System {}", scene::shown_path(spec.system))});
+    add(movers);
     add(remove_constraints(*model.system, links, where));
     add(remove_other_groups(*model.system, spec.force_groups));
     add(remove_linked_bonds(*model.system, links));
     add(exclude_within_bodies(*model.system, beads, particle_of_bead));
     settle_box(*model.system, beads, model.notes);
     model.terms = name_terms(*model.system, where);
+    add(note_charges(model, beads));
     return model;
 }
 

@@ -1,52 +1,56 @@
-// Serialised Systems: reading, and refusing what Catena cannot drive.
+// Serialised Systems: reading.
 #include <cxxabi.h>
 #include <fmt/format.h>
 #include <openmm/serialization/XmlSerializer.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
+#include <new>
 #include <sstream>
-#include <string_view>
 #include <typeinfo>
 
 #include "error.hpp"
 #include "force/openmm_model.hpp"
 #include "force/openmm_platform.hpp"
+#include "force/xml_scan.hpp"
+#include "scene/node.hpp"
 
 namespace catena {
 
 namespace {
 
-/// The value of an attribute of the root element, "" where it has none.
-std::string root_attribute(std::string const& xml, std::string const& name) {
-    auto const open = xml.find("<System ");
-    if (open == std::string::npos) return "";
-    std::string const element = xml.substr(open, xml.find('>', open) - open);
-    auto const at = element.find(' ' + name + "=\"");
-    if (at == std::string::npos) return "";
-    auto const from = at + name.size() + 3;
-    return element.substr(from, element.find('"', from) - from);
-}
+/// OpenMM's reader takes some 20 bytes for one of the text.
+double constexpr bytes_a_character = 20;
 
-/// OpenMM's reader runs past the end of a text that lacks its last element.
-bool is_complete(std::string const& xml) {
-    std::string_view text = xml;
-    auto const end = text.find_last_not_of(" \t\r\n");
-    return end != std::string_view::npos && text.substr(0, end + 1).ends_with("</System>");
-}
-
-std::string one_line(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
+std::string read_text(std::string const& file, std::string const& where) {
+    std::ifstream in(file, std::ios::binary | std::ios::ate);
+    std::streamoff const size = in ? static_cast<std::streamoff>(in.tellg()) : -1;
+    if (size < 0)
+        throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where, "name a serialised System that can be read");
+    double const needed = bytes_a_character * static_cast<double>(size);
+    double const present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    if (needed > present)
+        throw InputError(fmt::format("to read {} takes about {:.3g} GB, this machine has {:.3g} GB", scene::shown_path(file), needed * 1e-9,
+                                     present * 1e-9),
+                         where, "take a machine with more memory");
+    std::string text(static_cast<std::size_t>(size), '\0');
+    in.seekg(0);
+    in.read(text.data(), size);
+    text.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
     return text;
 }
 
-std::string read_text(std::string const& file, std::string const& where) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(fmt::format("cannot open {}", file), where, "name a serialised System that can be read");
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
+/// Of a force in a file and in the System that OpenMM read there; empty where they are the same.
+std::string difference(std::vector<std::string> const& written, OpenMM::System const& read) {
+    if (std::ssize(written) != read.getNumForces())
+        return fmt::format("{} forces where the file has {}", read.getNumForces(), written.size());
+    for (int i = 0; i < read.getNumForces(); ++i)
+        if (std::string const& type = written[static_cast<std::size_t>(i)]; kind_of(read.getForce(i)) != type)
+            return fmt::format("a {} where the file has a {}", kind_of(read.getForce(i)), scene::shown(type));
+    return "";
 }
 
 }  // namespace
@@ -62,37 +66,26 @@ std::string kind_of(OpenMM::Force const& force) {
 
 std::unique_ptr<OpenMM::System> read_openmm_system(std::string const& file, std::string const& where) {
     load_openmm_plugins();
-    std::string const xml = read_text(file, where);
-    if (root_attribute(xml, "type") != "System")
-        throw InputError(fmt::format("{} is no serialised System", file), where, "write it with OpenMM's XmlSerializer.serialize(system)");
-    if (!is_complete(xml)) throw InputError(fmt::format("{} is cut short", file), where, "write the System again");
+    std::string const name = scene::shown_path(file), xml = read_text(file, where);
+    char const* const remedy = "write it with OpenMM's XmlSerializer.serialize(system)";
+    if (xml.find("<System") == std::string::npos) throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
+    XmlOutline const outline = scan_system_xml(xml, name, where);
+    if (outline.type != "System") throw InputError(fmt::format("{} is no serialised System", name), where, remedy);
+    std::unique_ptr<OpenMM::System> system;
     try {
         std::istringstream in(xml);
-        return std::unique_ptr<OpenMM::System>(OpenMM::XmlSerializer::deserialize<OpenMM::System>(in));
+        system.reset(OpenMM::XmlSerializer::deserialize<OpenMM::System>(in));
+    } catch (std::bad_alloc const&) {
+        throw;
     } catch (std::exception const& e) {
-        std::string const by = root_attribute(xml, "openmmVersion");
-        throw InputError(fmt::format("OpenMM {} cannot read {}, written by OpenMM {}: {}", OpenMM::Platform::getOpenMMVersion(), file,
-                                     by.empty() ? "of an unknown version" : by, one_line(e.what())),
-                         where, "build Catena with that OpenMM or a later one, or write the System with an earlier one");
+        throw InputError(
+            fmt::format("OpenMM {} cannot read {}, written by OpenMM {}: {}", OpenMM::Platform::getOpenMMVersion(), name,
+                        outline.version.empty() ? "of an unknown version" : scene::shown(outline.version), scene::shown(e.what(), 300)),
+            where, "build Catena with that OpenMM or a later one, or write the System with an earlier one");
     }
-}
-
-void refuse_movers(OpenMM::System const& system, std::string const& where) {
-    for (int p = 0; p < system.getNumParticles(); ++p) {
-        if (system.isVirtualSite(p))
-            throw InputError(fmt::format("particle {} (from 0) is a virtual site", p), where,
-                             "leave virtual sites out: every particle is a bead with a mass");
-        if (!(system.getParticleMass(p) > 0))
-            throw InputError(fmt::format("particle {} (from 0) has no mass", p), where, "give it one: every particle is a bead that moves");
-    }
-    for (int i = 0; i < system.getNumForces(); ++i) {
-        std::string const kind = kind_of(system.getForce(i));
-        bool const barostat = kind.find("Barostat") != std::string::npos;
-        if (!barostat && kind != "CMMotionRemover" && kind != "AndersenThermostat") continue;
-        throw InputError(fmt::format("the System holds a {}", kind), where,
-                         barostat ? "remove it: Catena runs at constant volume"
-                                  : "remove it: Catena's own integrators move the beads (dynamics.integrator)");
-    }
+    if (std::string const lost = difference(outline.forces, *system); !lost.empty())
+        throw InputError(fmt::format("OpenMM reads {} from {}", lost, name), where, remedy);
+    return system;
 }
 
 }  // namespace catena

@@ -11,6 +11,8 @@
 #include "scene/pdb_sites.hpp"
 #include "scene/random.hpp"
 #include "scene/residue_names.hpp"
+#include "scene/sections.hpp"
+#include "scene/system_links.hpp"
 
 namespace catena::scene {
 
@@ -36,7 +38,7 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
 }  // namespace
 
 void ChainRequest::allow(char const* kind, Names keys) const {
-    for (char const* const key : {"model", "positions", "links", "anchor", "conformation", "rigid"}) {
+    for (char const* const key : {"model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
@@ -54,6 +56,25 @@ Vec3 ChainRequest::anchor() const {
 bool ChainRequest::links_as_given() const {
     Node const* const links = fields.find("links");
     return links && choice<bool>(*links, {{"model", false}, {"as_given", true}});
+}
+
+calvados2::ChargedTermini ChainRequest::termini() const {
+    if (Node const* const here = fields.find("charge_termini")) return read_charged_termini(*here);
+    return scene.forces.openmm ? calvados2::ChainEnds(*scene.forces.openmm).of("") : calvados2::ChargedTermini{};
+}
+
+void ChainRequest::set_lengths(BeadArrays& beads) const {
+    if (system == nullptr || links_as_given()) return;
+    Vec3 shift = Vec3::zero();
+    for (std::size_t k = 1; k < beads.size(); ++k) {
+        double const length = system->length(particle + static_cast<std::int64_t>(k)), before = beads.length[k];
+        if (length > 0 && length != before) {
+            Vec3 const inboard = beads.position[k - 1] - shift;  // where it was
+            shift = plus_scaled(shift, length / before - 1, beads.position[k] - inboard);
+            beads.length[k] = length;
+        }
+        beads.position[k] = beads.position[k] + shift;
+    }
 }
 
 std::uint64_t ChainRequest::seed(std::int64_t copy) const {

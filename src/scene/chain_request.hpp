@@ -5,12 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "force/calvados2.hpp"
 #include "scene/domains.hpp"
 #include "scene/fields.hpp"
 #include "scene/node.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::scene {
+
+class WrittenSystem;
 
 struct ChainRequest {
     Fields fields;
@@ -20,6 +23,8 @@ struct ChainRequest {
     Base base = Base::free;
     std::vector<Domain> rigid = {};          // ascending; of a chain of residues
     std::vector<std::string> residues = {};  // three-letter names, of a chain of residues
+    WrittenSystem const* system = nullptr;   // that the scene names beside its chains
+    std::int64_t particle = 0;               // of the first bead in it
 
     /// Refuses those of `model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this kind of
     /// chain.
@@ -27,6 +32,10 @@ struct ChainRequest {
     /// Origin where none is given.
     Vec3 anchor() const;
     bool links_as_given() const;
+    /// The chain's `charge_termini`, else what the scene says of all.
+    calvados2::ChargedTermini termini() const;
+    /// Gives links the lengths of the System that the scene names, where it joins the two beads, and moves the beads to these.
+    void set_lengths(BeadArrays& beads) const;
     /// The scene's seed, told apart by chain and copy.
     std::uint64_t seed(std::int64_t copy) const;
 

@@ -17,7 +17,9 @@
 #include "scene/hdf5_bodies.hpp"
 #include "scene/linked.hpp"
 #include "scene/printable.hpp"
+#include "scene/sections.hpp"
 #include "scene/sequences.hpp"
+#include "scene/system_links.hpp"
 #include "scene/tip.hpp"
 
 namespace catena::scene {
@@ -26,7 +28,7 @@ namespace {
 
 Fields chain_fields(Node const& entry) {
     return Fields(entry, {"name", "count", "sequence", "fasta", "record", "pdb", "bodies", "generator", "model", "positions", "links",
-                          "base", "tip", "anchor", "conformation", "rigid", "velocities"});
+                          "base", "tip", "anchor", "conformation", "rigid", "charge_termini", "velocities"});
 }
 
 /// The one key that says what the chain is made of.
@@ -78,9 +80,10 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
 
 class ChainReader {
   public:
-    ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm)
+    ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm, WrittenSystem const* system)
         : request_{chain_fields(entry), entry, index, scene}, source_(source_of(request_.fields)), warm_(warm) {
         request_.base = base_of(request_.fields, source_);
+        request_.system = system;
         tip_ = read_tip(request_.fields);
         if (Node const* const count = request_.fields.find("count")) count_ = whole(*count, 1);
         if (source_.key == "generator") generator_.emplace(request_, source_);
@@ -91,19 +94,34 @@ class ChainReader {
         std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
         if (printable(name) != name) fail(*named, "the name has control characters or bytes that are not UTF-8", "give printable UTF-8");
         if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
+        std::int64_t const next = drafts.empty() ? 0 : drafts.back().particle + static_cast<std::int64_t>(drafts.back().chain.bead_count());
+        prepare(count_ == 1 ? name : name + "-1", next);
+        std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
+        auto const beads = static_cast<std::int64_t>(first.bead_count());
         refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
         bool const free_to_move = movable(first);
         Regrown const shape = regrown(first);
         for (std::int64_t copy = 1; copy < count_; ++copy) {
-            drafts.push_back({is_random() ? make(copy) : first, &request_.node, free_to_move, shape});
-            drafts.back().chain.name = fmt::format("{}-{}", name, copy + 1);
+            std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
+            prepare(copy_name, next + copy * beads);
+            bool const differs = is_random() || (request_.system && !request_.system->alike(first_particle, request_.particle, beads));
+            drafts.push_back({differs ? make(copy) : first, &request_.node, free_to_move, shape, request_.particle});
+            drafts.back().chain.name = copy_name;
         }
         first.name = count_ == 1 ? name : name + "-1";
-        drafts.insert(drafts.end() - (count_ - 1), Draft{std::move(first), &request_.node, free_to_move, shape});
+        drafts.insert(drafts.end() - (count_ - 1), Draft{std::move(first), &request_.node, free_to_move, shape, first_particle});
     }
 
   private:
+    /// Of the chain that is made next: its place in the System, and its charged ends where it says them.
+    void prepare(std::string const& name, std::int64_t next) {
+        OpenMmSpec* const openmm = request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
+        request_.particle = openmm && openmm->builder.empty() ? first_particle(*openmm, name, next) : next;
+        if (openmm && !openmm->builder.empty() && request_.fields.find("charge_termini"))
+            openmm->map.push_back({name, as_numbers(request_.termini())});
+    }
+
     ChainSpec make(std::int64_t copy) {
         ChainSpec chain;
         chain.base = request_.base;
@@ -196,8 +214,8 @@ class ChainReader {
 
 }  // namespace
 
-void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, std::vector<Draft>& drafts) {
-    ChainReader(entry, index, scene, warm).append_to(drafts);
+void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, WrittenSystem const* system, std::vector<Draft>& drafts) {
+    ChainReader(entry, index, scene, warm, system).append_to(drafts);
 }
 
 }  // namespace catena::scene

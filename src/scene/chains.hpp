@@ -19,10 +19,14 @@ struct Draft {
     Node const* node = nullptr;  // its entry in `chains`
     bool movable = false;        // the scene does not say where it stands
     Regrown regrown = Regrown::no;
+    std::int64_t particle = 0;  // of its first bead in the System that the scene names
 };
 
+class WrittenSystem;
+
 /// Reads the entry `index` (from 0) of `chains` into `count` chains and appends them. `scene` holds everything but the chains; `warm`: it
-/// names a temperature, so that chains without velocities of their own start thermal. Throws InputError.
-void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, std::vector<Draft>& drafts);
+/// names a temperature, so that chains without velocities of their own start thermal. `system`: beside which they are written, or nullptr.
+/// Throws InputError.
+void read_chain(Node const& entry, std::size_t index, Scene& scene, bool warm, WrittenSystem const* system, std::vector<Draft>& drafts);
 
 }  // namespace catena::scene

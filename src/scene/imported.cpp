@@ -36,7 +36,8 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
         fail(openmm, "the scene has no `chains`, the system no topology", "add `topology: topology.pdb`, or `chains`");
     if (Node const* const map = openmm.find("map"))
         fail(*map, "a map of chains in a scene that takes them from the topology", "leave it out or write `chains`");
-    ImportedSystem imported = import_openmm_system(spec.system, spec.topology, scene.file);
+    ImportedSystem imported = import_openmm_system(spec, scene.file);
+    for (std::string const& note : imported.notes) scene.note(note);
     if (!scene.box && imported.periodic) scene.box = imported.box;
     std::vector<Draft> drafts;
     for (ImportedChain& chain : imported.chains) drafts.push_back(draft_of(std::move(chain), openmm, warm));

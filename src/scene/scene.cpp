@@ -9,6 +9,7 @@
 #include "scene/chains.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
+#include "scene/force_notes.hpp"
 #include "scene/hash.hpp"
 #include "scene/imported.hpp"
 #include "scene/node.hpp"
@@ -16,6 +17,7 @@
 #include "scene/placement.hpp"
 #include "scene/printable.hpp"
 #include "scene/sections.hpp"
+#include "scene/system_links.hpp"
 #include "scene/validation.hpp"
 
 namespace catena {
@@ -42,6 +44,7 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     if (Node const* const forces = fields.find("forces")) made.forces = scene::read_forces(*forces, dynamics, made.si, name);
     if (Node const* const solver = fields.find("solver")) made.solver = scene::read_solver(*solver);
     if (Node const* const output = fields.find("output")) made.output = scene::read_output(*output);
+    scene::note_forces(made);
     return made;
 }
 
@@ -53,9 +56,13 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     if (!fields.find("chains") && frame.forces.openmm && !frame.forces.openmm->system.empty())
         return scene::import_chains(*fields.find("forces")->find("openmm"), frame, warm);
     Node const& chains = fields.need("chains", "chains: [{name: a, sequence: GGG, model: calvados2}]");
+    std::optional<scene::WrittenSystem> system;
+    if (frame.forces.openmm && !frame.forces.openmm->system.empty()) system.emplace(frame);
     if (scene::list(chains).items.empty()) scene::fail(chains, "the list of chains is empty", "describe at least one chain");
     std::vector<scene::Draft> drafts;
-    for (std::size_t i = 0; i < chains.items.size(); ++i) scene::read_chain(chains.items[i], i, frame, warm, drafts);
+    for (std::size_t i = 0; i < chains.items.size(); ++i)
+        scene::read_chain(chains.items[i], i, frame, warm, system ? &*system : nullptr, drafts);
+    if (system) system->judge(drafts, frame);
     return drafts;
 }
 

@@ -145,7 +145,7 @@ struct OpenMmSpec {
     std::string system;    // serialised System XML, path resolved against the scene's folder
     std::string topology;  // PDB
     std::vector<std::pair<std::string, std::pair<std::int64_t, std::int64_t>>>
-        map;                       // chain name -> first and last particle; empty: the topology's chains in order
+        map;                       // chain name -> first and last particle; empty: the topology's chains in order; builder: charged ends
     double temperature = 300;      // K
     double ionic_strength = 0.15;  // mol/l
     std::optional<double> ph;      // charge of histidine: 1 / (1 + 10^(pH - 6)); not given: neutral

@@ -52,7 +52,7 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
             if (extra) fail(*extra, fmt::format("key `{}` means nothing for a builder", extra->key), "leave it out or give `system`");
         return;
     }
-    for (char const* const key : {"ionic_strength", "ph", "switch_width"})
+    for (char const* const key : {"ionic_strength", "ph", "switch_width", "charge_termini"})
         if (Node const* const extra = fields.find(key))
             fail(*extra, fmt::format("key `{}` means nothing for a finished system", key), "leave it out: the system says it");
     spec.system = existing_file(*system, file);
@@ -64,9 +64,9 @@ void read_model(Fields const& fields, OpenMmSpec& spec, std::string const& file)
 }
 
 OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::string const& file) {
-    Fields const fields(
-        node, {"builder", "system", "topology", "map", "temperature", "ionic_strength", "ph", "switch_width", "platform", "precision",
-               "threads", "device", "path", "overlap", "layers", "split", "replicate", "audit", "force_groups"});
+    Fields const fields(node, {"builder",      "system",   "topology",  "map",     "temperature",  "ionic_strength", "ph",
+                               "switch_width", "platform", "precision", "threads", "device",       "path",           "overlap",
+                               "layers",       "split",    "replicate", "audit",   "force_groups", "charge_termini"});
     if (si) fail(node, "OpenMM's forces in SI units", "write `units: md`: OpenMM knows nm, ps, amu and kJ/mol alone");
     OpenMmSpec spec;
     read_model(fields, spec, file);
@@ -76,6 +76,7 @@ OpenMmSpec read_openmm(Node const& node, Node const* dynamics, bool si, std::str
     take(fields, "ionic_strength", spec.ionic_strength, non_negative);
     if (Node const* const ph = fields.find("ph")) spec.ph = number(*ph);
     take(fields, "switch_width", spec.switch_width, non_negative);
+    if (Node const* const termini = fields.find("charge_termini")) spec.map.push_back({"", as_numbers(read_charged_termini(*termini))});
     take(fields, "platform", spec.platform, text);
     take(fields, "precision", spec.precision,
          [](Node const& n) { return choice<std::string>(n, {{"single", "single"}, {"mixed", "mixed"}, {"double", "double"}}); });
@@ -142,6 +143,11 @@ double read_tolerance(Node const& node, Integrator integrator) {
 }
 
 }  // namespace
+
+calvados2::ChargedTermini read_charged_termini(Node const& node) {
+    return choice<calvados2::ChargedTermini>(
+        node, {{"both", {true, true}}, {"N", {true, false}}, {"C", {false, true}}, {"none", {false, false}}});
+}
 
 DynamicsSpec read_dynamics(Node const& node, bool si) {
     Fields const fields(node,

@@ -76,11 +76,11 @@ void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues, P
     note_numbering(request, labels, from.file);
 }
 
-void set_residues(BeadArrays& beads, Residues const& residues) {
+void set_residues(BeadArrays& beads, Residues const& residues, calvados2::ChargedTermini termini) {
     auto const n = static_cast<std::int64_t>(residues.size());
     for (std::int64_t k = 0; k < n; ++k) {
         auto const at = static_cast<std::size_t>(k);
-        beads.mass[at] = calvados2::bead_mass(*residues[at], k, n);
+        beads.mass[at] = calvados2::bead_mass(*residues[at], {k, n, termini});
         beads.residue[at] = residues[at]->name;
     }
 }
@@ -97,6 +97,7 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
     std::vector<Vec3> const start = self_avoiding ? self_avoiding_conformation(points, length, excluded_distance, request.seed(copy))
                                                   : extended_conformation(points, length);
     BeadArrays made = beads_at(start, length, 1, request.base, request.anchor());
+    request.set_lengths(made);
     Node const* const from = file ? &Fields(*conformation, {"pdb"}).need("pdb", "pdb: start.pdb") : positions;
     if (from) request.place(made, request.positions_from(*from, made.size()), *from);
     return made;
@@ -107,9 +108,9 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
 BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     Fields const& fields = request.fields;
     bool const pdb = fields.find("pdb");
-    request.allow(
-        pdb ? "a chain from a PDB file" : "a sequence",
-        pdb ? Names{"model", "links", "anchor", "rigid"} : Names{"model", "positions", "links", "anchor", "conformation", "rigid"});
+    request.allow(pdb ? "a chain from a PDB file" : "a sequence",
+                  pdb ? Names{"model", "links", "anchor", "rigid", "charge_termini"}
+                      : Names{"model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"});
     if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
     Residues residues;
@@ -137,7 +138,7 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     request.residues.clear();
     for (Calvados2Residue const* const residue : residues) request.residues.push_back(residue->name);
     BeadArrays beads = at_start(request, static_cast<std::int64_t>(residues.size()), copy);
-    set_residues(beads, residues);
+    set_residues(beads, residues, request.termini());
     if (pdb) request.place(beads, from.positions(), *fields.find("pdb"));
     return beads;
 }

@@ -167,7 +167,7 @@ void check_openmm(Node const& root, OpenMmSpec const& openmm, std::vector<Draft>
     Node const& at = *root.find("forces")->find("openmm");
     if (std::none_of(drafts.begin(), drafts.end(), [](Draft const& d) { return has_beads(d.chain); }))
         fail(at, "OpenMM's forces act on beads, no chain of the scene has any", "add a chain of beads or leave `openmm` out");
-    check_map(at, openmm, drafts);
+    if (openmm.builder.empty()) check_map(at, openmm, drafts);
     if (openmm.builder != "calvados2") return;
     for (Draft const& draft : drafts)
         for (std::size_t k = 0; k < residues_of(draft.chain).size(); ++k)

@@ -34,23 +34,39 @@ TEST(Calvados2, HasTheTwentyResiduesOfTheFile) {
 
 TEST(Calvados2, TerminiCarryMassAndCharge) {
     auto const& glycine = *find_calvados2('G');
-    EXPECT_EQ(calvados2::bead_mass(glycine, 0, 3), 57.05 + 2);
-    EXPECT_EQ(calvados2::bead_mass(glycine, 1, 3), 57.05);
-    EXPECT_EQ(calvados2::bead_mass(glycine, 2, 3), 57.05 + 16);
-    EXPECT_EQ(calvados2::bead_mass(glycine, 0, 1), 57.05 + 18);
-    EXPECT_EQ(calvados2::bead_charge(glycine, 0, 3, {}), 1);
-    EXPECT_EQ(calvados2::bead_charge(glycine, 1, 3, {}), 0);
-    EXPECT_EQ(calvados2::bead_charge(glycine, 2, 3, {}), -1);
-    EXPECT_EQ(calvados2::bead_charge(*find_calvados2('K'), 0, 3, {}), 2);
+    EXPECT_EQ(calvados2::bead_mass(glycine, {0, 3}), 57.05 + 2);
+    EXPECT_EQ(calvados2::bead_mass(glycine, {1, 3}), 57.05);
+    EXPECT_EQ(calvados2::bead_mass(glycine, {2, 3}), 57.05 + 16);
+    EXPECT_EQ(calvados2::bead_mass(glycine, {0, 1}), 57.05 + 18);
+    EXPECT_EQ(calvados2::bead_charge(glycine, {0, 3}, {}), 1);
+    EXPECT_EQ(calvados2::bead_charge(glycine, {1, 3}, {}), 0);
+    EXPECT_EQ(calvados2::bead_charge(glycine, {2, 3}, {}), -1);
+    EXPECT_EQ(calvados2::bead_charge(*find_calvados2('K'), {0, 3}, {}), 2);
+}
+
+TEST(Calvados2, TerminiThatAreNotChargedCarryNeither) {
+    auto const& glycine = *find_calvados2('G');
+    EXPECT_EQ(calvados2::bead_mass(glycine, {0, 3, {false, true}}), 57.05);
+    EXPECT_EQ(calvados2::bead_mass(glycine, {2, 3, {true, false}}), 57.05);
+    EXPECT_EQ(calvados2::bead_charge(glycine, {0, 1, {true, false}}, {}), 1);
+    EXPECT_EQ(calvados2::bead_charge(glycine, {0, 1, {false, true}}, {}), -1);
+}
+
+TEST(Calvados2, ChainsHaveTheEndsOfTheirNameElseThoseOfAll) {
+    OpenMmSpec spec;
+    EXPECT_EQ(calvados2::ChainEnds(spec).of("a"), (calvados2::ChargedTermini{true, true}));
+    spec.map = {{"", {1, 0}}, {"a", {0, 1}}};
+    EXPECT_EQ(calvados2::ChainEnds(spec).of("a"), (calvados2::ChargedTermini{false, true}));
+    EXPECT_EQ(calvados2::ChainEnds(spec).of("b"), (calvados2::ChargedTermini{true, false}));
 }
 
 TEST(Calvados2, HistidineFollowsThePh) {
     auto const& histidine = *find_calvados2('H');
-    EXPECT_EQ(calvados2::bead_charge(histidine, 1, 3, {}), 0);
-    EXPECT_DOUBLE_EQ(calvados2::bead_charge(histidine, 1, 3, 6.0), 0.5);
-    EXPECT_DOUBLE_EQ(calvados2::bead_charge(histidine, 1, 3, 7.0), 1 / 11.0);
-    EXPECT_DOUBLE_EQ(calvados2::bead_charge(histidine, 2, 3, 5.0), 1 / 1.1 - 1);
-    EXPECT_EQ(calvados2::bead_charge(*find_calvados2('K'), 1, 3, 5.0), 1);
+    EXPECT_EQ(calvados2::bead_charge(histidine, {1, 3}, {}), 0);
+    EXPECT_DOUBLE_EQ(calvados2::bead_charge(histidine, {1, 3}, 6.0), 0.5);
+    EXPECT_DOUBLE_EQ(calvados2::bead_charge(histidine, {1, 3}, 7.0), 1 / 11.0);
+    EXPECT_DOUBLE_EQ(calvados2::bead_charge(histidine, {2, 3}, 5.0), 1 / 1.1 - 1);
+    EXPECT_EQ(calvados2::bead_charge(*find_calvados2('K'), {1, 3}, 5.0), 1);
 }
 
 TEST(Calvados2, ScreeningIsThatOfTheReference) {

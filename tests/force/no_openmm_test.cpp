@@ -26,7 +26,8 @@ TEST(WithoutOpenMm, EveryUseSaysSo) {
     beads.scene_file = "scene.yaml";
     auto const serial = serial_communicator();
     expect_built_without([&] { make_openmm_force({}, beads, *serial); });
-    expect_built_without([&] { import_openmm_system("system.xml", "topology.pdb", "scene.yaml"); });
+    expect_built_without([&] { import_openmm_system({}, "scene.yaml"); });
+    expect_built_without([&] { read_system_links({}, "scene.yaml"); });
 }
 
 }  // namespace

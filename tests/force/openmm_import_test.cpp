@@ -16,19 +16,26 @@ class Import : public ::testing::Test {
 
     void SetUp() override {
         system->addForce(bonds);
-        bonds->addBond(0, 1, 0.38, 100);
-        bonds->addBond(3, 2, 0.41, 100);
+        bonds->addBond(0, 1, 0.38, stiff);
+        bonds->addBond(3, 2, 0.41, stiff);
         bonds->addBond(0, 5, 7.0, 100);  // no neighbours: no link
         system->addConstraint(1, 2, 0.39);
     }
     ImportedSystem import(std::vector<Vec3> const& positions) {
-        return import_openmm_system(scratch_file("import.xml", xml_of(*system)), scratch_file("import.pdb", pdb_of(beads, positions)),
-                                    "scene.yaml");
+        return import_openmm_system(spec(scratch_file("import.pdb", pdb_of(beads, positions))), "scene.yaml");
     }
+    OpenMmSpec spec(std::string const& topology) const {
+        OpenMmSpec made;
+        made.system = scratch_file("import.xml", xml_of(*system));
+        made.topology = topology;
+        return made;
+    }
+    void join_glycines() { bonds->addBond(4, 5, 0.5, stiff); }
+    static double constexpr stiff = 8033;  // kJ/mol/nm2
 };
 
 TEST_F(Import, ChainsMassesAndLengths) {
-    bonds->addBond(4, 5, 0.5, 100);
+    join_glycines();
     auto const positions = wound(beads, 1);
     auto const imported = import(positions);
     EXPECT_FALSE(imported.periodic);
@@ -43,7 +50,7 @@ TEST_F(Import, ChainsMassesAndLengths) {
 }
 
 TEST_F(Import, Box) {
-    bonds->addBond(4, 5, 0.5, 100);
+    join_glycines();
     bonds->setUsesPeriodicBoundaryConditions(true);
     system->setDefaultPeriodicBoxVectors({5, 0, 0}, {0, 6, 0}, {0, 0, 7});
     auto const imported = import(wound(beads, 1));
@@ -58,7 +65,11 @@ TEST_F(Import, AlphaSynuclein) {
     beads = proteins({std::string(
         "MDVFMKGLSKAKEGVVAAAEKTKQGVAEAAGKTKEGVLYVGSKTKEGVVHGVATVAEKTKEQVTNVGGAVVTGVTAVAQKTVEGAGSIAAATGFVKKDQLGKNEEGAPQEGILEDMPVDPDNEAYEMP"
         "SEEGYQDYEPEA")});
-    auto const imported = import_openmm_system(reference, scratch_file("asyn.pdb", pdb_of(beads, wound(beads, 1))), "scene.yaml");
+    OpenMmSpec published;
+    published.system = reference;
+    published.topology = scratch_file("asyn.pdb", pdb_of(beads, wound(beads, 1)));
+    auto const imported = import_openmm_system(published, "scene.yaml");
+    EXPECT_TRUE(imported.notes.empty());
     ASSERT_EQ(imported.chains.size(), 1u);
     for (std::int64_t k = 0; k < beads.size(); ++k) {
         EXPECT_NEAR(imported.chains[0].mass[k], beads.mass[k], 1e-9) << k;
@@ -68,20 +79,79 @@ TEST_F(Import, AlphaSynuclein) {
 
 TEST_F(Import, Messages) {
     auto const positions = wound(beads, 1);
-    EXPECT_EQ(complaint([&] { import(positions); }),
-              "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml: forces.openmm.system, chain B, "
-              "body 2): join "
-              "neighbours in a chain, or end the chain between them in the topology (TER)");
-    bonds->addBond(4, 5, 0.5, 100);
-    std::string const file = scratch_file("import.xml", xml_of(*system));
-    EXPECT_EQ(complaint([&] { import_openmm_system(file, scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions)), "scene.yaml"); }),
+    EXPECT_EQ(
+        complaint([&] { import(positions); }),
+        "particles 4 and 5 (from 0) are joined by no harmonic bond and no constraint (scene.yaml: forces.openmm.system, chain B, body 2): "
+        "join neighbours in a chain (a bond of stiffness 0 does not), or end the chain between them in the topology (TER)");
+    join_glycines();
+    std::string const short_file = scratch_file("short.pdb", pdb_of(proteins({"KD"}), positions));
+    EXPECT_EQ(complaint([&] { import_openmm_system(spec(short_file), "scene.yaml"); }),
               "the topology has 2 atoms and the System 7 particles (scene.yaml: forces.openmm.topology): give one atom a particle, in the "
               "System's order");
-    EXPECT_EQ(complaint([&] { import_openmm_system(file, "/nowhere/a.pdb", "scene.yaml"); }),
+    EXPECT_EQ(complaint([&] { import_openmm_system(spec("/nowhere/a.pdb"), "scene.yaml"); }),
               "cannot open /nowhere/a.pdb (scene.yaml: forces.openmm.topology): name a PDB file that can be read");
+}
+
+TEST_F(Import, AMotionRemoverIsLeftOutWithANote) {
+    join_glycines();
     system->addForce(new OpenMM::CMMotionRemover);
-    EXPECT_TRUE(
-        complaint([&] { import(positions); }).starts_with("the System holds a CMMotionRemover (scene.yaml: forces.openmm.system): "));
+    EXPECT_EQ(import(wound(beads, 1)).notes,
+              std::vector<std::string>{"The System's CMMotionRemover, which has no energy and stops the centre of mass, is left out."});
+}
+
+/// 1000 kJ/mol/nm2 as in MOFF: sqrt(0.00831446 300 / 1000) / 0.5 = 0.0998916.
+TEST_F(Import, SoftBondsAreNotedAndSofterOnesRefused) {
+    bonds->addBond(4, 5, 0.5, 1000);
+    EXPECT_EQ(
+        import(wound(beads, 1)).notes,
+        std::vector<std::string>{"1 link of fixed length stand for soft bonds: the thermal spread sqrt(kT/k) at 300 K is up to 9.99 % of "
+                                 "the length (particles 4 and 5 from 0: 1000 kJ/mol/nm2, 0.5 nm); Catena keeps no springs between "
+                                 "neighbours."});
+    bonds->setBondParameters(bonds->getNumBonds() - 1, 4, 5, 0.5, 200);
+    EXPECT_TRUE(complaint([&] { import(wound(beads, 1)); }).starts_with("the bond between particles 4 and 5 (from 0) is too soft"));
+    system->addConstraint(4, 5, 0.5);  // has the last word
+    EXPECT_TRUE(import(wound(beads, 1)).notes.empty());
+}
+
+TEST_F(Import, SpringsOnOnePairRestTogether) {
+    bonds->addBond(4, 5, 0.4, 6000);
+    bonds->addBond(5, 4, 0.5, 2000);
+    bonds->addBond(4, 5, 9.9, 0);
+    auto const imported = import(wound(beads, 1));
+    EXPECT_NEAR(imported.chains[1].length[1], 0.425, 1e-15);
+    ASSERT_EQ(imported.notes.size(), 1U);
+    EXPECT_NE(imported.notes[0].find("(particles 4 and 5 from 0: 2 bonds, 0.425 nm)"), std::string::npos) << imported.notes[0];
+}
+
+TEST_F(Import, OtherBondsBetweenNeighboursAreNamed) {
+    auto* fene = new OpenMM::CustomBondForce("-0.5*30*R0^2*log(1-(r/R0)^2); R0=1.5");
+    fene->addBond(5, 4);
+    system->addForce(fene);
+    std::string const text = complaint([&] { import(wound(beads, 1)); });
+    EXPECT_TRUE(text.starts_with("particles 4 and 5 (from 0) are joined by a CustomBondForce (FENE) and by no harmonic bond or constraint"))
+        << text;
+    EXPECT_NE(text.find("add a constraint"), std::string::npos) << text;
+}
+
+TEST_F(Import, BranchesAndRingsAreNamed) {
+    join_glycines();
+    bonds->addBond(0, 3, 0.4, stiff);  // ends of the first chain
+    EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
+    EXPECT_TRUE(import(wound(beads, 1)).notes.at(0).starts_with("Chain A is closed into a ring by a harmonic bond, which stays a spring"));
+    bonds->setBondParameters(1, 3, 1, 0.41, stiff);  // was 3 to 2
+    std::string const text = complaint([&] { import(wound(beads, 1)); });
+    EXPECT_TRUE(text.starts_with("particle 3 (from 0) is joined to particle 1 and not to particle 2 before it: the molecule is branched"))
+        << text;
+}
+
+TEST_F(Import, BondsThatAreNoneAreRefused) {
+    join_glycines();
+    bonds->setBondParameters(0, 0, 1, 0.38, -5);
+    EXPECT_TRUE(complaint([&] {
+                    import(wound(beads, 1));
+                }).starts_with("the harmonic bond between particles 0 and 1 (from 0) has stiffness -5 and length 0.38"));
+    bonds->setBondParameters(0, 0, 1, 0, stiff);
+    EXPECT_TRUE(complaint([&] { import(wound(beads, 1)); }).starts_with("the bond between particles 0 and 1 (from 0) has length 0 nm"));
 }
 
 }  // namespace

@@ -98,8 +98,7 @@ TEST_F(Messages, UnreadableSystem) {
               std::string::npos);
 
     std::string xml = xml_of(*every_force(proteins({random_sequence(60, 1)})));
-    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is cut short (scene.yaml: forces.openmm.system): write the System again"),
-              std::string::npos);
+    EXPECT_NE(of(with_text(xml.substr(0, xml.size() / 2))).find(" is not well-formed: "), std::string::npos);
     auto const at = xml.find('"', xml.find("version=", xml.find("type=\"CustomNonbondedForce\""))) + 1;
     xml.replace(at, 1, "9");
     std::string const text = of(with_text(xml));
@@ -122,18 +121,67 @@ TEST_F(Messages, ReferenceSystemOnOpenMm7) {
 
 TEST_F(Messages, WhatMovesParticles) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
-    EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::CMMotionRemover); }),
-              "the System holds a CMMotionRemover" + where + "remove it: Catena's own integrators move the beads (dynamics.integrator)");
-    EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::AndersenThermostat(300, 1)); }),
-              "the System holds a AndersenThermostat" + where + "remove it: Catena's own integrators move the beads (dynamics.integrator)");
-    EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::MonteCarloBarostat(1, 300)); }),
-              "the System holds a MonteCarloBarostat" + where + "remove it: Catena runs at constant volume");
+    EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::AndersenThermostat(310, 1)); }),
+              "the System holds a AndersenThermostat, which holds 310 K by collisions" + where +
+                  "remove it: Catena's own integrators hold the temperature (dynamics.integrator: g-baoab)");
+    std::string const volume = "remove it: Catena runs at constant volume, in the System's box";
+    EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::MonteCarloBarostat(1.5, 310)); }),
+              "the System holds a MonteCarloBarostat, which changes the box's volume to hold 1.5 bar at 310 K" + where + volume);
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::MonteCarloAnisotropicBarostat({1, 1, 1}, 300)); }),
-              "the System holds a MonteCarloAnisotropicBarostat" + where + "remove it: Catena runs at constant volume");
+              "the System holds a MonteCarloAnisotropicBarostat, which changes the box's edges to hold a pressure" + where + volume);
     EXPECT_EQ(of_system([](auto& s) { s.setVirtualSite(2, new OpenMM::TwoParticleAverageSite(1, 3, 0.5, 0.5)); }),
               "particle 2 (from 0) is a virtual site" + where + "leave virtual sites out: every particle is a bead with a mass");
     EXPECT_EQ(of_system([](auto& s) { s.setParticleMass(1, 0); }),
               "particle 1 (from 0) has no mass" + where + "give it one: every particle is a bead that moves");
+}
+
+TEST_F(Messages, WhatMovesParticlesIsLeftOutWhereItIsNotAskedFor) {
+    OpenMmSpec spec = with_system([](auto& s) {
+        auto* barostat = new OpenMM::MonteCarloBarostat(1, 300);
+        barostat->setForceGroup(3);
+        s.addForce(barostat);
+        s.addForce(new OpenMM::CMMotionRemover);
+    });
+    spec.force_groups = {0};
+    std::string const text = fmt::format("{}", fmt::join(make_openmm_force(spec, beads, *serial)->description(), "\n"));
+    EXPECT_NE(text.find("The System's MonteCarloBarostat, which changes the box's volume to hold 1 bar at 300 K, is left out."),
+              std::string::npos)
+        << text;
+    EXPECT_NE(text.find("The System's CMMotionRemover, which has no energy and stops the centre of mass, is left out."), std::string::npos)
+        << text;
+}
+
+TEST_F(Messages, TermsAreNamedForTablesAndPeople) {
+    auto const pairs = [&](auto& s, std::string const& energy, std::string const& name) {
+        auto* force = new OpenMM::CustomNonbondedForce(energy);
+        if (!name.empty()) force->setName(name);
+        for (char const* const parameter : {"q", "s", "l"}) force->addPerParticleParameter(parameter);
+        for (int i = 0; i < s.getNumParticles(); ++i) force->addParticle({0.5 * i - 1, 0.5, 0.5});
+        s.addForce(force);
+    };
+    // Expressions as the CALVADOS package and OpenABC write them.
+    std::string const yukawa = "q*1.73*(exp(-1.27*r)/r-0.0016); q=q1*q2";
+    std::string const sticky =
+        "0.8368*select(step(r-2^(1/6)*s),4*l*((s/r)^12-(s/r)^6),4*((s/r)^12-(s/r)^6)+(1-l)); s=0.5*(s1+s2); l=0.5*(l1+l2)";
+    auto const force = make_openmm_force(with_system([&](auto& s) {
+                                             pairs(s, yukawa, "");
+                                             pairs(s, "q1 * q2 * exp(-r / 0.8) / r", "");
+                                             pairs(s, sticky, "");
+                                             pairs(s, "q1*q2/r", "");
+                                             pairs(s, "q1*q2/r", "a, \"b\"\n<c>");
+                                             pairs(s, "q1*q2/r", "total");
+                                             pairs(s, yukawa, "mine");
+                                             pairs(s, "q1*q2/r", "mine 2");
+                                             pairs(s, "q1*q2/r", "mine");
+                                         }),
+                                         beads, *serial);
+    evaluate(*force, wound(beads, 1));
+    std::vector<std::string> names;
+    for (auto const& term : force->energies()) names.push_back(term.name);
+    EXPECT_EQ(names, (std::vector<std::string>{"yukawa", "yukawa 2", "ashbaugh-hatch", "CustomNonbondedForce", "a_ _b_ _c_", "total 2",
+                                               "mine", "mine 2", "mine 3"}));
+    std::string const text = fmt::format("{}", fmt::join(force->description(), "\n"));  // -1, -0.5, 0, 0.5 and 1, 1.5
+    EXPECT_NE(text.find("net charge: A -1.000 e, B 2.500 e; together 1.500 e (yukawa)"), std::string::npos) << text;
 }
 
 TEST_F(Messages, ConstraintsThatAreNoLinks) {
