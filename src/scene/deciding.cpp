@@ -45,7 +45,7 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     content("topology", o.topology);
     std::vector<std::string> map;
     for (auto const& [chain, range] : o.map) map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
-    if (!map.empty()) add(values, at + "map", fmt::format("{}", fmt::join(map, ", ")));
+    if (!map.empty()) add(values, at + (o.builder.empty() ? "map" : "charge_termini"), fmt::format("{}", fmt::join(map, ", ")));
     add(values, at + "temperature", o.temperature);
     add(values, at + "ionic_strength", o.ionic_strength);
     if (o.ph) add(values, at + "ph", *o.ph);
