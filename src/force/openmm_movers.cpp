@@ -53,7 +53,8 @@ std::vector<std::string> leave_movers_out(OpenMM::System& system, std::vector<in
         std::string const kind = kind_of(force), work = work_of(force, remedy);
         if (work.empty()) continue;
         bool const excluded = !groups.empty() && std::find(groups.begin(), groups.end(), force.getForceGroup()) == groups.end();
-        if (!remedy.empty() && !excluded) throw InputError(fmt::format("the System holds a {}, {}", kind, work), where, remedy);
+        if (!remedy.empty() && !excluded)
+            throw InputError(fmt::format("the System holds {} {}, {}", kind.starts_with('A') ? "an" : "a", kind, work), where, remedy);
         notes.insert(notes.begin(), fmt::format("The System's {}, {}, is left out.", kind, work));
         system.removeForce(i);
     }

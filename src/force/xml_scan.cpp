@@ -42,7 +42,7 @@ bool is_one_of(string_view name, std::array<string_view, N> const& names) {
 }
 
 /// Attributes that hold words.
-constexpr std::array<string_view, 7> words{"name", "type", "energy", "expression", "formula", "openmmVersion", "typeName"};
+constexpr std::array<string_view, 8> words{"name", "type", "energy", "expression", "formula", "function", "openmmVersion", "typeName"};
 /// Elements that have nothing but numbers beside these.
 constexpr std::array<string_view, 11> records{"A",        "B",     "C",         "Bond",      "Angle",     "Torsion",
                                               "Particle", "Value", "Exclusion", "Exception", "Constraint"};

@@ -122,7 +122,7 @@ TEST_F(Messages, ReferenceSystemOnOpenMm7) {
 TEST_F(Messages, WhatMovesParticles) {
     std::string const where = " (scene.yaml: forces.openmm.system): ";
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::AndersenThermostat(310, 1)); }),
-              "the System holds a AndersenThermostat, which holds 310 K by collisions" + where +
+              "the System holds an AndersenThermostat, which holds 310 K by collisions" + where +
                   "remove it: Catena's own integrators hold the temperature (dynamics.integrator: g-baoab)");
     std::string const volume = "remove it: Catena runs at constant volume, in the System's box";
     EXPECT_EQ(of_system([](auto& s) { s.addForce(new OpenMM::MonteCarloBarostat(1.5, 310)); }),

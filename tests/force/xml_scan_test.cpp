@@ -39,9 +39,10 @@ int forces_read(std::string const& text) {
 }
 
 TEST(XmlScan, TellsTheForces) {
-    auto const outline = scan_system_xml(in_system("<!-- a > b --><Forces><Force type='A' energy='1 &lt; 2'/>\n<Force type=\"B\"><CVs><CV>"
-                                                   "<Force type=\"C\"/></CV></CVs></Force></Forces>"),
-                                         "s.xml", where);
+    auto const outline =
+        scan_system_xml(in_system("<!-- a > b --><Forces><Force type='A' energy='1 &lt; 2' function='80e4x'/>\n<Force type=\"B\"><CVs><CV>"
+                                  "<Force type=\"C\"/></CV></CVs></Force></Forces>"),
+                        "s.xml", where);
     EXPECT_EQ(outline.type, "System");
     EXPECT_EQ(outline.version, "8");
     EXPECT_EQ(outline.forces, (std::vector<std::string>{"A", "B"}));
