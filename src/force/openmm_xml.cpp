@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <openmm/serialization/XmlSerializer.h>
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -16,6 +14,7 @@
 #include "force/openmm_model.hpp"
 #include "force/openmm_platform.hpp"
 #include "force/xml_scan.hpp"
+#include "io/memory_limit.hpp"
 #include "scene/node.hpp"
 
 namespace catena {
@@ -31,10 +30,10 @@ std::string read_text(std::string const& file, std::string const& where) {
     if (size < 0)
         throw InputError(fmt::format("cannot open {}", scene::shown_path(file)), where, "name a serialised System that can be read");
     double const needed = bytes_a_character * static_cast<double>(size);
-    double const present = static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+    auto const present = static_cast<double>(memory_limit());
     if (needed > present)
-        throw InputError(fmt::format("to read {} takes about {:.3g} GB, this machine has {:.3g} GB", scene::shown_path(file), needed * 1e-9,
-                                     present * 1e-9),
+        throw InputError(fmt::format("to read {} takes about {:.3g} GB of memory, there are {:.3g} GB", scene::shown_path(file),
+                                     needed * 1e-9, present * 1e-9),
                          where, "take a machine with more memory");
     std::string text(static_cast<std::size_t>(size), '\0');
     in.seekg(0);
