@@ -132,6 +132,9 @@ CATENA_HD_APART Turned<Real, K, N> turned_to_upper(Matrix<Real, K, N> a, int row
     return t;
 }
 
+/// How many times the terms of another formula a formula's must be for the other one to be taken: below, both are as good.
+inline constexpr double far_larger = 64;
+
 /// A power of two within a factor of two of 1 / sqrt(x), or 1 where x is no positive finite number: scaling by it is free of rounding.
 template <class Real>
 CATENA_HD Real unit_of(Real x) {
@@ -251,11 +254,45 @@ CATENA_HD_APART ArticulatedMatrix<Real, K> join(ArticulatedMatrix<Real, K> const
     return {plus_symmetric_part(inboard.inertia, transposed_times(joint.inboard, stiff * joint.inboard)), joint.outboard * carried,
             outboard.tip, root_of_sum(outboard.rest, joint.outboard * root_of(plus_symmetric_part(none, yielding)))};
 }
+/// Forces of two formulas for one vector, direction by direction: `second` where its terms are far smaller. Where both are alike the bits
+/// are those of `first`.
+template <class Real, int K>
+CATENA_HD Vector<Real, K> by_smaller_terms(Vector<Real, K> first, Vector<Real, K> const& of_first, Vector<Real, K> const& second,
+                                           Vector<Real, K> const& of_second) {
+    for (int i = 0; i < K; ++i)
+        if (Real(far_larger) * of_second[i] < of_first[i]) first[i] = second[i];
+    return first;
+}
+/// The joint's force where none comes from the joined run's ends, from what is apart there, `e`, the outboard run's `p` and the
+/// acceleration `a` found. By the factor forces along the tip's direction keep their digits; inertia times acceleration has smaller terms
+/// where a mobile last body, accelerated by much, is held by a heavy run: there the factor's are as large as if the body moved freely.
+template <class Real, int K>
+CATENA_HD_APART Vector<Real, K> force_at(ArticulatedJoint<Real, K> const& joint, Vector<Real, K> const& e, Vector<Real, K> const& p,
+                                         Vector<Real, K> const& a) {
+    using std::fabs;
+    Matrix<Real, K, K> const& lu = joint.factor.lu;
+    Vector<Real, K> of_sum, of_factor, by_row;  // sizes of the terms; of_factor: in rows of the factor
+    for (int i = 0; i < K; ++i) {
+        of_sum[i] = of_factor[i] = fabs(p[i]);
+        for (int j = 0; j < K; ++j) {
+            of_sum[i] = fused(fabs(joint.inertia(i, j)), fabs(a[j]), of_sum[i]);
+            of_factor[i] = fused(fabs(joint.inertia(i, j)), fabs(e[j]), of_factor[i]);
+        }
+        for (int j = 0; j < i; ++j) of_factor[i] = fused(fabs(lu(j, i)), of_factor[j], of_factor[i]);
+        of_factor[i] = of_factor[i] / fabs(lu(i, i));
+    }
+    for (int i = K - 1; i >= 0; --i) {
+        for (int j = i + 1; j < K; ++j) of_factor[i] = fused(fabs(lu(j, i)), of_factor[j], of_factor[i]);
+        by_row[static_cast<int>(joint.factor.row[i])] = of_factor[i];
+    }
+    return by_smaller_terms(solve_transposed(joint.factor, joint.inertia * e + p), by_row, joint.inertia * a + p, of_sum);
+}
 template <class Real, int K>
 CATENA_HD_APART ArticulatedBias<Real, K> join(ArticulatedBias<Real, K> const& inboard, ArticulatedBias<Real, K> const& outboard,
                                               ArticulatedJoint<Real, K> const& joint, ArticulatedOffset<Real, K>& offset) {
     Vector<Real, K> const e = joint.motion * inboard.e + joint.tip * inboard.w, p = joint.force * outboard.p;
-    offset = {solve(joint.factor, e - joint.mobility * p), solve_transposed(joint.factor, joint.inertia * e + p)};
+    offset.acceleration = solve(joint.factor, e - joint.mobility * p);
+    offset.force = force_at(joint, e, p, offset.acceleration);
     return {inboard.p + transposed_times(joint.inboard, offset.force), joint.outboard * offset.acceleration + outboard.e, outboard.w};
 }
 /// The joint's state from those at the joined run's two ends.
@@ -295,18 +332,30 @@ CATENA_HD void release(int i, ReleasedDirection<Real> const& r, ArticulatedBias<
     for (int j = 0; j < 6; ++j) body.p[j] = j == i ? Real(0) : less_product(rate, r.inertia[j], body.p[j]);
     body.w[i] = -bias / sqrt(r.own);
 }
+/// |linear parts| |linear parts| + |angular parts| |angular parts|: of an acceleration and a force, whatever the axes.
+template <class Real>
+CATENA_HD Real product_of_sizes(Vector<Real, 6> const& a, Vector<Real, 6> const& f) {
+    using std::sqrt;
+    Real sum(0);
+    for (int part = 0; part < 6; part += 3) {
+        Vector<Real, 3> const of_a{{a[part], a[part + 1], a[part + 2]}}, of_f{{f[part], f[part + 1], f[part + 2]}};
+        sum = fused(sqrt(dot(of_a, of_a)), sqrt(dot(of_f, of_f)), sum);
+    }
+    return sum;
+}
 /// Accelerations of a body along the six directions of its inboard joint, from the states of its two joints and how many directions either
 /// restricts. `body`, `bias`: with its free directions released, which `released` holds. What these contribute is found from the force at
 /// handle 2 or from the acceleration there: a light body between heavy ones is told by the latter alone. Taken is, direction by direction,
 /// whichever has the smaller terms for the roundings to go by: `size` those of the force, `terms` over the pivot those of the acceleration,
-/// with the largest pivot's, whose roundings the others carry.
+/// with the largest pivot's, whose roundings the others carry. A force that is small along a direction of the joint may be what other
+/// directions' roundings left of it: where `whole`, its terms in no particular directions, is far larger, the acceleration is taken too.
 template <class Real>
 CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& body, ArticulatedBias<Real, 6> const& bias,
                                               ReleasedDirection<Real> const* released, HandleState<Real, 6> const& inboard, int restricted,
                                               HandleState<Real, 6> const& outboard, int restricted_outboard) {
     using std::fabs;
     using std::sqrt;
-    Vector<Real, 6> a = Vector<Real, 6>::zero(), z = bias.w, size = Vector<Real, 6>::zero();
+    Vector<Real, 6> a = Vector<Real, 6>::zero(), z = bias.w, size = Vector<Real, 6>::zero(), whole = Vector<Real, 6>::zero();
     for (int i = 0; i < restricted; ++i) a[i] = inboard.acceleration[i];
     for (int i = restricted; i < 6; ++i) {
         size[i] = fabs(bias.w[i]);
@@ -314,6 +363,7 @@ CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& 
             z[i] = less_product(body.tip(j, i), outboard.force[j], z[i]);
             size[i] = fused(fabs(body.tip(j, i)), fabs(outboard.force[j]), size[i]);
         }
+        whole[i] = product_of_sizes(body.tip.column(i), outboard.force);
     }
     Turned<Real, 6, 6> const turned = turned_to_upper(body.tip, restricted_outboard);
     Vector<Real, 6> const by_inboard = body.carry * a + bias.e;
@@ -329,7 +379,7 @@ CATENA_HD_APART Vector<Real, 6> accelerations(ArticulatedMatrix<Real, 6> const& 
         }
         Real const pivot = turned.upper(i, at), found = sum / pivot;
         terms = fused(fabs(turned.upper(0, turned.order[0])), fabs(found), terms);  // the pivot's own rounding
-        if (terms < fabs(pivot) * size[at]) z[at] = found;
+        if (terms < fabs(pivot) * size[at] || Real(far_larger) * terms < fabs(pivot) * whole[at]) z[at] = found;
     }
     for (int i = restricted; i < 6; ++i) {
         Real along(0);

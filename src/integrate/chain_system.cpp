@@ -220,6 +220,12 @@ void ChainSystem::refine() {
     }
 }
 
+double ChainSystem::correction() {
+    double worst = 0;
+    for (auto const& group : joint_) worst = larger(worst, group->correction());
+    return worst;
+}
+
 void ChainSystem::close_tips(int corrections) {
     for (auto const& group : joint_) group->close_tips(corrections);
 }

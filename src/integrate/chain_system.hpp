@@ -46,6 +46,8 @@ class ChainSystem {
 
     /// One step of iterative refinement of the last evaluate(), for the groups in joint coordinates (JointDynamics::refine). Collective.
     void refine();
+    /// JointDynamics::correction of the last refine(), of the group where it is largest; 0 without such groups. Collective.
+    double correction();
 
     /// Largest local backward residual of the last evaluate(), and its bound c depth eps.
     double residual();

@@ -62,6 +62,10 @@ class JointDynamics : public BeadHost {
     /// accelerations are carried apart from the forces they came from. `executor`: of the host, which looks for what is lacking.
     /// Collective.
     virtual void refine(Executor const& executor) = 0;
+    /// How much the last refine() changed bodies' accelerations, over their size: an estimate of the relative error of what it was given.
+    /// Turning and linear accelerations apart, the larger of both. Where accelerations all but vanish, they count as what gravity and the
+    /// loads would give the chains as a whole. NaN where something is not finite. Precondition: refine() was called. Collective.
+    virtual double correction() = 0;
     virtual JointRates rates() const = 0;
 
     // Steps, stage by stage: each but the first half of Verlet's follows a solve().

@@ -151,6 +151,7 @@ class JointDynamicsIn final : public JointDynamics {
     }
     /// What is lacking is looked for on the host.
     void refine(Executor const& executor) override;
+    double correction() override;
     void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
     JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
 

@@ -3,6 +3,7 @@
 // Included by joint_dynamics_in.hpp.
 #pragma once
 
+#include "integrate/joint_correction.hpp"
 #include "integrate/joint_dynamics_in.hpp"
 
 namespace catena {
@@ -164,6 +165,16 @@ void JointDynamicsIn<Space>::refine(Executor const& executor) {
     add(of_tip, r.tip_force.view(), tip_force_.view());
     exchange_ends();
     space_.wait();
+}
+
+template <class Space>
+double JointDynamicsIn<Space>::correction() {
+    auto const &torque = space_.read(torque_), &force = space_.read(force_), &alpha = space_.read(alpha_),
+               &acceleration = space_.read(acceleration_), &turned = space_.read(refinement_->alpha),
+               &moved = space_.read(refinement_->acceleration);
+    return RefinedSolution{group_,       given_.gravity,      reach_,        torque.view(), has_forces_ ? force.view() : ConstView<3>{},
+                           alpha.view(), acceleration.view(), turned.view(), moved.view()}
+        .relative_change(communicator_);
 }
 
 }  // namespace catena

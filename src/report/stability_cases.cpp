@@ -171,6 +171,18 @@ void Cases::masses() {
         with("heavier outwards", graded);
         with("lighter outwards", thinning);
         with("heavy tip", tip);
+        auto const of_both = [=](double, std::size_t k) { return k % 2 == 1 ? std::sqrt(ratio) : 1 / std::sqrt(ratio); };
+        add("masses, parallel hinges", name, [=](std::uint64_t seed) {
+            ChainSpec chain = wound(seed, 0.3, 0);
+            scale_masses(chain, of_both);
+            return scene_of(chain);
+        });
+        add("masses, torques in joints", name, [=](std::uint64_t seed) {
+            ChainSpec chain = wound(seed, 0.3, 0.1);
+            scale_masses(chain, of_both);
+            chain.bodies.torque.assign(chain.size(), Vec3{{1, 0, 0}});
+            return scene_of(chain, 0);
+        });
     });
 }
 

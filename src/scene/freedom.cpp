@@ -29,6 +29,8 @@ class ParallelAxes {
         return parallel;
     }
     bool any() const { return any_; }
+    /// Of the axes, where there are any.
+    Vec3 const& direction() const { return axis_; }
 
   private:
     double tolerance_;
@@ -36,11 +38,16 @@ class ParallelAxes {
     bool any_ = false;
 };
 
-bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& first_odd) {
-    BodyArrays const& bodies = chain.bodies;
-    ParallelAxes axes(tolerance);
+/// False at the first joint, the tip left out, that is not parallel.
+bool add_all(BodyArrays const& bodies, ParallelAxes& axes, std::size_t& first_odd) {
     for (first_odd = 0; first_odd < bodies.size(); ++first_odd)
         if (!axes.add(bodies.joint[first_odd], bodies.axis[first_odd], bodies.rotation[first_odd])) return false;
+    return true;
+}
+
+bool parallel_within(double tolerance, ChainSpec const& chain, std::size_t& first_odd) {
+    ParallelAxes axes(tolerance);
+    if (!add_all(chain.bodies, axes, first_odd)) return false;
     bool const pinned = chain.tip == Tip::jointed && chain.tip_joint.type == JointType::spherical;  // turns about any axis
     if (chain.tip == Tip::jointed && !pinned && !axes.add(chain.tip_joint.type, chain.tip_joint.axis, chain.tip_joint.rotation))
         return false;
@@ -54,12 +61,39 @@ bool is_planar(ChainSpec const& chain) {
     return chain.base == Base::fixed && parallel_within(rounding, chain, odd);
 }
 
+bool are_parallel(Vec3 const& a, Vec3 const& b) { return norm(cross(a, b)) <= rounding * norm(a) * norm(b); }
+
+/// The universal joint's second axis, in J, at its angles.
+Vec3 second_axis(TipJoint const& tip) {
+    Vec3 const &first = tip.first_axis, &axis = tip.axis;
+    double const c = std::cos(tip.q[0]), s = std::sin(tip.q[0]);
+    return c * axis + s * cross(first, axis) + (1 - c) * dot(first, axis) * first;
+}
+
+/// Directions of a plane's three that the tip's joint restricts. `normal`: in J of the tip.
+int restricted_in_plane(TipJoint const& tip, Vec3 const& normal) {
+    switch (tip.type) {
+        case JointType::spherical:
+            return 2;
+        case JointType::revolute:
+            return are_parallel(tip.axis, normal) ? 2 : 3;
+        case JointType::universal:
+            return are_parallel(tip.first_axis, normal) || are_parallel(second_axis(tip), normal) ? 2 : 3;
+        case JointType::prismatic:
+            return std::abs(dot(tip.axis, normal)) <= rounding * norm(tip.axis) * norm(normal) ? 2 : 3;
+        default:
+            return 3;
+    }
+}
+
+/// A chain that its other joints keep in a plane is held across it anyway: its tip restricts what it does within the plane.
 std::int64_t restricted_by_tip(ChainSpec const& chain) {
     if (chain.tip == Tip::free) return 0;
-    int const in_plane = chain.tip_joint.type == JointType::weld ? 3 : 2;
+    ParallelAxes axes(rounding);
     std::size_t odd = 0;
-    bool const flat_ring = chain.is_ring() && parallel_within(rounding, chain, odd);  // across its plane the joints hold it anyway
-    return flat_ring || is_planar(chain) ? in_plane : 6 - coordinates_of(chain.tip_joint.type);
+    bool const may_be_flat = chain.is_ring() || chain.base == Base::fixed;
+    if (!may_be_flat || !add_all(chain.bodies, axes, odd) || !axes.any()) return 6 - coordinates_of(chain.tip_joint.type);
+    return restricted_in_plane(chain.tip_joint, transposed_times(chain.tip_joint.rotation, axes.direction()));
 }
 
 std::int64_t freedom_of_links(ChainSpec const& chain) {

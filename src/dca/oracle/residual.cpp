@@ -59,7 +59,10 @@ std::vector<S> best_tip(TipClosure<S> const& tip, std::vector<Link<S>> const& li
         response.col(static_cast<Index>(j)) = error(one) - open;
     }
     if (open.size() == 0 || none.empty()) return none;
-    Column<S> const found = response.colPivHouseholderQr().solve(-open);
+    // Differences of large numbers: a column below this is their rounding, of a component that no coordinate feels.
+    Eigen::ColPivHouseholderQR<Dense<S>> responses;
+    responses.setThreshold(S(1e-9));
+    Column<S> const found = responses.compute(response).solve(-open);
     return {found.data(), found.data() + found.size()};
 }
 
