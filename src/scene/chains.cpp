@@ -17,6 +17,7 @@
 #include "scene/hdf5_bodies.hpp"
 #include "scene/linked.hpp"
 #include "scene/sequences.hpp"
+#include "scene/start_fit.hpp"
 #include "scene/tip.hpp"
 
 namespace catena::scene {
@@ -71,7 +72,11 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     bool any = false;
     for (std::size_t k = 0; k < written.size(); ++k)
         if (!std::isnan(written[k])) beads.length[k] = written[k], any = true;
-    if (any) project_to_lengths(beads, request.base);
+    if (any) {
+        StartFit fit(request.scene, source, "give positions that fit the links, or leave `length` out");
+        fit.fit({request.name(), beads, request.base});
+        fit.note();
+    }
     return made.velocities;
 }
 
@@ -86,8 +91,7 @@ class ChainReader {
     }
 
     void append_to(std::vector<Draft>& drafts) {
-        Node const* const named = request_.fields.find("name");
-        std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
+        std::string const name = request_.name();
         if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
         ChainSpec first = make(0);
         refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
@@ -135,7 +139,7 @@ class ChainReader {
             chain.bodies = std::move(made.bodies);
             if (made.planar) planar = made.planar;
         }
-        join_tip(chain, tip_, request_.node);
+        join_tip(chain, tip_, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
         return chain;
