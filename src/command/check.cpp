@@ -4,14 +4,29 @@
 #include "command/describe.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
+#include "integrate/start_report.hpp"
 
 namespace catena::command {
 namespace {
 
-/// Looks whether OpenMM can have these forces, without computing any.
-std::vector<std::string> openmm_lines(Scene const& scene, Communicator const& communicator) {
-    if (!scene.forces.openmm) return {};
-    return ChainSystem(scene, Axes::joint, communicator).openmm()->description();
+/// What OpenMM makes of the scene: its lines, and the start as it is computed with.
+struct Found {
+    std::vector<std::string> openmm;
+    StartReport start;
+};
+
+Found find(Scene const& scene, Communicator const& communicator) {
+    std::optional<RelaxedScene> relaxed = relaxed_where_asked(scene, communicator);
+    Found found;
+    found.start.change = scene.start;
+    if (relaxed) found.start.relaxation = relaxed->relaxation;
+    if (!scene.forces.openmm) return found;
+    if (!relaxed) refuse_coinciding(scene, communicator);
+    ChainSystem system(relaxed ? relaxed->scene : scene, Axes::joint, communicator);
+    found.openmm = system.openmm()->description();
+    system.evaluate(false);
+    found.start.forces = look_at_start(system);
+    return found;
 }
 
 Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
@@ -42,7 +57,8 @@ Json handles_json(Scene const& scene) {
     return handles;
 }
 
-Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory const& memory, int ranks) {
+Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks) {
+    std::vector<std::string> const& openmm = found.openmm;
     Directions const d = directions_of(scene);
     Text text;
     text.heading(title_of(scene));
@@ -52,6 +68,8 @@ Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory 
     text.entry("degrees of freedom", std::to_string(degrees_of_freedom(scene)));
     text.entry("box", scene.box ? "periodic " + vector_text(*scene.box) : "none");
     text.add(chain_table(scene));
+    text.heading("start");
+    for (auto const& [name, value] : lines_of(scene, found.start)) text.entry(name, value);
     text.heading("solver");
     text.entry("backend", name_of(scene.solver.backend));
     if (d.beads > 0) text.entry("blocks of links", block_text(true, d.beads, scene.solver.handles));
@@ -75,10 +93,10 @@ Text text_of(Scene const& scene, std::vector<std::string> const& openmm, Memory 
 
 Outcome check_scene(Scene const& scene, Communicator const& communicator) {
     choose_backend(scene, communicator);  // throws for those of later versions
-    std::vector<std::string> const openmm = openmm_lines(scene, communicator);
+    Found const found = find(scene, communicator);
     Memory const memory = memory_of(scene, communicator.size());
     Outcome outcome;
-    outcome.text = text_of(scene, openmm, memory, communicator.size()).str();
+    outcome.text = text_of(scene, found, memory, communicator.size()).str();
     outcome.json = {{"scene", scene.file},
                     {"title", scene.title},
                     {"units", scene.si ? "si" : "md"},
@@ -88,7 +106,8 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator) {
                     {"box", scene.box ? Json{(*scene.box)[0], (*scene.box)[1], (*scene.box)[2]} : Json()},
                     {"backend", name_of(scene.solver.backend)},
                     {"handles", handles_json(scene)},
-                    {"forces", forces_json(scene, openmm)},
+                    {"start", json_of(found.start)},
+                    {"forces", forces_json(scene, found.openmm)},
                     {"dynamics", dynamics_json(scene)},
                     {"memory_bytes_per_rank", {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
                     {"scene_hash", scene.hash},

@@ -53,6 +53,26 @@ std::string shares_text(nlohmann::json const& parallel) {
            (parallel.at("shares_from") == "checkpoint" ? "the checkpoint's shares" : "the ranks' speeds, as measured at the start");
 }
 
+/// What was changed of the start that the user gave, and its energy.
+void add_start(Text& text, nlohmann::json const& start, char const* unit) {
+    if (double const change = number(start, "largest_link_change"); change > 0)
+        text.entry("start", fmt::format("links changed by up to {:.3g} {} ({}), positions by up to {:.3g} {} ({})", change, unit,
+                                        start.at("link").get<std::string>(), number(start, "largest_displacement"), unit,
+                                        start.at("bead").get<std::string>()));
+    if (auto const relaxed = start.find("relaxation"); relaxed != start.end()) {
+        auto const &from = relaxed->at("from"), &to = relaxed->at("to");
+        text.entry("relaxation", fmt::format("{} steps, beads moved by up to {:.3g} nm: {:.6g} to {:.6g} kJ/mol, nearest beads {:.3g} to "
+                                             "{:.3g} nm apart",
+                                             relaxed->at("steps").get<std::int64_t>(), number(*relaxed, "largest_displacement"),
+                                             number(from, "potential_energy"), number(to, "potential_energy"),
+                                             number(from, "nearest_distance"), number(to, "nearest_distance")));
+    }
+    if (start.contains("potential_energy"))
+        text.entry("energy at the start",
+                   fmt::format("{:.6g} kJ/mol, {:.3g} times the kinetic energy at {:.6g} K", number(start, "potential_energy"),
+                               number(start, "potential_energy") / number(start, "thermal_energy"), number(start, "temperature")));
+}
+
 std::string text_of(Scene const& scene, nlohmann::json const& s, std::string const& reason) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
@@ -80,6 +100,7 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
         text.entry("frames written", parallel.at("frames_written").get<std::string>());
         text.entry("checkpoints", parallel.at("checkpoints_written").get<std::string>());
     }
+    if (auto const start = s.find("start"); start != s.end()) add_start(text, *start, scene.si ? "m" : "nm");
     if (auto const forces = s.find("forces"); forces != s.end()) {
         text.entry("OpenMM",
                    fmt::format("platform {}, path {}", forces->at("platform").get<std::string>(), forces->at("path").get<std::string>()));

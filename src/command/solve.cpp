@@ -11,6 +11,7 @@
 #include "dca/oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
+#include "integrate/start_relaxation.hpp"
 #include "integrate/start_velocities.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/choice.hpp"
@@ -192,7 +193,8 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
 
 Outcome solve_chosen(Scene const& given, Communicator const& communicator, SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
-    Scene const scene = with_start_velocities(given, communicator);
+    std::optional<RelaxedScene> relaxed = relaxed_where_asked(given, communicator);
+    Scene const scene = with_start_velocities(relaxed ? std::move(relaxed->scene) : given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     int const refinements = scene.solver.refine;
     if (refinements > 0 && system.joint().empty())

@@ -19,6 +19,7 @@
 #include "integrate/run_folder.hpp"
 #include "integrate/share.hpp"
 #include "integrate/sites.hpp"
+#include "integrate/start_report.hpp"
 #include "integrate/start_velocities.hpp"
 #include "integrate/step_messages.hpp"
 #include "integrate/stepper.hpp"
@@ -44,7 +45,7 @@ json as_json(Traffic const& sum, std::int64_t steps) {
 
 class Run {
   public:
-    Run(Scene const& scene, Communicator const& communicator, RunOptions const& options)
+    Run(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::optional<StartRelaxation> relaxation)
         : scene_(scene),
           communicator_(communicator),
           options_(options),
@@ -64,6 +65,7 @@ class Run {
         if (root_) sites_ = sites_of_scene_.get();
         notes_ = scene_.notes;
         if (root_) keep_values(scene_, values_of_scene_);
+        start_ = {scene_.start, std::nullopt, std::move(relaxation)};
         warn_of_shared_gpus();
         for (auto const& group : system_.groups()) messages_.emplace_back(*group, scene_);
     }
@@ -162,8 +164,9 @@ class Run {
     }
 
     void open(std::int64_t n) {
-        folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
         at_start_ = observed(true);
+        if (system_.openmm() && options_.restart.empty()) start_.forces = look_at_start(system_);
+        folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
         observables_ = std::make_unique<Observables>(scene_, sites_.topology(), at_start_->terms);
         folder_->open(sites_.topology(), observables_->columns(), records_before_);
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
@@ -451,6 +454,7 @@ class Run {
         if (system_.openmm()) s["forces"] = forces;
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;
+        if (options_.restart.empty()) s["start"] = json_of(start_);
         for (std::size_t i = 0; i < last_row_.size(); ++i) s["last_observables"][observables_->columns()[i]] = last_row_[i];
         for (char const* name :
              {"trajectory.h5md", "topology.pdb", "observables.csv", "checkpoint.h5", "summary.json", "timeline.json", "report.html"})
@@ -498,6 +502,7 @@ class Run {
     std::optional<Observed> at_start_;  // what the topology and the first frame show
     bool topology_is_due_ = false;      // true: it is written with the first frame
     std::vector<std::string> notes_;
+    StartReport start_;
     SweepWatch watch_;
     double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
     double first_step_after_ = 0;  // seconds; 0: there was none
@@ -518,12 +523,16 @@ json run_simulation(Scene const& scene, Communicator const& communicator, RunOpt
         throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
     if (!options.steps && scene.dynamics.steps == 0 && !scene.dynamics.has_steps)
         throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
+    std::optional<RelaxedScene> const relaxed = options.restart.empty() ? relaxed_where_asked(scene, communicator) : std::nullopt;
+    Scene const& start = relaxed ? relaxed->scene : scene;
+    if (options.restart.empty() && !relaxed) refuse_coinciding(scene, communicator);
+    std::optional<StartRelaxation> const relaxation = relaxed ? std::optional(relaxed->relaxation) : std::nullopt;
     // Joint coordinates cannot draw thermal velocities themselves: absolute ones draw for them.
     if (uses_joint_coordinates(scene.dynamics.integrator)) {
-        Scene const with_velocities = with_start_velocities(scene, communicator);
-        return Run(with_velocities, communicator, options).run();
+        Scene const with_velocities = with_start_velocities(start, communicator);
+        return Run(with_velocities, communicator, options, relaxation).run();
     }
-    return Run(scene, communicator, options).run();
+    return Run(start, communicator, options, relaxation).run();
 }
 
 }  // namespace catena

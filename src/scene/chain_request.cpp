@@ -12,6 +12,7 @@
 #include "scene/random.hpp"
 #include "scene/residue_names.hpp"
 #include "scene/sections.hpp"
+#include "scene/start_fit.hpp"
 #include "scene/system_links.hpp"
 
 namespace catena::scene {
@@ -101,13 +102,25 @@ std::vector<Vec3> ChainRequest::from_structure(std::string const& path, Node con
     return sites.positions();
 }
 
+std::string ChainRequest::name() const {
+    Node const* const named = fields.find("name");
+    return named ? text(*named) : fmt::format("chain-{}", index + 1);
+}
+
 void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const {
     beads.position = positions;
+    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`");
+    StartFit::Chain const chain{name(), beads, base, rigid};
+    fit.make_whole(chain, links_as_given());
     refuse_coincident(beads, from);
-    if (links_as_given()) return take_lengths(beads, base);
-    for (Domain const& domain : rigid)
-        for (std::size_t k = domain.first + 1; k <= domain.last; ++k) beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
-    project_to_lengths(beads, base);
+    if (links_as_given()) {
+        take_lengths(beads, base);
+    } else {
+        for (Domain const& domain : rigid)
+            for (std::size_t k = domain.first + 1; k <= domain.last; ++k) beads.length[k] = norm(beads.position[k] - beads.position[k - 1]);
+        fit.fit(chain);
+    }
+    fit.note();
 }
 
 void ChainRequest::refuse_coincident(BeadArrays const& beads, Node const& from) const {

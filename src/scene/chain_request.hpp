@@ -31,6 +31,8 @@ struct ChainRequest {
     void allow(char const* kind, Names keys) const;
     /// Origin where none is given.
     Vec3 anchor() const;
+    /// As written, else by its number.
+    std::string name() const;
     bool links_as_given() const;
     /// The chain's `charge_termini`, else what the scene says of all.
     calvados2::ChargedTermini termini() const;
@@ -41,8 +43,8 @@ struct ChainRequest {
 
     /// Positions from the table or PDB file that `file` names: one a bead.
     std::vector<Vec3> positions_from(Node const& file, std::size_t beads) const;
-    /// Puts the beads at `positions`, which `from` gave, and fits positions to lengths or, with `links: as_given`, lengths to positions.
-    /// Rigid domains keep their shape.
+    /// Puts the beads at `positions`, which `from` gave, whole across the periodic box, and fits positions to lengths or, with
+    /// `links: as_given`, lengths to positions (StartFit). Rigid domains keep their shape.
     void place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const;
     /// InputError when two neighbours coincide.
     void refuse_coincident(BeadArrays const& beads, Node const& from) const;

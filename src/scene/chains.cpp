@@ -19,6 +19,7 @@
 #include "scene/printable.hpp"
 #include "scene/sections.hpp"
 #include "scene/sequences.hpp"
+#include "scene/start_fit.hpp"
 #include "scene/system_links.hpp"
 #include "scene/tip.hpp"
 
@@ -74,7 +75,11 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     bool any = false;
     for (std::size_t k = 0; k < written.size(); ++k)
         if (!std::isnan(written[k])) beads.length[k] = written[k], any = true;
-    if (any) project_to_lengths(beads, request.base);
+    if (any) {
+        StartFit fit(request.scene, source, "give positions that fit the links, or leave `length` out");
+        fit.fit({request.name(), beads, request.base});
+        fit.note();
+    }
     return made.velocities;
 }
 
@@ -90,9 +95,9 @@ class ChainReader {
     }
 
     void append_to(std::vector<Draft>& drafts) {
-        Node const* const named = request_.fields.find("name");
-        std::string const name = named ? text(*named) : fmt::format("chain-{}", request_.index + 1);
-        if (printable(name) != name) fail(*named, "the name has control characters or bytes that are not UTF-8", "give printable UTF-8");
+        std::string const name = request_.name();
+        if (printable(name) != name)
+            fail(*request_.fields.find("name"), "the name has control characters or bytes that are not UTF-8", "give printable UTF-8");
         if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
         std::int64_t const next = drafts.empty() ? 0 : drafts.back().particle + static_cast<std::int64_t>(drafts.back().chain.bead_count());
         prepare(count_ == 1 ? name : name + "-1", next);
@@ -155,7 +160,7 @@ class ChainReader {
             chain.bodies = std::move(made.bodies);
             if (made.planar) planar = made.planar;
         }
-        join_tip(chain, tip_, request_.node);
+        join_tip(chain, tip_, request_);
         if (planar) refuse_unparallel(chain, source_, *planar);
         set_velocities(chain, velocities);
         return chain;

@@ -96,15 +96,6 @@ std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length,
     return grown.take();
 }
 
-void project_to_lengths(BeadArrays& beads, Base base) {
-    Vec3 given = base == Base::fixed ? beads.anchor : beads.position[0];  // where the inboard end was before the projection
-    for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k) {
-        Vec3 const link = beads.position[k] - given;
-        given = beads.position[k];
-        beads.position[k] = plus_scaled(inboard_of(beads, k), beads.length[k] / norm(link), link);
-    }
-}
-
 void take_lengths(BeadArrays& beads, Base base) {
     beads.length.assign(beads.size(), 0.0);
     for (std::size_t k = base == Base::fixed ? 0 : 1; k < beads.size(); ++k)

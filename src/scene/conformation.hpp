@@ -18,10 +18,6 @@ std::vector<Vec3> extended_conformation(std::int64_t points, double length);
 /// by point, stepping back where it is stuck. O(points); a function of its arguments alone.
 std::vector<Vec3> self_avoiding_conformation(std::int64_t points, double length, double excluded, std::uint64_t seed);
 
-/// Moves the beads to the links' `length`, keeping each link's direction, from bead 1 (fixed base: from the anchor) outwards. Precondition:
-/// no two neighbours coincide.
-void project_to_lengths(BeadArrays& beads, Base base);
-
 /// Sets each link's `length` to the distance of its ends (entry 0: to the anchor of a fixed base, else 0).
 void take_lengths(BeadArrays& beads, Base base);
 

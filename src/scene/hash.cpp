@@ -181,6 +181,7 @@ std::string fingerprint(Scene const& scene) {
     print.add_each(d.given, number_of(d.integrator), d.step, d.temperature, d.friction, d.seed, d.constraint_tolerance);
     add_named(print, "fixman", d.fixman);
     add_named(print, "tolerance", d.tolerance > 0, d.tolerance);
+    add_named(print, "relax", scene.relax);
     return print.text();
 }
 

@@ -5,12 +5,13 @@
 #include "force/openmm_import.hpp"
 #include "scene/conformation.hpp"
 #include "scene/fields.hpp"
+#include "scene/start_fit.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm) {
+Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm, StartFit& fit) {
     Draft draft;
     draft.node = &openmm;
     draft.chain.name = std::move(from.name);
@@ -21,10 +22,12 @@ Draft draft_of(ImportedChain&& from, Node const& openmm, bool warm) {
     beads.velocity.assign(beads.mass.size(), Vec3::zero());
     beads.length = std::move(from.length);
     beads.residue = std::move(from.residue);
+    StartFit::Chain const chain{draft.chain.name, beads};
+    fit.make_whole(chain, false);
     if (std::int64_t const k = coincident_bead(beads, Base::free); k >= 0)
         fail_at(openmm, "bead", k + 1, fmt::format("bead {} of chain `{}` stands on bead {}", k + 1, shown(draft.chain.name), k),
                 "move one of them in the topology");
-    project_to_lengths(beads, Base::free);
+    fit.fit(chain);
     return draft;
 }
 
@@ -40,7 +43,9 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     for (std::string const& note : imported.notes) scene.note(note);
     if (!scene.box && imported.periodic) scene.box = imported.box;
     std::vector<Draft> drafts;
-    for (ImportedChain& chain : imported.chains) drafts.push_back(draft_of(std::move(chain), openmm, warm));
+    StartFit fit(scene, *openmm.find("topology"), "give the topology positions that fit the System's bonds");
+    for (ImportedChain& chain : imported.chains) drafts.push_back(draft_of(std::move(chain), openmm, warm, fit));
+    fit.note();
     return drafts;
 }
 

@@ -1,10 +1,11 @@
 // Capped forces under link constraints: what growth left overlapping is pushed apart.
 #include <algorithm>
-#include <limits>
+#include <span>
 #include <utility>
 
 #include "scene/cells.hpp"
 #include "scene/crowd.hpp"
+#include "scene/link_projection.hpp"
 
 namespace catena::scene {
 
@@ -62,52 +63,6 @@ class Pairs {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
 };
 
-/// Newton's iteration for the lengths of one chain's links. Shifts of both ends along the links, equal and opposite, by lambda: the
-/// system is that of the link chain's constraint forces for equal masses (diagonal 2, beside it minus the cosines between links).
-class LinkProjection {
-  public:
-    void project(Crowd& crowd, std::size_t begin, std::size_t end) {
-        if (end - begin < 2) return;
-        for (int sweep = 0; sweep < 20; ++sweep) {
-            if (!eliminate(crowd, begin, end)) return;
-            substitute(crowd, begin, end);
-        }
-    }
-
-  private:
-    /// Links' directions and errors, and the elimination of the system from its first row on; false: nothing is left to correct.
-    bool eliminate(Crowd const& crowd, std::size_t begin, std::size_t end) {
-        along_.resize(end - begin), factor_.resize(end - begin), lambda_.resize(end - begin);
-        bool wrong = false;
-        for (std::size_t k = 1; k < end - begin; ++k) {
-            Vec3 const& from = crowd.at[begin + k - 1];
-            Vec3 const link = crowd.at[begin + k] - from;
-            double const distance = norm(link), length = crowd.length[begin + k], error = distance - length;
-            double const rounding = 4 * std::numeric_limits<double>::epsilon() * norm(from);
-            wrong = wrong || std::abs(error) > 1e-13 * length + rounding;
-            along_[k] = distance > 0 ? (1 / distance) * link : Vec3{{1, 0, 0}};
-            if (k == 1) {
-                factor_[k] = 0.5, lambda_[k] = 0.5 * error;
-                continue;
-            }
-            double const beside = -dot(along_[k - 1], along_[k]), pivot = 1 / (2 - beside * beside * factor_[k - 1]);
-            lambda_[k] = (error - beside * lambda_[k - 1]) * pivot;
-            factor_[k] = pivot;
-        }
-        return wrong;
-    }
-    void substitute(Crowd& crowd, std::size_t begin, std::size_t end) {
-        for (std::size_t k = end - begin - 1; k >= 1; --k) {
-            if (k + 1 < end - begin) lambda_[k] += dot(along_[k], along_[k + 1]) * factor_[k] * lambda_[k + 1];
-            crowd.at[begin + k - 1] = plus_scaled(crowd.at[begin + k - 1], lambda_[k], along_[k]);
-            crowd.at[begin + k] = plus_scaled(crowd.at[begin + k], -lambda_[k], along_[k]);
-        }
-    }
-
-    std::vector<Vec3> along_;
-    std::vector<double> factor_, lambda_;
-};
-
 class Relaxation {
   public:
     explicit Relaxation(Crowd& crowd) : crowd_(crowd), images_(crowd.box) { relist(); }
@@ -141,7 +96,10 @@ class Relaxation {
             double const way = norm(push_[i]);
             if (way > 0) crowd_.at[i] = plus_scaled(crowd_.at[i], way > furthest ? furthest / way : 1, push_[i]);
         }
-        for (std::size_t c = 0; c < crowd_.chains(); ++c) links_.project(crowd_, crowd_.first[c], crowd_.first[c + 1]);
+        for (std::size_t c = 0; c < crowd_.chains(); ++c) {
+            std::size_t const begin = crowd_.first[c], beads = crowd_.first[c + 1] - begin;
+            links_.project({std::span(crowd_.at).subspan(begin, beads), std::span(crowd_.length).subspan(begin, beads)});
+        }
     }
 
   private:

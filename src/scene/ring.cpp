@@ -57,7 +57,7 @@ void check_ring(ChainSpec const& chain, Node const& node) {
         fail(node, fmt::format("{} bodies do not make a ring", chain.size()), fmt::format("give it {} or more", least));
 }
 
-void close_ring(ChainSpec& chain, Node const& node) {
+void close_ring(ChainSpec& chain, Node const& node, Scene& scene) {
     TipJoint& joint = chain.tip_joint;
     Reach const reach = reach_of(chain.bodies);
     Pose const first = next_pose(chain.bodies, 0, {}), &end = reach.end;
@@ -66,13 +66,17 @@ void close_ring(ChainSpec& chain, Node const& node) {
     Vec3 const apart = to_matrix(to_last) * (first.origin - end.origin) - joint.translation;
     Pose const b{conjugate(to_quaternion(joint.rotation)) * (to_last * first.orientation), transposed_times(joint.rotation, apart)};
     Opening const open = opening_of(joint, b);
-    double const length = reach.length + norm(joint.translation), bound = closure_tolerance * (length > 0 ? length : 1);
-    if (open.distance <= bound && open.angle <= closure_tolerance) return;
-    fail(node,
-         fmt::format("the ring is open at the start: the first body is {:.3g} and {:.3g} rad from where the last body's joint holds it",
-                     open.distance, open.angle),
-         fmt::format("bring the bodies within {:.3g} and {:.3g} rad of it, or correct `translation` and `rotation`", bound,
-                     closure_tolerance));
+    double const around = reach.length + norm(joint.translation), length = around > 0 ? around : 1;
+    if (open.distance <= closure_tolerance * length && open.angle <= closure_tolerance) return;
+    std::string const what = fmt::format(
+        "the ring is open at the start: the first body is {:.3g} and {:.3g} rad from where the last body's "
+        "joint holds it",
+        open.distance, open.angle);
+    if (open.distance <= closable * length && open.angle <= closable)
+        return scene.note(what + ", which is closed by the least change of the joints");
+    fail(node, what,
+         fmt::format("bring the bodies within {:.3g} and {:.3g} rad of it, or correct `translation` and `rotation`", closable * length,
+                     closable));
 }
 
 }  // namespace catena::scene

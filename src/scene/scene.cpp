@@ -9,6 +9,7 @@
 #include "scene/chains.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
+#include "scene/filling.hpp"
 #include "scene/force_notes.hpp"
 #include "scene/hash.hpp"
 #include "scene/imported.hpp"
@@ -41,6 +42,7 @@ Scene read_frame(Fields const& fields, std::string const& name) {
     Node const* const dynamics = fields.find("dynamics");
     if (dynamics) made.dynamics = scene::read_dynamics(*dynamics, made.si);
     if (Node const* const box = fields.find("box")) made.box = scene::read_box(*box);
+    if (Node const* const relax = fields.find("relax")) made.relax = scene::truth(*relax);
     if (Node const* const forces = fields.find("forces")) made.forces = scene::read_forces(*forces, dynamics, made.si, name);
     if (Node const* const solver = fields.find("solver")) made.solver = scene::read_solver(*solver);
     if (Node const* const output = fields.find("output")) made.output = scene::read_output(*output);
@@ -66,6 +68,14 @@ std::vector<scene::Draft> read_chains(Fields const& fields, Scene& frame) {
     return drafts;
 }
 
+void give_places(Fields const& fields, std::vector<scene::Draft>& drafts, Scene const& frame) {
+    Node const* const box = fields.find("box");
+    if (std::optional<Vec3> const fill = box ? scene::read_fill(*box) : std::nullopt)
+        scene::fill_region(drafts, *frame.box, *fill, *box->find("fill"), frame.dynamics.seed);
+    else
+        scene::give_places(drafts, frame.box, frame.dynamics.seed);
+}
+
 }  // namespace
 
 std::int64_t Scene::bodies() const {
@@ -87,11 +97,11 @@ Scene load_scene(std::string const& file, std::vector<std::string> const& overri
 Scene parse_scene(std::string const& text, std::string const& name, std::vector<std::string> const& overrides) try {
     std::unique_ptr<Node> const root = scene::parse_document(text, name);
     for (std::string const& change : overrides) scene::apply_override(*root, change);
-    Fields const fields(*root, {"title", "units", "chains", "box", "forces", "dynamics", "solver", "output"});
+    Fields const fields(*root, {"title", "units", "chains", "box", "forces", "dynamics", "solver", "output", "relax"});
     Scene made = read_frame(fields, name);
     std::vector<scene::Draft> drafts = read_chains(fields, made);
     scene::check_together(*root, made, drafts);
-    scene::give_places(drafts, made.box, made.dynamics.seed);
+    give_places(fields, drafts, made);
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
     made.hash = scene::fingerprint(made);
     return made;

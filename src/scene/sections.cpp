@@ -116,7 +116,7 @@ double constexpr shortest_edge = 1e-30, longest_edge = 1e9;
 std::optional<Vec3> read_box(Node const& box) {
     if (box.kind == Node::Kind::scalar && box.text == "none") return std::nullopt;
     if (box.kind != Node::Kind::map) fail(box, describe(box) + " is no box", "give `{periodic: [60, 60, 60]}` or `none`");
-    Node const& edges = Fields(box, {"periodic"}).need("periodic", "periodic: [60, 60, 60]");
+    Node const& edges = Fields(box, {"periodic", "fill"}).need("periodic", "periodic: [60, 60, 60]");
     Vec3 const lengths = vector3(edges);
     for (double const length : lengths.data) {
         if (!(length > 0)) fail(edges, fmt::format("box edge {} is not positive", length), "give three edges above 0");

@@ -10,23 +10,27 @@
 #include "scene/joint_entry.hpp"
 #include "scene/pose.hpp"
 #include "scene/ring.hpp"
+#include "scene/start_fit.hpp"
 
 namespace catena::scene {
 
 namespace {
 
-void close_joint(ChainSpec const& chain, Node const& node) {
+void close_joint(ChainSpec const& chain, Node const& node, Scene& scene) {
     TipJoint const& tip = chain.tip_joint;
     if (!tip.anchor) return;
     Reach const reach = reach_of(chain.bodies);
     Pose const frame{to_quaternion(tip.rotation), tip.translation};
     Pose const end = reach.end * frame * joint_motion(tip.type, tip.axis, tip.first_axis, tip.pitch, tip.q);
-    double const error = norm(end.origin - *tip.anchor), length = reach.length + norm(end.origin - reach.end.origin);
-    if (error <= closure_tolerance * (length > 0 ? length : 1)) return;
-    fail(node,
-         fmt::format("the tip's joint is open at the start: its origin is at [{:.9g}, {:.9g}, {:.9g}], {:.3g} from the anchor",
-                     end.origin[0], end.origin[1], end.origin[2], error),
-         fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out", closure_tolerance * length));
+    double const error = norm(end.origin - *tip.anchor), along = reach.length + norm(end.origin - reach.end.origin);
+    double const length = along > 0 ? along : 1;
+    if (error <= closure_tolerance * length) return;
+    std::string const what = fmt::format(
+        "the tip's joint is open at the start: its origin is at [{:.9g}, {:.9g}, {:.9g}], {:.3g} from the "
+        "anchor",
+        end.origin[0], end.origin[1], end.origin[2], error);
+    if (error <= closable * length) return scene.note(what + ", which is closed by the least change of the joints");
+    fail(node, what, fmt::format("bring the chain or the anchor within {:.3g}, or leave `anchor` out", closable * length));
 }
 
 /// Of point `r` from the centre of body k; W.
@@ -48,7 +52,7 @@ Vec3 end_of_link(ChainSpec const& chain) {
     return chain.is_beads() ? chain.beads.position.front() : point_of(chain.linked, 0, chain.linked.inboard.front());
 }
 
-void close_link(ChainSpec& chain, Node const& node) {
+void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request) {
     TipJoint& tip = chain.tip_joint;
     Vec3 const start = start_of_link(chain, node.find("translation")), end = end_of_link(chain);
     double const distance = norm(end - start);
@@ -58,6 +62,11 @@ void close_link(ChainSpec& chain, Node const& node) {
         fail(node, fmt::format("the tip's {} stands on the last body: their link has no direction", target), "move one of them");
     if (tip.length == 0) tip.length = distance;
     if (std::abs(tip.length - distance) <= closure_tolerance * tip.length) return;
+    if (chain.is_beads() && std::abs(tip.length - distance) <= largest_link_change * tip.length) {
+        StartFit fit(request.scene, node, "leave `length` out, or give other positions");
+        fit.close({request.name(), chain.beads, chain.base, {}, &tip}, distance);
+        return fit.note();
+    }
     bool const far = distance > tip.length;
     fail(node,
          fmt::format("the tip's link of length {:.12g} {} its {}: they are {:.12g} apart at the start", tip.length,
@@ -139,11 +148,11 @@ ReadTip read_tip(Fields const& chain) {
     return read;
 }
 
-void join_tip(ChainSpec& chain, ReadTip const& tip, Node const& chain_node) {
+void join_tip(ChainSpec& chain, ReadTip const& tip, ChainRequest const& request) {
     chain.tip = tip.kind;
     chain.tip_joint = tip.joint;
     if (tip.kind == Tip::free) return;
-    Node const& written = *chain_node.find("tip");
+    Node const& written = *request.node.find("tip");
     bool const ring = tip.joint.ring;
     Node const& node = tip.bare ? written : *written.find(ring ? "ring" : "joint");
     bool const links = chain.is_beads() || chain.is_linked(), link = tip.joint.type == JointType::link;
@@ -161,12 +170,12 @@ void join_tip(ChainSpec& chain, ReadTip const& tip, Node const& chain_node) {
             fail(*translation, "key `translation` means nothing for a point bead", "leave it out");
     if (ring) check_ring(chain, node);
     if (link) {
-        close_link(chain, node);
+        close_link(chain, node, request);
     } else if (ring) {
-        close_ring(chain, node);
+        close_ring(chain, node, request.scene);
     } else {
         refuse_too_many(chain, node);
-        close_joint(chain, node);
+        close_joint(chain, node, request.scene);
     }
     if (!ring) refuse_straight_bridge(chain, node);
 }

@@ -93,7 +93,7 @@ TEST(BadTips, of_bodies) {
     std::string const ball = "{type: spherical, translation: [1, 0, 0]}", at = " (s.yaml: chains[0].tip.joint";
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: spherical, translation: [1, 0, 0], anchor: [2, 0, 1e-3]}}")),
               "the tip's joint is open at the start: its origin is at [2, 0, 0], 0.001 from the anchor" + at +
-                  ", line 1): bring the chain or the anchor within 2e-09, or leave `anchor` out");
+                  ", line 1): bring the chain or the anchor within 0.0002, or leave `anchor` out");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: free}}")),
               "a free joint at the tip restricts nothing" + at + ".type, line 1): write `tip: free`");
     EXPECT_EQ(refusal_of(arm(ball, ", tip: {joint: {type: link, anchor: [0, 0, 0]}}")),
@@ -128,7 +128,7 @@ TEST(BadTips, of_rings) {
     EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: revolute, axis: [0, 0, 1], translation: [1, 0, 0]}}")), "accepted");
     EXPECT_EQ(refusal_of(triangle(free, "{ring: {type: spherical, translation: [1, 0, 0.01]}}")),
               "the ring is open at the start: the first body is 0.01 and 0 rad from where the last body's joint holds it" + at +
-                  ".ring, line 1): bring the bodies within 3e-09 and 1e-09 rad of it, or correct `translation` and `rotation`");
+                  ".ring, line 1): bring the bodies within 0.0003 and 0.0001 rad of it, or correct `translation` and `rotation`");
     std::string const turned =
         refusal_of(triangle(free, "{ring: {type: weld, translation: [1, 0, 0], rotation: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}"));
     EXPECT_NE(turned.find(" and 2.09 rad from where the last body's joint holds it"), std::string::npos) << turned;

@@ -54,7 +54,7 @@ Refusal const keys_cases[] = {
     {"unknown_at_top", "chians: []", "unknown key `chians` (s.yaml: chians, line 1): did you mean `chains`?"},
     {"unknown_far_from_all", "wallpaper: []",
      "unknown key `wallpaper` (s.yaml: wallpaper, line 1): use one of `title`, `units`, `chains`, `box`, `forces`, `dynamics`, `solver`, "
-     "`output`"},
+     "`output`, `relax`"},
     {"unknown_in_chain", "chains: [{sequnce: GGG, model: calvados2}]",
      "unknown key `sequnce` (s.yaml: chains[0].sequnce, line 1): did you mean `sequence`?"},
     {"unknown_in_body", R"y(chains:

@@ -56,17 +56,29 @@ TEST(Beads, self_avoiding_stays_apart) {
     }
 }
 
-TEST(Beads, links_model_keeps_directions) {
+/// Two links at a right angle do not feel each other: each end of one goes half of what it lacks.
+TEST(Beads, links_take_their_lengths_by_the_least_change) {
     std::string const chain =
-        "bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 2, position: [2, 0, 0], joint: {type: link, length: 1}}, "
-        "{mass: 3, position: [2, 0.5, 0], joint: {type: link, length: 1}}]";
-    BeadArrays const projected = beads_of(chain), as_given = beads_of(chain + ", links: as_given");
-    EXPECT_EQ(projected.position[1][0], 1);
-    EXPECT_EQ(projected.position[2][0], 1);
-    EXPECT_EQ(projected.position[2][1], 1);
-    EXPECT_EQ(projected.length, (std::vector<double>{0, 1, 1}));
-    EXPECT_EQ(as_given.position[2][1], 0.5);
-    EXPECT_EQ(as_given.length, (std::vector<double>{0, 2, 0.5}));
+        "bodies: [{mass: 1, position: [0, 0, 0], joint: {type: link}}, {mass: 2, position: [1.2, 0, 0], joint: {type: link, length: 1}}, "
+        "{mass: 3, position: [1.2, 0.9, 0], joint: {type: link, length: 1}}]";
+    BeadArrays const fitted = beads_of(chain), as_given = beads_of(chain + ", links: as_given");
+    for (std::size_t k : {1, 2}) EXPECT_NEAR(norm(fitted.position[k] - fitted.position[k - 1]), 1, 1e-15);
+    Vec3 sum = Vec3::zero();
+    for (Vec3 const& position : fitted.position) sum = sum + position;
+    EXPECT_NEAR(norm(sum - Vec3{{2.4, 0.9, 0}}), 0, 1e-15);  // what moves one bead moves another back
+    EXPECT_NEAR(fitted.position[0][0], 0.1, 0.004);          // to second order
+    EXPECT_NEAR(fitted.position[2][1], 0.95, 0.004);
+    EXPECT_EQ(fitted.length, (std::vector<double>{0, 1, 1}));
+    EXPECT_EQ(as_given.position[2][1], 0.9);
+    EXPECT_EQ(as_given.length, (std::vector<double>{0, 1.2, 0.9}));
+}
+
+TEST(Beads, a_held_anchor_moves_the_others_alone) {
+    BeadArrays const beads = beads_of(
+        "base: fixed, anchor: [0, 0, 1], bodies: [{mass: 1, position: [0, 0, 2.1], joint: {type: link, length: "
+        "1}}]");
+    EXPECT_NEAR(beads.position[0][2], 2, 1e-15);
+    EXPECT_EQ(beads.anchor[2], 1);
 }
 
 TEST(Beads, explicit_ones_with_velocities_and_an_anchor) {

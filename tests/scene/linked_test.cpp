@@ -97,7 +97,7 @@ class Domains : public testing::Test {
   protected:
     Domains() {
         std::ofstream table(file());
-        for (int k = 0; k < 12; ++k) table << fmt::format("{},{},{}\n", 0.35 * k, 0.3 * std::sin(2.0 * k), 0.3 * std::cos(2.0 * k));
+        for (int k = 0; k < 12; ++k) table << fmt::format("{},{},{}\n", 0.22 * k, 0.19 * std::sin(2.0 * k), 0.19 * std::cos(2.0 * k));
     }
     ~Domains() override { std::filesystem::remove(file()); }
     /// Of this test alone: others may run at the same time.

@@ -1,0 +1,149 @@
+#include "integrate/start_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+
+#include "error.hpp"
+#include "integrate/bead_system.hpp"
+#include "integrate/lone_forces.hpp"
+#include "integrate/observables.hpp"
+#include "mpi/first_rank.hpp"
+#include "scene/nearest.hpp"
+
+namespace catena {
+namespace {
+
+double constexpr most_energy = 10;        // thermal kinetic energies: what is let go heats the chains as many times
+double constexpr thermal_force = 400;     // kT/nm: five times what a stiff bond pulls with (spread 0.01 nm) in thermal motion
+double constexpr largest_force = 10'000;  // kT/nm: within a thousandth of a nanometre it does ten times kT
+double constexpr touching = 0.45;         // nm: the smallest diameter of a residue's bead
+double constexpr coinciding = 0.15;       // nm: forces may not be finite below
+double constexpr looked_at = 0.7;         // nm: further apart no two beads overlap
+
+/// Pairs that a link, a joint or a body holds together.
+class Joined {
+  public:
+    explicit Joined(BeadSystem const& beads) : body_(static_cast<std::size_t>(beads.size()), -1) {
+        for (auto const& link : beads.links) pairs_.emplace_back(link.inboard, link.outboard);
+        pairs_.insert(pairs_.end(), beads.neighbours.begin(), beads.neighbours.end());
+        std::sort(pairs_.begin(), pairs_.end());
+        std::int64_t body = 0;
+        for (auto const& [first, end] : beads.rigid) {
+            std::fill(body_.begin() + first, body_.begin() + end, body);
+            ++body;
+        }
+    }
+    bool operator()(std::size_t a, std::size_t b) const {
+        if (body_[a] >= 0 && body_[a] == body_[b]) return true;
+        return std::binary_search(pairs_.begin(), pairs_.end(), std::pair(static_cast<std::int64_t>(a), static_cast<std::int64_t>(b)));
+    }
+
+  private:
+    std::vector<std::pair<std::int64_t, std::int64_t>> pairs_;  // ascending
+    std::vector<std::int64_t> body_;
+};
+
+/// Chain and number in it, from 0.
+std::pair<std::size_t, std::int64_t> place_of(BeadSystem const& beads, std::size_t bead) {
+    auto const number = static_cast<std::int64_t>(bead);
+    auto const chain = std::upper_bound(beads.chain_offset.begin(), beads.chain_offset.end(), number) - beads.chain_offset.begin() - 1;
+    return {static_cast<std::size_t>(chain), number - beads.chain_offset[static_cast<std::size_t>(chain)]};
+}
+
+std::string name_of(BeadSystem const& beads, std::size_t bead) {
+    auto const [chain, number] = place_of(beads, bead);
+    return fmt::format("bead {} of chain `{}`", number + 1, beads.chain_name[chain]);
+}
+
+std::string name_of(BeadSystem const& beads, scene::NearPair const& pair) {
+    auto const a = place_of(beads, pair.first), b = place_of(beads, pair.second);
+    if (a.first == b.first) return fmt::format("beads {} and {} of chain `{}`", a.second + 1, b.second + 1, beads.chain_name[a.first]);
+    return name_of(beads, pair.first) + " and " + name_of(beads, pair.second);
+}
+
+std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& beads, std::vector<Vec3> const& positions, double within) {
+    Joined const joined(beads);
+    return scene::nearest_pair(positions, scene.box, within, [&](std::size_t a, std::size_t b) { return !joined(a, b); });
+}
+
+char const* const other_positions = "write `relax: true`, or give other positions";
+
+std::string overlap_text(std::string const& pair, double distance) {
+    return fmt::format("beads overlapping in the positions of the start, {} {:.3g} nm apart: ", pair, distance);
+}
+
+}  // namespace
+
+bool StartForces::is_absurd() const {
+    double const kt = Scene().boltzmann() * temperature;
+    // Not `>`: what is not finite is absurd too.
+    if (!(largest_force <= ::catena::largest_force * kt)) return true;
+    return !(energy <= most_energy * thermal) && largest_force > thermal_force * kt;
+}
+
+std::string StartForces::energy_text() const {
+    return fmt::format("{:.6g} kJ/mol ({:.3g} times the kinetic energy at {:.6g} K), largest force {:.3g} kJ/mol/nm on {}", energy,
+                       energy / thermal, temperature, largest_force, force_at);
+}
+
+std::string StartForces::text() const {
+    return nearest < 0 ? energy_text() : energy_text() + fmt::format(", nearest {}: {:.3g} nm apart", nearest_pair, nearest);
+}
+
+StartForces start_forces_of(Scene const& scene, BeadSystem const& beads, std::vector<Vec3> const& positions,
+                            std::vector<Vec3> const& forces, double energy) {
+    StartForces found;
+    found.energy = energy;
+    found.temperature = scene.forces.openmm->temperature;
+    found.thermal = 0.5 * static_cast<double>(degrees_of_freedom(scene)) * scene.boltzmann() * found.temperature;
+    std::size_t worst = 0;
+    for (std::size_t i = 0; i < forces.size(); ++i)
+        if (double const force = norm(forces[i]); !(force <= found.largest_force)) {
+            found.largest_force = force, worst = i;
+            if (!std::isfinite(force)) break;
+        }
+    if (!forces.empty()) found.force_at = name_of(beads, worst);
+    if (auto const near = nearest_of(scene, beads, positions, looked_at))
+        found.nearest = near->distance, found.nearest_pair = name_of(beads, *near);
+    return found;
+}
+
+StartForces look_at_start(ChainSystem& system) {
+    double energy = 0;
+    for (EnergyTerm const& term : system.openmm()->energies()) energy += term.value;
+    std::vector<Vec3> const forces = system.bead_forces();
+    StartForces found;
+    on_first_rank(system.communicator(), [&] {
+        found = start_forces_of(system.scene(), system.beads(), bead_positions_of(system.scene()), forces, energy);
+        refuse_absurd(system.scene(), found, false);
+    });
+    return found;
+}
+
+void refuse_absurd(Scene const& scene, StartForces const& start, bool relaxed) {
+    if (!start.is_absurd()) return;
+    bool const overlap = start.nearest >= 0 && start.nearest < touching;
+    std::string what = relaxed ? "relaxation left " : "";
+    what += overlap ? overlap_text(start.nearest_pair, start.nearest) : "positions of the start that are far from any thermal state: ";
+    what += "potential energy " + (overlap ? start.energy_text() : start.text());
+    throw InputError(what, scene.file, relaxed ? "give other positions" : other_positions);
+}
+
+void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
+    if (!scene.forces.openmm) return;
+    on_first_rank(communicator, [&] {
+        std::vector<Vec3> const positions = bead_positions_of(scene);
+        auto const near = nearest_of(scene, bead_system_of(scene), positions, coinciding);
+        if (!near) return;
+        LoneForces forces(scene);
+        LoneForces::Evaluation const found = forces.at(positions);
+        refuse_absurd(scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy), false);
+    });
+}
+
+}  // namespace catena

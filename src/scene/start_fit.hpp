@@ -1,0 +1,73 @@
+// Start positions that a file gives are made to fit the chain's links: whole across the periodic box, each link as long as it is to be.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "scene/domains.hpp"
+#include "scene/node.hpp"
+#include "scene/scene.hpp"
+
+namespace catena::scene {
+
+/// Largest change of a link's length that is taken, relative to the length: six times the thermal spread of the softest bond that counts as
+/// a rigid link (5 % of its length). A residue that is missing between two CA atoms changes it by more.
+inline constexpr double largest_link_change = 0.3;
+/// From here on a change of a link is noted; a bead's displacement from the longest link on.
+inline constexpr double noted_link_change = 0.03;
+
+class StartFit {
+  public:
+    /// `from` gives the positions; `remedy`: for links whose lengths would change too much. The scene's box and `relax` count.
+    StartFit(Scene& scene, Node const& from, std::string remedy) : scene_(scene), from_(from), remedy_(std::move(remedy)) {}
+
+    struct Chain {
+        std::string name;
+        BeadArrays& beads;
+        Base base = Base::free;
+        std::vector<Domain> rigid = {};  // ascending; they keep their shape and are not turned
+        TipJoint const* tip = nullptr;   // a link that closes the chain, on its first bead or the ground
+    };
+    /// Where the scene has a periodic box: moves beads by whole edges until no link is cut by its sides; bead 1 stays (fixed base: the
+    /// anchor). A link is cut where its nearest image is nearer to `beads.length`. `as_given`, where no lengths are known: where its
+    /// nearest image is shorter, and not longer than 1.5 of the longest link within half of every edge.
+    void make_whole(Chain const& chain, bool as_given);
+
+    /// Gives the links `beads.length` by the least change of positions: the least sum of squared displacements, to second order in them.
+    /// The scene's `start` learns of the largest change. InputError, which names beads and overlaps, where a link would change by more than
+    /// `largest_link_change` of its length (with `relax: true` links that are too short may) or turn round. Precondition: no two neighbours
+    /// coincide.
+    void fit(Chain const& chain);
+
+    /// Gives the link of the chain's tip its length, the others keep theirs; as fit(). `distance`: of its ends.
+    void close(Chain const& chain, double distance);
+
+    /// What was done to all these chains, as notes of the scene.
+    void note() const;
+
+  private:
+    struct Change {
+        double part = 0;  // of the link's length
+        double from = 0, to = 0;
+        std::size_t link = 0;
+    };
+    Change largest_change(Chain const& chain, std::vector<double> const& before) const;
+    void refuse(Chain const& chain, Change const& worst, std::vector<double> const& before) const;
+    std::string nearest_text(Chain const& chain) const;
+    void project(Chain const& chain, Change const& worst);
+    void record(Chain const& chain, Change const& worst, std::vector<Vec3> const& given);
+    char const* unit() const { return scene_.si ? "m" : "nm"; }
+
+    Scene& scene_;
+    Node const& from_;
+    std::string remedy_;
+    std::int64_t cut_links_ = 0, cut_chains_ = 0;
+    std::string first_cut_;
+    double largest_ = 0, most_moved_ = 0;  // change of a link, relative, and displacement of a bead
+    bool moved_far_ = false;
+    std::string link_, moved_;
+};
+
+}  // namespace catena::scene
