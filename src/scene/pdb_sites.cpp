@@ -28,7 +28,7 @@ Vec3 in_nm(Vec3 const& angstrom) { return {{0.1 * angstrom[0], 0.1 * angstrom[1]
 
 std::string label_of(PdbAtom const& atom) {
     auto const number = residue_number(atom.number);
-    std::string label = number ? std::to_string(*number) : shown(atom.number);
+    std::string label = number && *number < 10000 ? std::to_string(*number) : shown(atom.number);  // beyond: as it is written
     if (atom.insertion != ' ') label += shown(std::string_view(&atom.insertion, 1));
     return label;
 }

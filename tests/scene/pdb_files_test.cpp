@@ -83,6 +83,18 @@ TEST_F(SceneFiles, a_long_chain_as_catena_writes_it) {
     EXPECT_EQ(s.chains.at(0).beads.size(), 20500u);
 }
 
+TEST_F(SceneFiles, residue_numbers_of_openmm_beyond_their_columns) {
+    auto const numbered = [](char const* number, double x) { return atom(1, "CA", "GLY", 'A', 1, x).replace(22, 4, number); };
+    write("a.pdb", numbered("9999", 0) + numbered("A000", 3.8) + numbered("A001", 7.6));
+    EXPECT_TRUE(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.empty());
+    write("a.pdb", numbered("A00F", 0) + numbered("A010", 3.8) + numbered("A011", 7.6));
+    EXPECT_TRUE(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.empty());
+    write("a.pdb", numbered("A00F", 0) + numbered("A00G", 3.8) + numbered("A00H", 7.6));
+    EXPECT_TRUE(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.empty());
+    write("a.pdb", numbered("A00F", 0) + numbered("A012", 3.8));
+    EXPECT_EQ(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.size(), 1u);
+}
+
 TEST_F(SceneFiles, residue_numbers_beyond_their_columns) {
     write("a.pdb", atom(1, "CA", "GLY", 'A', 9999, 0) + atom(2, "CA", "GLY", 'A', 0, 3.8) +
                        std::string(atom(3, "CA", "ALA", 'A', 1, 7.6)).replace(22, 4, "A000") +
