@@ -114,7 +114,7 @@ bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; 
     if (letter == '*') what += ": a stop within the sequence", remedy = "end the sequence there";
     if (letter == '-' || letter == '.') what += ": a gap of an alignment", remedy = "give the sequence without gaps";
     if (std::isdigit(static_cast<unsigned char>(letter))) what += ": a number", remedy = "leave the numbers of positions out";
-    if (letter == 'U') what += ": selenocysteine", remedy = "write C";
+    if (letter == 'U') what += ": selenocysteine, or RNA", remedy = "write C for selenocysteine";
     fail(source, what, remedy);
 }
 

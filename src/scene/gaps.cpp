@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
+#include <charconv>
 #include <cmath>
 
 namespace catena::scene {
@@ -30,7 +32,7 @@ class Neighbours {
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped = a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
         if (step < 0 && !wrapped) refuse_order(a, b);
-        bool const skips = step > 1;
+        bool const skips = step > 1 && !follows_in_hex(a.label, b.label);
         double const apart = distance(a.position, b.position);
         double const peptide = a.carbonyl && b.nitrogen ? distance(*a.carbonyl, *b.nitrogen) : 0;
         bool const bonded = peptide <= largest_peptide_bond;
@@ -51,6 +53,15 @@ class Neighbours {
     }
 
   private:
+    /// OpenMM goes on from 9999 with A000 in base 16, where hybrid-36 has base 36.
+    static bool follows_in_hex(std::string const& a, std::string const& b) {
+        unsigned from = 0, to = 0;
+        auto const read = [](std::string const& text, unsigned& value) {
+            return std::isalpha(static_cast<unsigned char>(text[0])) != 0 &&
+                   std::from_chars(text.data(), text.data() + text.size(), value, 16).ptr == text.data() + text.size();
+        };
+        return !a.empty() && !b.empty() && read(a, from) && read(b, to) && to == from + 1;
+    }
     static std::string times(int n) { return n == 1 ? "once" : fmt::format("{} times", n); }
 
     void count(PdbSite const& a, PdbSite const& b, bool skips) {

@@ -67,9 +67,10 @@ void refuse_other_formats(std::string_view text, std::string const& path) {
 /// A number in another place than its columns leaves a digit at the field's edge, or no digit before its point.
 bool stands_apart(std::string_view line, std::string_view field, std::size_t first) {
     std::size_t const point = field.find('.');
-    if (point == std::string_view::npos) return field.size() >= 7;  // too large for decimals
+    char const next = column(line, first + 8);
+    if (point == std::string_view::npos) return next != '.' && (!is_digit(next) || field.size() >= 7);  // too large for decimals
     if (point == 0 || !is_digit(field[point - 1])) return false;
-    bool const cut = is_digit(column(line, first + 7)) && is_digit(column(line, first + 8));
+    bool const cut = is_digit(column(line, first + 7)) && is_digit(next);
     return !cut || field.size() - point - 1 == 3 || field.size() == 8;
 }
 

@@ -28,7 +28,7 @@ Vec3 in_nm(Vec3 const& angstrom) { return {{0.1 * angstrom[0], 0.1 * angstrom[1]
 
 std::string label_of(PdbAtom const& atom) {
     auto const number = residue_number(atom.number);
-    std::string label = number ? std::to_string(*number) : shown(atom.number);
+    std::string label = number && *number < 10000 ? std::to_string(*number) : shown(atom.number);  // beyond: as it is written
     if (atom.insertion != ' ') label += shown(std::string_view(&atom.insertion, 1));
     return label;
 }
@@ -52,9 +52,8 @@ class Gathering {
         auto const number = residue_number(atom.number);
         if (number) {
             if (!residues.empty() && !atom.same_chain(residues.back().front())) lap_ = 0;
-            if (last_ == 9999 && *number <= 1) ++lap_;                               // writers without a fifth digit begin again
-            bool const apart = meaning_of(atom.residue).kind == ResidueKind::water;  // often numbered from 1 again
-            auto const key = std::tuple(atom.part, atom.chain, atom.segment, lap_ + (apart ? 1 << 20 : 0), *number, atom.insertion);
+            if (last_ == 9999 && *number <= 1) ++lap_;  // writers without a fifth digit begin again
+            auto const key = std::tuple(atom.part, atom.chain, atom.segment, lap_ + realm(atom), *number, atom.insertion);
             auto const [known, fresh] = known_.try_emplace(key, residues.size());
             if (!fresh) return add_to(residues[known->second], atom);
             last_ = *number;
@@ -65,6 +64,11 @@ class Gathering {
     std::vector<Residue> residues;
 
   private:
+    /// Water and ions are often numbered from 1 again.
+    static int realm(PdbAtom const& atom) {
+        ResidueKind const kind = meaning_of(atom.residue).kind;
+        return kind == ResidueKind::water ? 1 << 20 : kind == ResidueKind::ion ? 2 << 20 : 0;
+    }
     bool continues(PdbAtom const& atom) const {
         Residue const& residue = residues.back();
         PdbAtom const& first = residue.front();

@@ -63,6 +63,25 @@ TEST(PdbTopology, TheFirstModelAloneAndLinesOfOtherSystems) {
     EXPECT_EQ(chains[1].size(), 1u);
 }
 
+TEST(PdbTopology, SerialAndResidueNumbersAreNotRead) {
+    std::string text;
+    for (char const* const serial : {"99999", "A0000", "*****", "186a0"}) text += atom(1, "GLY", 'A', 1).replace(6, 5, serial);
+    text += atom(1, "GLY", 'A', 1).replace(22, 4, "****");
+    EXPECT_EQ(read(text).at(0).size(), 5u);
+}
+
+TEST(PdbTopology, ModelsAreNoted) {
+    std::vector<std::string> notes;
+    std::string const model = "MODEL\n" + atom(1, "GLY", 'A', 1) + "ENDMDL\n";
+    std::string const file = scratch_file("topology.pdb", model + model + model);
+    EXPECT_EQ(read_pdb_topology(file, "scene.yaml: topology", &notes).size(), 1u);
+    EXPECT_EQ(notes, std::vector<std::string>{"`" + file + "`: 3 models, the first is taken"});
+}
+
+TEST(PdbTopology, MmcifIsNamed) {
+    EXPECT_NE(complaint([] { read("data_x\n#\nloop_\n_atom_site.id\n1\n"); }).find("mmCIF is not read yet ("), std::string::npos);
+}
+
 TEST(PdbTopology, Messages) {
     EXPECT_EQ(complaint([] { read_pdb_topology("/nowhere/a.pdb", "scene.yaml: topology"); }),
               "cannot open /nowhere/a.pdb (scene.yaml: topology): name a PDB file that can be read");

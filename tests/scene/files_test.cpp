@@ -85,7 +85,7 @@ TEST_F(SceneFiles, bad_fasta_files) {
         EXPECT_EQ(refusal(with_fasta_), what + " (s.yaml: chains[0].fasta, line 1): " + remedy);
     };
     refused("GXS", "`X` at position 2 of the sequence is no residue of calvados2", codes);
-    refused("GU", "`U` at position 2 of the sequence is no residue of calvados2: selenocysteine", "write C");
+    refused("GU", "`U` at position 2 of the sequence is no residue of calvados2: selenocysteine, or RNA", "write C for selenocysteine");
     refused("G*S", "`*` at position 2 of the sequence is no residue of calvados2: a stop within the sequence", "end the sequence there");
     refused("G-S", "`-` at position 2 of the sequence is no residue of calvados2: a gap of an alignment", "give the sequence without gaps");
     refused("1 GAS", "`1` at position 1 of the sequence is no residue of calvados2: a number", "leave the numbers of positions out");

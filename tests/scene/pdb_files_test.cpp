@@ -64,6 +64,8 @@ TEST_F(SceneFiles, pdb_files_with_wrong_columns) {
     refused(good.substr(0, 40) + "\n", "the atom's line is cut short");
     refused("ATOM 1 CA GLY A 1 1.234 30.500 20.250 1.00 0.00 some more of it\n", "the coordinates begin before column 31");
     refused(std::string(good).replace(30, 24, "       1.234      30.500"), "`1` is cut out of its column");
+    write("a.pdb", std::string(good).replace(30, 24, "       1      30      20"));
+    EXPECT_EQ(refusal(with_pdb_), "accepted");
     refused(std::string(good).insert(6, "1"), "`1.23` is cut out of its column");
     refused(std::string(good).replace(29, 1, "1"), "the coordinates begin before column 31");
 }
@@ -81,6 +83,18 @@ TEST_F(SceneFiles, a_long_chain_as_catena_writes_it) {
     write("a.pdb", text + "TER\nEND\n");
     Scene const s = read("chains: [{pdb: a.pdb, model: calvados2, links: as_given}]");
     EXPECT_EQ(s.chains.at(0).beads.size(), 20500u);
+}
+
+TEST_F(SceneFiles, residue_numbers_of_openmm_beyond_their_columns) {
+    auto const numbered = [](char const* number, double x) { return atom(1, "CA", "GLY", 'A', 1, x).replace(22, 4, number); };
+    write("a.pdb", numbered("9999", 0) + numbered("A000", 3.8) + numbered("A001", 7.6));
+    EXPECT_TRUE(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.empty());
+    write("a.pdb", numbered("A00F", 0) + numbered("A010", 3.8) + numbered("A011", 7.6));
+    EXPECT_TRUE(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.empty());
+    write("a.pdb", numbered("A00F", 0) + numbered("A00G", 3.8) + numbered("A00H", 7.6));
+    EXPECT_TRUE(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.empty());
+    write("a.pdb", numbered("A00F", 0) + numbered("A012", 3.8));
+    EXPECT_EQ(read("chains: [{pdb: a.pdb, model: calvados2}]").notes.size(), 1u);
 }
 
 TEST_F(SceneFiles, residue_numbers_beyond_their_columns) {
@@ -133,6 +147,14 @@ TEST_F(SceneFiles, what_is_no_chain_is_left_out_of_a_pdb_file) {
     EXPECT_EQ(s.chains.at(0).beads.residue, (std::vector<std::string>{"GLY", "ALA"}));
     EXPECT_EQ(notes_of(s), (std::vector<std::string>{"`a.pdb`: 2 caps left out (1 ACE, 1 NME)", "`a.pdb`: 2 ions left out (1 SOD, 1 XE)",
                                                      "`a.pdb`: 2 ligands left out (1 CLA, 1 HEM)", "`a.pdb`: 2 waters left out (2 HOH)"}));
+}
+
+TEST_F(SceneFiles, solvent_may_be_numbered_from_one_again) {
+    write("a.pdb", atom(1, "CA", "GLY", ' ', 1, 0) + atom(2, "CA", "ALA", ' ', 2, 3.8) + atom(3, "OW", "SOL", ' ', 1, 9) +
+                       atom(3, "HW1", "SOL", ' ', 1, 9) + atom(3, "OW", "SOL", ' ', 2, 9) + atom(3, "NA", "NA", ' ', 1, 9));
+    Scene const s = read(with_pdb_);
+    EXPECT_EQ(s.chains.at(0).beads.size(), 2u);
+    EXPECT_EQ(notes_of(s), (std::vector<std::string>{"`a.pdb`: 1 ion left out (1 NA)", "`a.pdb`: 2 waters left out (2 SOL)"}));
 }
 
 /// One-letter names are residues of somebody's model, not potassium.
