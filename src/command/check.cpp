@@ -5,6 +5,7 @@
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
 #include "integrate/start_report.hpp"
+#include "integrate/step_limit.hpp"
 
 namespace catena::command {
 namespace {
@@ -36,11 +37,12 @@ Json forces_json(Scene const& scene, std::vector<std::string> const& openmm) {
             {"motions", found.motions},      {"wrenches", found.wrenches}, {"drag", found.drag},       {"openmm", openmm}};
 }
 
-Json dynamics_json(Scene const& scene) {
+Json dynamics_json(Scene const& scene, std::optional<StepLimit> const& limit) {
     DynamicsSpec const& d = scene.dynamics;
     if (!d.given) return nullptr;
     return {{"integrator", name_of(d.integrator)},
             {"step", d.step},
+            {"longest_stable_step", limit ? Json(limit->step) : Json()},
             {"steps", d.steps},
             {"temperature", d.temperature},
             {"friction", d.friction},
@@ -57,7 +59,7 @@ Json handles_json(Scene const& scene) {
     return handles;
 }
 
-Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks) {
+Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks, std::optional<StepLimit> const& limit) {
     std::vector<std::string> const& openmm = found.openmm;
     Directions const d = directions_of(scene);
     Text text;
@@ -80,11 +82,13 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     for (std::size_t i = 0; i < openmm.size(); ++i) text.entry(i == 0 ? "OpenMM" : "", openmm[i]);
     text.heading("dynamics");
     text.entry("integrator", dynamics_text(scene));
+    if (limit) text.entry("longest stable step", catena::text_of(*limit, scene));
     text.heading("memory");
     text.entry(ranks == 1 ? "estimate" : "estimate, each rank",
                fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene),
                            bytes_text(memory.state), bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
     for (std::string const& note : scene.notes) text.note(note);
+    if (std::string const note = note_of_step(scene, limit); !note.empty()) text.note(note);
     text.heading("The scene is valid.");
     return text;
 }
@@ -95,8 +99,9 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator) {
     choose_backend(scene, communicator);  // throws for those of later versions
     Found const found = find(scene, communicator);
     Memory const memory = memory_of(scene, communicator.size());
+    std::optional<StepLimit> const limit = estimate_step_limit(scene);
     Outcome outcome;
-    outcome.text = text_of(scene, found, memory, communicator.size()).str();
+    outcome.text = text_of(scene, found, memory, communicator.size(), limit).str();
     outcome.json = {{"scene", scene.file},
                     {"title", scene.title},
                     {"units", scene.si ? "si" : "md"},
@@ -108,12 +113,13 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator) {
                     {"handles", handles_json(scene)},
                     {"start", json_of(found.start)},
                     {"forces", forces_json(scene, found.openmm)},
-                    {"dynamics", dynamics_json(scene)},
+                    {"dynamics", dynamics_json(scene, limit)},
                     {"memory_bytes_per_rank", {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
                     {"scene_hash", scene.hash},
                     {"ranks", communicator.size()},
                     {"notes", scene.notes},
                     {"valid", true}};
+    if (std::string const note = note_of_step(scene, limit); !note.empty()) outcome.json["notes"].push_back(note);
     return outcome;
 }
 

@@ -10,6 +10,7 @@
 #include "command/describe.hpp"
 #include "command/stop_signals.hpp"
 #include "integrate/simulation.hpp"
+#include "integrate/step_limit.hpp"
 #include "plan/choice.hpp"
 
 namespace catena::command {
@@ -73,6 +74,15 @@ void add_start(Text& text, nlohmann::json const& start, char const* unit) {
                                number(start, "potential_energy") / number(start, "thermal_energy"), number(start, "temperature")));
 }
 
+/// "energy at step 3000: ..." of the first check that failed; empty of none.
+std::string failure_of(nlohmann::json const& s) {
+    for (auto const& check : s.at("verdict").at("checks"))
+        if (!check.at("passed").get<bool>())
+            return fmt::format("{} at step {}: {}", check.at("name").get<std::string>(), check.at("step").get<std::int64_t>(),
+                               check.at("advice").get<std::string>());
+    return "";
+}
+
 std::string text_of(Scene const& scene, nlohmann::json const& s, std::string const& reason) {
     Text text;
     auto const &run = s.at("run"), &speed = s.at("speed"), &parallel = s.at("parallel");
@@ -132,15 +142,13 @@ std::string text_of(Scene const& scene, nlohmann::json const& s, std::string con
         text.entry(first ? "files" : "", path.get<std::string>());
         first = false;
     }
-    text.heading(s.at("valid").get<bool>() ? "VALID" : "INVALID");
+    text.heading(s.at("valid").get<bool>() ? "VALID" : "INVALID: " + failure_of(s));
     return text.str();
 }
 
 std::string complaint_of(nlohmann::json const& s, bool whole) {
     nlohmann::json const& run = s.at("run");
-    if (!s.at("valid").get<bool>())
-        return fmt::format("constraint error {:.2e} above dynamics.constraint_tolerance {:.0e}: choose a smaller dynamics.step",
-                           number(s.at("constraints"), "largest_error"), number(s.at("constraints"), "tolerance"));
+    if (std::string const failure = failure_of(s); !failure.empty()) return failure;
     if (whole) return "";
     return fmt::format("stopped by {} at step {} of {}: go on with --restart {}", StopSignals::name_of(run.at("stopped_by").get<int>()),
                        run.at("last_step").get<std::int64_t>(), run.at("steps").get<std::int64_t>(),
@@ -151,6 +159,7 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
 
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     StopSignals const signals;
+    if (std::string const note = note_of_step(given, estimate_step_limit(given)); !note.empty()) given.note(note);
     for (std::string const& note : given.notes) spdlog::warn("{}", note);
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;
     RunOptions options;

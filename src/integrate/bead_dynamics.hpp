@@ -7,6 +7,7 @@
 #include "dca/tree_solver.hpp"
 #include "integrate/absolute_dynamics.hpp"
 #include "integrate/bead_step.hpp"
+#include "integrate/closing.hpp"
 #include "integrate/fixman.hpp"
 
 namespace catena {
@@ -31,7 +32,7 @@ struct BeadSolution {
 Field<1> halves_over(Field<1> const& length, Executor const&);
 
 template <class Space>
-class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
+class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public ClosingDrifts {
     using Field3 = typename Space::template FieldOf<3>;
 
   public:
@@ -129,6 +130,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         parts().close(h);
         return true;
     }
+    int drift_closing(double h, int sweeps, Closing const& closing) override {
+        drift(h, sweeps);
+        return closing.close(sweeps, [&] { return constraint_error(); }, [&] { parts().close(h); });
+    }
     void thermalise(Thermostat const& thermostat, std::uint64_t step) override { parts().thermalise(thermostat, step); }
     /// Block by block where it pays.
     void step(ConstrainedStep const& step) override {
@@ -153,10 +158,14 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads {
         solver_->check();
         exchange_from_inboard(communicator_, group_, position_.view(), space_);
         ring_ends_.take(position_.view(), position_.view());
+        return communicator_.max(own_error());
+    }
+    /// Neighbours' positions are here: update_configuration() has brought them.
+    double own_error() override {
         BeadChains const c = chains();
         double const along = space_.largest(group_.size, [c] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
         double const at_tips = space_.largest(tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
-        return communicator_.max(larger(along, at_tips));
+        return larger(along, at_tips);
     }
 
     std::vector<StateArray> state() const override {

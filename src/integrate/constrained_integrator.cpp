@@ -9,11 +9,29 @@
 #include "error.hpp"
 
 namespace catena {
+namespace {
+
+/// The parts of a step (take_step) whose drifts go on until joints close.
+struct ClosingParts {
+    AbsoluteDynamics& dynamics;
+    ClosingDrifts& drifts;
+    Closing closing;
+    int most = 0;
+    void update_configuration() { dynamics.update_configuration(); }
+    void assemble_matrices() { dynamics.assemble_matrices(); }
+    void thermalise(Thermostat const& thermostat, std::uint64_t step) { dynamics.thermalise(thermostat, step); }
+    void kick(double h) { dynamics.kick(h); }
+    void drift(double h, int sweeps) { most = std::max(most, drifts.drift_closing(h, sweeps, closing)); }
+};
+
+}  // namespace
+
+ClosingDrifts& closing_drifts_of(AbsoluteDynamics& group) { return dynamic_cast<ClosingDrifts&>(group); }
 
 ConstrainedIntegrator::ConstrainedIntegrator(ConstrainedScheme const& scheme, std::vector<AbsoluteDynamics*> const& groups)
     : scheme_(scheme), groups_(groups) {}
 
-void ConstrainedIntegrator::step(std::int64_t n) {
+ConstrainedStep ConstrainedIntegrator::step_of(std::int64_t n) const {
     double const h = scheme_.step;
     ConstrainedStep step;
     step.langevin = is_langevin(scheme_.kind);
@@ -23,8 +41,40 @@ void ConstrainedIntegrator::step(std::int64_t n) {
     step.parts = parts_;
     step.thermostat = thermostat_of(std::exp(-scheme_.friction * h), scheme_.kt, scheme_.seed);
     step.number = static_cast<std::uint64_t>(n);
+    return step;
+}
+
+void ConstrainedIntegrator::step(std::int64_t n) {
+    ConstrainedStep const step = step_of(n);
     for (AbsoluteDynamics* group : groups_) group->step(step);
     pending_ = 1.0;
+}
+
+int ConstrainedIntegrator::step_closing(std::int64_t n) {
+    ConstrainedStep const step = step_of(n);
+    Closing const closing{scheme_.tolerance, early * scheme_.tolerance, most_sweeps};
+    int most = 0;
+    for (AbsoluteDynamics* group : groups_) {
+        ClosingParts parts{*group, closing_drifts_of(*group), closing};
+        take_step(parts, step);
+        most = std::max(most, parts.most);
+    }
+    pending_ = 1.0;
+    return most;
+}
+
+ConstrainedIntegrator::Kept ConstrainedIntegrator::keep() const {
+    Kept kept{{}, pending_};
+    for (AbsoluteDynamics* group : groups_) kept.state.push_back(group->state());
+    return kept;
+}
+
+void ConstrainedIntegrator::put_back(Kept const& kept) {
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+        groups_[g]->set_state(kept.state[g]);
+        groups_[g]->update_configuration();
+    }
+    pending_ = kept.pending;
 }
 
 void ConstrainedIntegrator::observe() {

@@ -9,8 +9,12 @@
 #include <vector>
 
 #include "integrate/absolute_dynamics.hpp"
+#include "integrate/closing.hpp"
 
 namespace catena {
+
+/// A group's drifts that go on; every one in absolute coordinates has them.
+ClosingDrifts& closing_drifts_of(AbsoluteDynamics&);
 
 struct ConstrainedScheme {
     Integrator kind = Integrator::rattle;
@@ -25,6 +29,15 @@ class ConstrainedIntegrator {
 
     /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is. `n` counts steps from 0.
     void step(std::int64_t n);
+    /// The same with further sweeps in every drift that leaves joints open (Closing). Returns those of the drift that took most.
+    int step_closing(std::int64_t n);
+    /// The state of now, on this rank, and back to it; configuration is then ready, matrices and forces are not.
+    struct Kept {
+        std::vector<std::vector<StateArray>> state;
+        double pending = 0;
+    };
+    Kept keep() const;
+    void put_back(Kept const&);
     /// Velocities at x_n as an observer sees them (both half kicks in their places), into the dynamics' observed state. Before step().
     void observe();
     /// Quasi-Newton sweeps a drift makes from now on: the fewest that reach `early` * `tolerance`, or rounding, from the present state
@@ -47,6 +60,7 @@ class ConstrainedIntegrator {
     int matrix_sweeps_a_step() const { return drifts(); }
 
   private:
+    ConstrainedStep step_of(std::int64_t n) const;
     int drifts() const { return (is_langevin(scheme_.kind) ? 2 : 1) * parts_; }
     void begin_trial(AbsoluteDynamics&, int sweeps, bool thermal) const;
     bool choose_sweeps(int most, bool thermal);

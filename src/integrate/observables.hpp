@@ -57,6 +57,8 @@ class Observables {
     void begin();
     /// The next bodies and their sites.
     void add(ChainSystem::Snapshot const&, std::vector<Vec3> const& positions);
+    /// Of what was added.
+    double kinetic() const { return kinetic_.value(); }
     std::vector<double> row(std::vector<EnergyTerm> const& terms, double constraint_error) const;
 
   private:

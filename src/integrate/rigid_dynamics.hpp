@@ -6,30 +6,15 @@
 
 #include "dca/host_space.hpp"
 #include "integrate/absolute_dynamics.hpp"
+#include "integrate/closing.hpp"
 #include "integrate/rigid_chains.hpp"
 #include "integrate/rigid_solution.hpp"
+#include "integrate/rigid_start.hpp"
 
 namespace catena {
 
-/// Where the bodies of the group start. Collective.
-struct RigidStart {
-    Field<3> position, velocity, omega;
-    Field<4> orientation;
-};
-RigidStart place_bodies(ChainGroup const&, Scene const&, Communicator const&);
-
-/// Of all bodies: quaternions of the axes in B, and the moments about them; a point bead: none.
-struct PrincipalFrames {
-    Field<4> axes;
-    Field<3> moment;
-};
-PrincipalFrames principal_frames(ChainGroup const&);
-
-/// Longest distance of a joint from its bodies' centres, or a body's radius of gyration. The same on every rank; collective.
-double reach_of_joints(ChainGroup const&, Communicator const&);
-
 template <class Space>
-class RigidDynamics final : public AbsoluteDynamics {
+class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     template <int D>
     using FieldOf = typename Space::template FieldOf<D>;
     template <int D>
@@ -138,16 +123,23 @@ class RigidDynamics final : public AbsoluteDynamics {
     /// Impulses along the joints at the start enter momenta before the drift, and the free rotor runs again in every sweep
     /// (formulas, "Rigid bodies under RATTLE").
     void drift(double h, int sweeps) override {
-        RigidChains const c = chains();
-        for (int sweep = 0; sweep <= sweeps; ++sweep) {
-            DriftSweep const s{h, sweep == 0, sweep == sweeps};
-            space_.for_each(group_.size, [c, s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
-            if (s.last) return;
-            show_ends();
-            space_.for_each(group_.size, [c, scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.set_openings(k, scale); });
-            solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
-            if (rotors() > 0) add_to_rotors();
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            fly({h, sweep == 0, false});
+            correct(h);
         }
+        fly({h, sweeps == 0, true});
+    }
+    int drift_closing(double h, int sweeps, Closing const& closing) override {
+        fly({h, true, false});
+        auto const sweep = [&] {
+            correct(h);
+            fly({h, false, false});
+        };
+        for (int i = 0; i < sweeps; ++i) sweep();
+        int const more = closing.close(sweeps, [&] { return communicator_.max(error_at_ends()); }, sweep);
+        forget_correction();
+        fly({h, false, true});
+        return more;
     }
     void thermalise(Thermostat const& t, std::uint64_t step) override {
         add_noise({t, step, NoiseStage::thermostat, NoiseStage::thermostat_angular, true}, 0, group_.size);
@@ -160,9 +152,11 @@ class RigidDynamics final : public AbsoluteDynamics {
 
     double constraint_error() override {
         solver_->check();
+        return communicator_.max(own_error());
+    }
+    double own_error() override {
         set_ends();
-        return communicator_.max(
-            space_.largest(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); }));
+        return error_at_ends();
     }
 
     std::vector<StateArray> state() const override {
@@ -225,6 +219,27 @@ class RigidDynamics final : public AbsoluteDynamics {
         space_.for_each(group_.size, [c = chains(), h] CATENA_LAMBDA(std::int64_t k) { c.set_momenta(k, h); });
         solver_->solve({moment_.view(), momentum_.view(), {}, rotors() > 0 ? bias_.view() : DirectionsView{}, {}},
                        {omega, velocity, {}, {}});
+    }
+    /// A drift's flight from its start; but for the last one, neighbours see where it ends.
+    void fly(DriftSweep const& s) {
+        space_.for_each(group_.size, [c = chains(), s] CATENA_LAMBDA(std::int64_t k) { c.fly(k, s); });
+        if (!s.last) show_ends();
+    }
+    /// What velocities at the drift's start lack so that the joints close where fly() ended.
+    void correct(double h) {
+        space_.for_each(group_.size, [c = chains(), scale = 1.0 / h] CATENA_LAMBDA(std::int64_t k) { c.set_openings(k, scale); });
+        solver_->solve({{}, {}, {}, bias_.view(), of_tips(group_, tip_bias_)}, {alpha_.view(), acceleration_.view(), {}, {}});
+        if (rotors() > 0) add_to_rotors();
+    }
+    /// Velocities have it already.
+    void forget_correction() {
+        space_.for_each(group_.size, [a = acceleration_.view(), t = alpha_.view()] CATENA_LAMBDA(std::int64_t k) {
+            a.store(k, Vec3::zero());
+            t.store(k, Vec3::zero());
+        });
+    }
+    double error_at_ends() {
+        return space_.largest(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) -> double { return c.error(k); });
     }
     void take_rotors(View<3> omega) {
         exchange_from_inboard(communicator_, group_, omega, space_);

@@ -23,6 +23,7 @@
 #include "integrate/start_velocities.hpp"
 #include "integrate/step_messages.hpp"
 #include "integrate/stepper.hpp"
+#include "integrate/verdict.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -100,7 +101,7 @@ class Run {
             bool const saves_by_time = agreed == save_wish;
             stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
-            double const error = looks || ends ? constraint_error(n) : 0;
+            double const error = looks || ends || n == first ? look(n) : 0;
             if (looks) adapt(n, error);
             if (writes) output(n, error);
             if (!ends) at_start_.reset();
@@ -115,6 +116,7 @@ class Run {
             Traffic const prepared = chains_traffic();
             at_step(n, [&] { stepper_->step(n, timeline); });
             of_step += chains_traffic() - prepared;
+            stepper_->note_error(n);
             if (n > first && !renews) count_messages(of_step);  // others may evaluate once more
             if (n == first) {
                 system_.wait();
@@ -244,10 +246,33 @@ class Run {
             Frame const part = sites_.part(bodies, scene_.output.velocities && !together, system_.executor());
             if (!together) folder_->put(std::span(&part, 1));
             observables_->add(bodies.motion, part.positions);
+            for (Vec3 const& x : bodies.motion.position) largest_coordinate_ = std::max(largest_coordinate_, norm(x));
         });
         if (together) put_own(*frame.now.bodies);
-        if (root_) last_row_ = observables_->row(frame.now.terms, frame.error);
+        if (root_) judge(frame);
         folder_->end(frame.at_tips, last_row_);
+    }
+
+    /// What a frame says of the run's verdict, and its row.
+    void judge(PendingFrame const& frame) {
+        last_row_ = observables_->row(frame.now.terms, frame.error);
+        std::optional<double> potential;
+        if (has_energies(scene_)) {
+            potential = 0;
+            for (EnergyTerm const& term : frame.now.terms) *potential += term.value;
+        }
+        energies_.add(frame.step, observables_->kinetic(), potential);
+    }
+    /// On rank 0.
+    std::vector<RunCheck> verdicts() const {
+        double const tolerance = scene_.dynamics.constraint_tolerance;
+        bool const worse_at_end = error_at_end_ > worst_error_;
+        std::vector<RunCheck> all{
+            joints_verdict(std::max(worst_error_, error_at_end_), tolerance, worse_at_end ? reached_ : worst_error_at_, "dynamics.step")};
+        for (auto const& verdict : {energies_.energy(), energies_.temperature(),
+                                    coordinates_verdict(largest_coordinate_, shortest_link(scene_), tolerance, reached_)})
+            if (verdict) all.push_back(*verdict);
+        return all;
     }
 
     void put_own(ChainSystem::OwnBodies const& own) {
@@ -262,8 +287,8 @@ class Run {
     }
 
     /// The largest over ranks: every rank decides the same. A state that is not finite has none.
-    double constraint_error(std::int64_t n) {
-        double const error = stepper_->constraint_error();
+    double look(std::int64_t n) {
+        double const error = stepper_->look(n);
         if (!std::isfinite(error))
             throw ComputationError("the state is not finite at step " + std::to_string(n) +
                                    ": choose a smaller dynamics.step, or look at the start");
@@ -273,7 +298,10 @@ class Run {
     /// Another sweep where one is due. At steps that the scene chooses alone, not where a run happens to end: a restart is to be the
     /// undisturbed run.
     void adapt(std::int64_t n, double error) {
-        worst_error_ = std::max(worst_error_, error);
+        if (error > worst_error_) {
+            worst_error_ = error;
+            worst_error_at_ = n;
+        }
         if (n == first_ && !options_.restart.empty()) return;  // the run before did
         if (stepper_->adapt(watch_, error, scene_.dynamics.constraint_tolerance))
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
@@ -390,8 +418,13 @@ class Run {
     }
 
     json finish(std::int64_t first) {
-        bool const valid = std::max(worst_error_, error_at_end_) <= scene_.dynamics.constraint_tolerance;
-        json const summary = summarise(first, valid, summary_of_forces(system_, reached_ - first));
+        std::vector<RunCheck> const found = root_ ? verdicts() : std::vector<RunCheck>();
+        bool const valid = communicator_.sum(all_passed(found) ? 0 : 1) == 0;
+        for (RunCheck const& verdict : found)
+            if (verdict.passed && !verdict.advice.empty()) notes_.push_back(verdict.advice);
+        if (std::string const note = stepper_->note_of_sweeps(); !note.empty()) notes_.push_back(note);
+        json summary = summarise(first, valid, summary_of_forces(system_, reached_ - first));
+        summary["verdict"] = as_json(found);
         json const timeline = gather_timelines(communicator_, timelines_);
         folder_->finish(summary.dump(2, ' ', false, json::error_handler_t::replace) + "\n", timeline.dump() + "\n");
         return root_ ? summary : json{{"valid", valid}, {"run", summary["run"]}};
@@ -504,7 +537,9 @@ class Run {
     std::vector<std::string> notes_;
     StartReport start_;
     SweepWatch watch_;
-    double worst_error_ = 0, error_at_end_ = 0, seconds_ = 0;
+    EnergyWatch energies_{scene_};
+    double worst_error_ = 0, error_at_end_ = 0, largest_coordinate_ = 0, seconds_ = 0;
+    std::int64_t worst_error_at_ = 0;
     double first_step_after_ = 0;  // seconds; 0: there was none
     Pace pace_;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;

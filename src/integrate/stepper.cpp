@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "integrate/checkpoint_values.hpp"
+#include "integrate/closed_steps.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
@@ -125,7 +126,8 @@ class ConstrainedStepper final : public Stepper {
     ConstrainedStepper(ChainSystem& system, DynamicsSpec const& d)
         : system_(system),
           integrator_({d.integrator, d.step, d.friction, system.scene().boltzmann() * d.temperature, d.seed, d.constraint_tolerance},
-                      system.absolute()) {
+                      system.absolute()),
+          closed_(system, integrator_, d.constraint_tolerance) {
         for (AbsoluteDynamics* group : system.absolute()) group->update_configuration();
         draw_velocities(d);
     }
@@ -145,12 +147,12 @@ class ConstrainedStepper final : public Stepper {
         integrator_.step(n);
         if (timeline) timeline->phases.push_back({"projections and drift", "catena", offset_, offset_ + seconds_now() - start});
     }
-    double constraint_error() override {
-        double worst = 0;
-        for (AbsoluteDynamics* group : system_.absolute()) worst = larger(worst, group->constraint_error());
-        system_.check_forces();
-        return worst;
+    double constraint_error() override { return closed_.error(); }
+    void note_error(std::int64_t n) override { closed_.note(n); }
+    double look(std::int64_t n) override {
+        return closed_.look(n, [this] { prepare(nullptr); });
     }
+    std::string note_of_sweeps() const override { return closed_.text(); }
     double early() const override { return ConstrainedIntegrator::early; }
     bool add_sweep() override {
         if (integrator_.sweeps() >= ConstrainedIntegrator::most_sweeps) return false;
@@ -184,6 +186,7 @@ class ConstrainedStepper final : public Stepper {
                       {"bias_sweeps_a_step", integrator_.bias_sweeps_a_step()},
                       {"sweeps_a_drift", integrator_.sweeps()}};
         if (integrator_.parts() > 1) found["parts_a_drift"] = integrator_.parts();
+        if (json const further = closed_.summary(); !further.is_null()) found["steps_closed_further"] = further;
         return found;
     }
 
@@ -203,6 +206,7 @@ class ConstrainedStepper final : public Stepper {
     }
     ChainSystem& system_;
     ConstrainedIntegrator integrator_;
+    ClosedSteps closed_;
     double offset_ = 0;
 };
 

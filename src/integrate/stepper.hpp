@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "integrate/joint_integrators.hpp"
 #include "integrate/sweep_watch.hpp"
@@ -31,6 +32,13 @@ class Stepper {
     virtual void observe(Asked const&) = 0;
     virtual void step(std::int64_t n, StepTimeline*) = 0;
     virtual double constraint_error() = 0;
+    /// After step n: how far joints are open is noted where that costs next to nothing.
+    virtual void note_error(std::int64_t /*n*/) {}
+    /// constraint_error() at step n, after prepare(). Steps since the last call that left joints open beyond the tolerance are taken again
+    /// first, with further sweeps. Collective.
+    virtual double look(std::int64_t /*n*/) { return constraint_error(); }
+    /// What there is to say of that in the end; empty: nothing.
+    virtual std::string note_of_sweeps() const { return ""; }
     /// One more projection sweep from now on where `watch` says that one is due and there is one to add. Returns whether it was added.
     bool adapt(SweepWatch& watch, double error, double tolerance);
     /// Of a drift; in joint coordinates corrections of jointed tips.

@@ -1,0 +1,75 @@
+#include "integrate/closed_steps.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "error.hpp"
+#include "mpi/first_rank.hpp"
+
+namespace catena {
+
+void ClosedSteps::note(std::int64_t n) {
+    if (uses_gpu(system_.backend())) return;
+    bool const looks_at_bodies = n < first_steps || n % every_of_bodies == 0;
+    for (AbsoluteDynamics* const group : system_.absolute())
+        if (looks_at_bodies || group->group().beads) worst_since_ = larger(worst_since_, closing_drifts_of(*group).own_error());
+}
+
+double ClosedSteps::error() {
+    double worst = 0;
+    for (AbsoluteDynamics* const group : system_.absolute()) worst = larger(worst, group->constraint_error());
+    system_.check_forces();
+    return worst;
+}
+
+bool ClosedSteps::can_keep(std::int64_t n) const { return !uses_gpu(system_.backend()) || n < first_steps; }
+
+double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
+    double now = error();
+    double const worst = larger(system_.communicator().max(worst_since_), now);
+    if (!(worst <= tolerance_) && kept_ && kept_->step < n) {
+        repeat(n, prepare);
+        now = error();
+    }
+    kept_ = can_keep(n) ? std::optional(Start{n, integrator_.keep()}) : std::nullopt;
+    worst_since_ = 0;
+    return now;
+}
+
+void ClosedSteps::repeat(std::int64_t n, std::function<void()> const& prepare) {
+    integrator_.put_back(kept_->state);
+    for (std::int64_t m = kept_->step; m < n; ++m) {
+        try {
+            prepare();
+            take(m, prepare);
+        } catch (SharedError const& error) {
+            throw SharedError("at step " + std::to_string(m) + ": " + error.what());
+        } catch (ComputationError const& error) {
+            throw ComputationError("at step " + std::to_string(m) + ": " + error.what());
+        }
+    }
+    prepare();
+}
+
+void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {
+    ConstrainedIntegrator::Kept const before = integrator_.keep();
+    integrator_.step(n);
+    if (error() <= tolerance_) return;
+    integrator_.put_back(before);
+    prepare();
+    most_sweeps_ = std::max(most_sweeps_, integrator_.sweeps() + integrator_.step_closing(n));
+    if (steps_++ == 0) first_ = n;
+}
+
+nlohmann::json ClosedSteps::summary() const {
+    if (steps_ == 0) return nullptr;
+    return {{"steps", steps_}, {"first", first_}, {"most_sweeps", most_sweeps_}};
+}
+
+std::string ClosedSteps::text() const {
+    if (steps_ == 0) return "";
+    return std::to_string(steps_) + (steps_ == 1 ? " step" : " steps") + " from step " + std::to_string(first_) + " on took up to " +
+           std::to_string(most_sweeps_) + " projection sweeps to close the joints";
+}
+
+}  // namespace catena

@@ -1,0 +1,185 @@
+#include "integrate/step_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "error.hpp"
+#include "integrate/chain_system.hpp"
+#include "mpi/communicator.hpp"
+#include "scene/freedom.hpp"
+
+namespace catena {
+namespace {
+
+/// Chains of one kind are alike, and so are a long chain's bodies: so many stand for all.
+constexpr std::size_t most_chains = 8, most_bodies = 1000;
+constexpr int most_iterations = 100, least_iterations = 10;
+constexpr double settled = 1e-4;  // change of the frequency from one iteration to the next
+constexpr double near = 0.8;      // of the limit: said
+
+/// Of h times the largest frequency, undamped.
+double reach_of(Integrator integrator) {
+    return integrator == Integrator::rk4 ? 2.8284 : integrator == Integrator::dormand_prince ? 3.3 : 2.0;
+}
+
+bool has_springs(ChainSpec const& chain) {
+    auto const& k = chain.bodies.stiffness;
+    return std::any_of(k.begin(), k.end(), [](Vec3 const& stiffness) { return norm(stiffness) > 0; });
+}
+
+template <class T>
+void cut(std::vector<T>& list, std::size_t size) {
+    if (list.size() > size) list.erase(list.begin() + static_cast<std::ptrdiff_t>(size), list.end());
+}
+void cut(ChainSpec& chain, std::size_t size) {
+    BodyArrays& b = chain.bodies;
+    if (b.size() <= size) return;
+    cut(b.mass, size), cut(b.com, size), cut(b.inertia, size), cut(b.joint, size), cut(b.axis, size), cut(b.rotation, size);
+    cut(b.translation, size), cut(b.q, size), cut(b.qd, size), cut(b.first_axis, size), cut(b.pitch, size), cut(b.torque, size);
+    cut(b.stiffness, size), cut(b.damping, size), cut(b.rest, size), cut(b.wrench, size), cut(b.drag, size);
+    std::erase_if(b.driven, [&](DrivenJoint const& joint) { return joint.body >= static_cast<std::int64_t>(size); });
+    chain.tip = Tip::free;
+}
+
+/// The chains with springs alone, as forward dynamics on one thread sees them.
+Scene sprung_part(Scene const& scene) {
+    Scene part;
+    part.si = scene.si;
+    part.file = scene.file;
+    part.forces.gravity = scene.forces.gravity;
+    part.dynamics.integrator = Integrator::velocity_verlet;
+    part.dynamics.given = true;
+    part.solver.backend = Backend::segments;
+    part.solver.threads = 1;
+    for (ChainSpec const& chain : scene.chains) {
+        if (!has_springs(chain) || part.chains.size() == most_chains) continue;
+        part.chains.push_back(chain);
+        part.chains.back().velocities = StartVelocities::zero;
+        part.chains.back().bodies.carried = {};
+        cut(part.chains.back(), most_bodies);
+    }
+    return part;
+}
+
+/// Displacements of all groups along their coordinates, and what they do to accelerations.
+class Displacements {
+  public:
+    explicit Displacements(ChainSystem& system) : system_(system) {
+        for (JointDynamics* const group : system_.joint()) {
+            JointState at_rest = group->state();
+            for (Field<3>* const rates : {&at_rest.qd, &at_rest.base_velocity})
+                for (std::int64_t k = 0; k < rates->size(); ++k) rates->set(k, Vec3::zero());
+            start_.push_back(std::move(at_rest));
+        }
+        for (JointState const& s : start_) along_.push_back({s.qd, s.base_velocity});
+        unmoved_ = accelerations();
+        std::int64_t i = 0;
+        each([&](Vec3&, Vec3& along) {  // no mode is orthogonal to numbers without a pattern
+            for (int c = 0; c < 3; ++c) along[c] = std::sin(1.0 + 12.9898 * static_cast<double>(++i));
+        });
+    }
+    /// Replaces the displacement by what it does to the accelerations. Returns how much longer that is.
+    double iterate() {
+        scale(1 / length());
+        for (std::size_t g = 0; g < start_.size(); ++g) {
+            JointDynamics& group = *system_.joint()[g];
+            JointState s = start_[g];
+            s.qd = along_[g].qdd;
+            s.base_velocity = along_[g].base_acceleration;
+            group.set_state(s);
+            group.drift(small);
+            s = group.state();
+            s.qd = start_[g].qd;
+            s.base_velocity = start_[g].base_velocity;
+            group.set_state(s);
+        }
+        moved_ = accelerations();
+        each([&](Vec3& change, Vec3& along) { along = change; });
+        double const grown = length();
+        return grown;
+    }
+
+  private:
+    static constexpr double small = 1e-6;
+    std::vector<JointRates> accelerations() {
+        system_.solve_joint_groups();
+        std::vector<JointRates> all;
+        for (JointDynamics* const group : system_.joint()) {
+            group->set_rates();
+            all.push_back(group->rates());
+        }
+        return all;
+    }
+    /// action(change of the acceleration per displacement, displacement) of every coordinate's three numbers.
+    template <class Action>
+    void each(Action const& action) {
+        for (std::size_t g = 0; g < along_.size(); ++g)
+            for (Field<3> JointRates::* const part : {&JointRates::qdd, &JointRates::base_acceleration})
+                for (std::int64_t k = 0; k < (along_[g].*part).size(); ++k) {
+                    Vec3 change = moved_.empty() ? Vec3::zero() : (1 / small) * ((moved_[g].*part)[k] - (unmoved_[g].*part)[k]);
+                    Vec3 along = (along_[g].*part)[k];
+                    action(change, along);
+                    (along_[g].*part).set(k, along);
+                }
+    }
+    double length() {
+        double square = 0;
+        each([&](Vec3&, Vec3& along) { square += dot(along, along); });
+        return std::sqrt(square);
+    }
+    void scale(double factor) {
+        each([&](Vec3&, Vec3& along) { along = factor * along; });
+    }
+
+    ChainSystem& system_;
+    std::vector<JointState> start_;
+    std::vector<JointRates> along_, unmoved_, moved_;
+};
+
+double largest_frequency(Scene const& scene) {
+    auto const alone = serial_communicator();
+    ChainSystem system(scene, Axes::joint, *alone);
+    Displacements displacements(system);
+    double square = 0;
+    for (int i = 0; i < most_iterations; ++i) {
+        double const last = std::exchange(square, displacements.iterate());
+        if (!std::isfinite(square) || square == 0) return 0;
+        if (i >= least_iterations && std::abs(square - last) < settled * square) break;
+    }
+    return std::sqrt(square);
+}
+
+}  // namespace
+
+std::optional<StepLimit> estimate_step_limit(Scene const& scene) {
+    DynamicsSpec const& d = scene.dynamics;
+    if (!d.given || is_implicit(d.integrator) || d.tolerance > 0) return std::nullopt;
+    Scene const part = sprung_part(scene);
+    if (part.chains.empty()) return std::nullopt;
+    double const frequency = largest_frequency(part);
+    if (frequency == 0) return std::nullopt;
+    bool const whole = std::all_of(scene.chains.begin(), scene.chains.end(),
+                                   [](ChainSpec const& chain) { return !has_springs(chain) || chain.bodies.size() <= most_bodies; });
+    return StepLimit{frequency, reach_of(d.integrator) / frequency, whole};
+}
+
+std::string text_of(StepLimit const& limit, Scene const& scene) {
+    return fmt::format("{:.3g} {}, {:.3g} / the largest frequency of the joints' springs", limit.step, scene.si ? "s" : "ps",
+                       reach_of(scene.dynamics.integrator));
+}
+
+std::string note_of_step(Scene const& scene, std::optional<StepLimit> const& limit) {
+    double const step = scene.dynamics.step;
+    if (!limit || step <= near * limit->step) return "";
+    std::string const longest = "the longest stable one, " + text_of(*limit, scene);
+    if (step > limit->step && limit->whole)
+        throw InputError(fmt::format("a step of {:.4g} is longer than {}", step, longest), scene.file + ": dynamics.step",
+                         "choose a smaller one, or an implicit integrator");
+    return fmt::format("dynamics.step = {:.4g} is {} {}: half of that keeps energy better", step,
+                       step > limit->step ? "longer than" : "near", longest);
+}
+
+}  // namespace catena

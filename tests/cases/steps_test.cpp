@@ -1,0 +1,124 @@
+// Steps that once left joints open, grew energy or ran away, and what is said of them now.
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "tests/command/program.hpp"
+#include "tests/io/temporary_folder.hpp"
+
+namespace catena::test {
+namespace {
+
+std::string scene_of(std::string const& name) { return std::string(CATENA_SOURCE_DIR) + "/tests/data/cases/" + name + "/scene.yaml"; }
+
+/// `steps` of a scene with every one of them in its table; its summary.
+nlohmann::json run(TemporaryFolder const& folder, std::string const& scene, std::string const& steps, Words const& more = {}) {
+    Words words{"run", scene, "--output", "out", "--quiet", "--steps", steps, "--set", "output.every=1", "--json", "summary.json"};
+    words.insert(words.end(), more.begin(), more.end());
+    Ended const ended = catena(words, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.err << ended.out;
+    return nlohmann::json::parse(std::ifstream(folder / "summary.json"));
+}
+
+/// The numbers of a column of observables.csv.
+std::vector<double> column(TemporaryFolder const& folder, std::string const& name) {
+    std::ifstream stream(folder / "out/observables.csv");
+    std::vector<double> values;
+    std::ptrdiff_t at = -1;
+    for (std::string line; std::getline(stream, line);) {
+        std::istringstream cells(line);
+        std::string cell;
+        for (std::ptrdiff_t i = 0; std::getline(cells, cell, ','); ++i) {
+            if (at < 0 && cell.find(name) != std::string::npos) {
+                at = i;
+                break;
+            }
+            if (i == at) values.push_back(std::stod(cell));
+        }
+    }
+    return values;
+}
+
+void expect_closed(std::vector<double> const& errors, std::size_t steps) {
+    EXPECT_EQ(errors.size(), steps + 1);
+    for (double const error : errors) EXPECT_LE(error, 1e-10);
+}
+
+// 400 beads of 100 amu exactly on a line, thermal at 300 K, 10 fs. A Newton iteration with the matrix of each sweep closes all links to
+// rounding in three sweeps. No force acts, so that kinetic energy is a constant: its jump from 978 to 1300 kJ/mol is the step's length.
+TEST(Steps, AStraightThermalChainClosesInEveryStepAndItsJumpIsSaid) {
+    TemporaryFolder const folder;
+    nlohmann::json const summary = run(folder, scene_of("straight-thermal"), "20");
+    EXPECT_EQ(summary.at("valid"), true);
+    expect_closed(column(folder, "constraint_error"), 20);
+    EXPECT_NE(summary.at("notes").dump().find("jumped from 97"), std::string::npos) << summary.at("notes");
+    EXPECT_GE(summary.at("solver").at("steps_closed_further").at("steps"), 1);
+}
+
+// The steps between two frames close as well, and the states are those of a run that writes every frame.
+TEST(Steps, HowOftenFramesAreWrittenChangesNoBit) {
+    TemporaryFolder const often, seldom;
+    run(often, scene_of("straight-thermal"), "30");
+    run(seldom, scene_of("straight-thermal"), "30", {"--set", "output.every=30"});
+    EXPECT_EQ(column(often, "total_energy").back(), column(seldom, "total_energy").back());
+}
+TEST(Steps, RanksCloseJointsAlike) {
+    TemporaryFolder const folder;
+    Words const words{
+        "run",     scene_of("straight-thermal"), "--output", "out", "--quiet", "--steps", "20", "--set", "output.every=10", "--json",
+        "two.json"};
+    Ended const ended = catena_on(2, words, folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    TemporaryFolder const alone;
+    run(alone, scene_of("straight-thermal"), "20", {"--set", "output.every=10"});
+    EXPECT_EQ(column(folder, "total_energy"), column(alone, "total_energy"));
+}
+
+// 236 links from a coarse-grained protein in a straight start, 10 fs at 300 K.
+TEST(Steps, AStraightProteinClosesInEveryStep) {
+    TemporaryFolder const folder;
+    EXPECT_EQ(run(folder, scene_of("09-straight-start"), "20").at("valid"), true);
+    expect_closed(column(folder, "constraint_error"), 20);
+}
+
+// 200 rods whose stiffest mode allows 2 / omega = 0.435 ps. At 0.47 ps total energy, a constant of the motion, went from 1394 to 1929
+// kJ/mol in 3000 steps.
+TEST(Steps, AStepBeyondTheExplicitLimitIsRefused) {
+    TemporaryFolder const folder;
+    expect_refused(catena({"run", scene_of("energy-drift-valid"), "--output", "out"}, folder.path()), 2, "0.43");
+    expect_refused(catena({"check", scene_of("energy-drift-valid")}), 2, "dynamics.step");
+}
+TEST(Steps, CheckTellsTheLongestStableStep) {
+    Ended const ended = catena({"check", scene_of("energy-drift-valid"), "--set", "dynamics.step=0.1"});
+    expect_good(ended);
+    EXPECT_NE(ended.out.find("longest stable step"), std::string::npos) << ended.out;
+    auto const json = catena({"check", scene_of("energy-drift-valid"), "--set", "dynamics.step=0.1", "--json"}).out;
+    EXPECT_NE(json.find("longest_stable_step"), std::string::npos);
+}
+TEST(Steps, AStepNearTheExplicitLimitIsSaid) {
+    TemporaryFolder const folder;
+    Ended const ended =
+        catena({"run", scene_of("energy-drift-valid"), "--output", "out", "--quiet", "--set", "dynamics.step=0.4", "--steps", "20"},
+               folder.path());
+    EXPECT_NE(ended.err.find("near the longest stable one"), std::string::npos) << ended.err;
+}
+
+TEST(Steps, AnInvalidRunSaysWhichCheckAtWhichStepOnItsLastLine) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "hot.yaml") << "chains: [{name: c, velocities: thermal, generator: {freely_jointed: {beads: 20, length: 0.38, "
+                                          "mass: 100}}}]\n"
+                                          "forces: {gravity: [0, 0, -9.81e5]}\n"
+                                          "dynamics: {integrator: g-baoab, step: 1e-3, steps: 20, temperature: 300, friction: 1e-6}\n"
+                                          "output: {every: 1}\n";
+    Ended const ended = catena({"run", "hot.yaml", "--output", "out"}, folder.path());
+    EXPECT_EQ(ended.status, 1) << ended.out << ended.err;
+    std::string const last = ended.out.substr(ended.out.find("INVALID"));
+    EXPECT_NE(last.find("temperature at step 20"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.err.find("temperature at step 20"), std::string::npos) << ended.err;
+    auto const summary = nlohmann::json::parse(std::ifstream(folder / "out/summary.json"));
+    EXPECT_EQ(summary.at("verdict").at("valid"), false);
+    EXPECT_EQ(summary.at("verdict").at("checks").at(0).at("name"), "joints");
+}
+
+}  // namespace
+}  // namespace catena::test
