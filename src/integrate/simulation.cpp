@@ -316,8 +316,8 @@ class Run {
         c.scene_hash = scene_.hash;
         c.arrays[array_of_step] = {scene_.dynamics.step};
         if (time_origin_ != 0) c.arrays[array_of_origin] = {time_origin_};
-        c.integers[number_of_records] = folder_->records_before(n);
-        c.integers[whether_frame] = is_frame(n) ? 1 : 0;
+        c.integers[number_of_records] = folder_->records_before(n) - (is_kept(n) ? 1 : 0);
+        c.integers[whether_frame] = is_frame(n) || is_kept(n) ? 1 : 0;
         if (root_) c.notes.insert(values_of_scene_.begin(), values_of_scene_.end());
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
