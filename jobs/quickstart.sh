@@ -64,6 +64,6 @@ Done in $SECONDS s.
 
 Open the trajectory in MDAnalysis ($python):
   import MDAnalysis
-  u = MDAnalysis.Universe("$out/topology.pdb", "$out/trajectory.h5md")
+  u = MDAnalysis.Universe("$out/topology.psf", "$out/trajectory.h5md")  # the PDB has no masses
   for frame in u.trajectory: print(frame.time, u.atoms.radius_of_gyration())
 TEXT

@@ -59,6 +59,17 @@ Json handles_json(Scene const& scene) {
     return handles;
 }
 
+/// The reader's, what a run would write too seldom, and a step that is near its limit.
+std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> const& limit) {
+    std::vector<std::string> notes = scene.notes;
+    std::int64_t const every = scene.output.every, steps = scene.dynamics.steps;
+    if (scene.dynamics.given && steps > 0 && every > steps)
+        notes.push_back(
+            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and the last state alone", every, steps));
+    if (std::string const note = note_of_step(scene, limit); !note.empty()) notes.push_back(note);
+    return notes;
+}
+
 Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks, std::optional<StepLimit> const& limit) {
     std::vector<std::string> const& openmm = found.openmm;
     Directions const d = directions_of(scene);
@@ -87,8 +98,7 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
     text.entry(ranks == 1 ? "estimate" : "estimate, each rank",
                fmt::format("{}: scene {}, state {}, solver {}{}", bytes_text(memory.sum()), bytes_text(memory.scene),
                            bytes_text(memory.state), bytes_text(memory.solver), openmm.empty() ? "" : "; OpenMM not counted"));
-    for (std::string const& note : scene.notes) text.note(note);
-    if (std::string const note = note_of_step(scene, limit); !note.empty()) text.note(note);
+    for (std::string const& note : notes_on(scene, limit)) text.note(note);
     text.heading("The scene is valid.");
     return text;
 }
@@ -117,9 +127,8 @@ Outcome check_scene(Scene const& scene, Communicator const& communicator) {
                     {"memory_bytes_per_rank", {{"scene", memory.scene}, {"state", memory.state}, {"solver", memory.solver}}},
                     {"scene_hash", scene.hash},
                     {"ranks", communicator.size()},
-                    {"notes", scene.notes},
+                    {"notes", notes_on(scene, limit)},
                     {"valid", true}};
-    if (std::string const note = note_of_step(scene, limit); !note.empty()) outcome.json["notes"].push_back(note);
     return outcome;
 }
 

@@ -49,8 +49,8 @@ bool is_there(std::string const& folder) {
 
 }  // namespace
 
-RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options, std::int64_t first_step)
-    : scene_(scene), communicator_(communicator), first_step_(first_step), folder_(options.output) {
+RunFolder::RunFolder(Scene const& scene, Communicator const& communicator, RunOptions const& options)
+    : scene_(scene), communicator_(communicator), folder_(options.output) {
     file_wish_of_run(communicator);  // a wrong one is refused before anything is replaced
     on_first_rank(communicator, [&] {
         bool const exists = is_there(folder_);
@@ -86,8 +86,8 @@ std::string RunFolder::newest_checkpoint() const {
     return {};
 }
 
-void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns, std::int64_t records) {
-    std::optional<GoOn> const after = appends_ ? std::optional(GoOn(first_step_ - 1, records)) : std::nullopt;
+void RunFolder::open(Topology const& topology, std::vector<std::string> const& columns, GoOn const& go_on) {
+    std::optional<GoOn> const after = appends_ ? std::optional(go_on) : std::nullopt;
     on_first_rank(communicator_, [&] {
         if (wants_topology()) topology_ = std::make_unique<TopologyWriter>(folder_, topology);
     });
@@ -202,6 +202,9 @@ void RunFolder::finish(std::string const& summary, std::string const& timeline) 
         replace_text_file(path("summary.json"), summary);
         replace_text_file(path("timeline.json"), timeline);
         write_run_report(folder_);
+        for (char const* const name : {"trajectory.h5md", "observables.csv"})
+            if (std::error_code ignored; !fs::exists(path(name), ignored))
+                throw ComputationError("a file of the run was deleted while it ran (" + path(name) + "): run it again from the start");
     });
 }
 

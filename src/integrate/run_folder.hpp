@@ -20,12 +20,11 @@ bool holds_run(std::string const& folder);
 
 class RunFolder {
   public:
-    /// Makes or opens the folder. `first_step`: the checkpoint's when restarting. Throws InputError on every rank.
-    RunFolder(Scene const&, Communicator const&, RunOptions const&, std::int64_t first_step);
+    /// Makes or opens the folder. Throws InputError on every rank.
+    RunFolder(Scene const&, Communicator const&, RunOptions const&);
 
-    /// `records`: that an earlier run left there before the first step, at least. Where it goes on there, what lies at that step or beyond
-    /// is cut: an earlier run may have ended there, with a frame that is none of the undisturbed run's.
-    void open(Topology const&, std::vector<std::string> const& columns, std::int64_t records);
+    /// `go_on`: in the files of the checkpoint's run, where the folder is that run's.
+    void open(Topology const&, std::vector<std::string> const& columns, GoOn const& go_on);
     /// Whether the topology's files are wanted: the first state's parts, and the end of it. What fails there is kept for check().
     bool wants_topology() const { return !appends_; }
     void put_topology(Frame const& part, Executor const&);
@@ -73,7 +72,6 @@ class RunFolder {
     Scene const& scene_;
     Communicator const& communicator_;
     bool appends_ = false;
-    std::int64_t first_step_;
     std::string folder_;
     std::unique_ptr<RunLock> lock_;  // on rank 0
     std::unique_ptr<TopologyWriter> topology_;

@@ -107,7 +107,8 @@ class Run {
             if (!ends) at_start_.reset();
             if (saves || saves_by_time || ends) checkpoint(n);
             if (ends) {
-                if (!writes) output(n, error);  // after the checkpoint: a restart from there is the undisturbed run, without this frame
+                if (!writes && !is_kept(n))
+                    output(n, error);  // after the checkpoint: a restart from there is the undisturbed run, without this frame
                 end_frame();
                 reached_ = n;
                 error_at_end_ = error;
@@ -140,9 +141,10 @@ class Run {
                              " ranks share a GPU, where each waits for the others: start one rank a GPU");
     }
     void note_outputs(std::int64_t first) {
-        if (std::int64_t const every = scene_.output.every; every > last_ - first && last_ > first)
+        std::int64_t const every = scene_.output.every;
+        if (last_ > first && every > last_ - first && (last_ - 1) / every == first / every)
             notes_.push_back("output.every = " + std::to_string(every) + " exceeds the " + std::to_string(last_ - first) +
-                             " steps of this run: its frames are the first state at most and the last one");
+                             " steps of this run: no frame lies between its first and last states");
         if (scene_.output.coordinates && root_ && sites_.topology().bodies.empty())
             notes_.push_back("output.coordinates: no chain has bodies that turn, so that there are none to write");
     }
@@ -168,9 +170,9 @@ class Run {
     void open(std::int64_t n) {
         at_start_ = observed(true);
         if (system_.openmm() && options_.restart.empty()) start_.forces = look_at_start(system_);
-        folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_, n);
+        folder_ = std::make_unique<RunFolder>(scene_, communicator_, options_);
         observables_ = std::make_unique<Observables>(scene_, sites_.topology(), at_start_->terms);
-        folder_->open(sites_.topology(), observables_->columns(), records_before_);
+        folder_->open(sites_.topology(), observables_->columns(), go_on());
         if (folder_->frames_way().collective && !root_) sites_ = Sites(scene_, system_.own_runs());
         if (!folder_->wants_topology()) return;
         topology_is_due_ = is_frame(n) && may_write_beside() && options_.topology_beside.value_or(uses_gpu(system_.backend()));
@@ -179,6 +181,10 @@ class Run {
         write_topology(*at_start_->bodies);
         folder_->check();
     }
+    /// The frame of the checkpoint's step is written anew, or it stays as that run's, or it goes: a run that ended there wrote it, which
+    /// the undisturbed one would not have done.
+    GoOn go_on() const { return {is_frame(first_) || !was_frame_ ? first_ - 1 : first_, records_before_}; }
+    bool is_kept(std::int64_t n) const { return n == first_ && !folder_->wants_topology() && go_on().after_step == n; }
     void write_topology(ChainSystem::OwnBodies const& at_start) {
         system_.pass_bodies(at_start, [&](ChainSystem::Bodies const& bodies) {
             folder_->put_topology(sites_.part(bodies, false, system_.executor()), system_.executor());
@@ -338,7 +344,8 @@ class Run {
         c.scene_hash = scene_.hash;
         c.arrays[array_of_step] = {scene_.dynamics.step};
         if (time_origin_ != 0) c.arrays[array_of_origin] = {time_origin_};
-        c.integers[number_of_records] = folder_->records_before(n);
+        c.integers[number_of_records] = folder_->records_before(n) - (is_kept(n) ? 1 : 0);
+        c.integers[whether_frame] = is_frame(n) || is_kept(n) ? 1 : 0;
         if (root_) c.notes.insert(values_of_scene_.begin(), values_of_scene_.end());
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
@@ -353,8 +360,8 @@ class Run {
         saved_at_ = seconds_now();
     }
 
-    static constexpr char const *number_of_records = "records_before", *note_of_platform = "openmm_platform",
-                                *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
+    static constexpr char const *number_of_records = "records_before", *whether_frame = "frame_at_step",
+                                *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
         return system_.openmm()->platform() + (precision.empty() ? "" : ", " + precision);
@@ -399,6 +406,7 @@ class Run {
         if (options_.branch) return branch(c);
         time_origin_ = number_in(c, array_of_origin, 0);
         if (auto const found = c.integers.find(number_of_records); found != c.integers.end()) records_before_ = found->second;
+        if (auto const found = c.integers.find(whether_frame); found != c.integers.end()) was_frame_ = found->second != 0;
         stepper_->restore(c);
         for (double const error : few_numbers_of(c, "largest_constraint_error", 1)) worst_error_ = error;
         if (std::vector<double> const watch = few_numbers_of(c, array_of_watch, 2); !watch.empty()) watch_.set_state(watch);
@@ -546,7 +554,8 @@ class Run {
     int stopped_by_ = 0;
     std::map<std::string, std::string> values_of_scene_;  // for checkpoints, on rank 0
     double time_origin_ = 0, saved_at_ = 0;               // of time: at step 0; when the last checkpoint was written
-    std::int64_t records_before_ = 0;                     // frames that the run before left, at least
+    std::int64_t records_before_ = 0;                     // frames that the run before left before the checkpoint's step, at least
+    bool was_frame_ = true;                               // that step was one of its frames, not only its last state
     std::optional<PendingFrame> pending_;
     std::future<void> frame_;  // last: it ends before what it uses
 };

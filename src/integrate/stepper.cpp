@@ -214,7 +214,7 @@ class ConstrainedStepper final : public Stepper {
 
 double number_in(Checkpoint const& c, char const* array, double otherwise) {
     auto const found = c.arrays.find(array);
-    return found == c.arrays.end() ? otherwise : found->second.at(0);
+    return found == c.arrays.end() || found->second.empty() ? otherwise : found->second.front();
 }
 
 bool Stepper::adapt(SweepWatch& watch, double error, double tolerance) {

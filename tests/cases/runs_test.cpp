@@ -91,6 +91,12 @@ TEST_F(Runs, TheLastStateIsAFrameWhereTheRunIsShorterThanOutputEvery) {
     EXPECT_NE(summary_of(at("o")).at("notes").dump().find("output.every = 5000 exceeds the 100 steps"), std::string::npos);
 }
 
+TEST_F(Runs, CheckSaysThatFramesAreFewerThanTheStepsAskFor) {
+    Ended const checked = catena({"check", scene_of("23-frames"), "--json", "-"});
+    expect_good(checked);
+    EXPECT_NE(checked.json().at("notes").dump().find("output.every = 5000 exceeds dynamics.steps = 100"), std::string::npos);
+}
+
 TEST_F(Runs, NoStepsAreOneFrameWithEnergies) {
     for (Words const& none : {Words{"--steps", "0"}, Words{"--set", "dynamics.steps=0"}}) {
         Words words = none;
@@ -113,6 +119,19 @@ TEST_F(Runs, ARestartTakesAwayTheFrameWhereTheRunBeforeEnded) {
     EXPECT_EQ(text_of(at("parts/observables.csv")), text_of(at("whole/observables.csv")));
     EXPECT_EQ(numbers_of(at("parts/trajectory.h5md"), "particles/trajectory/position/value").values,
               numbers_of(at("whole/trajectory.h5md"), "particles/trajectory/position/value").values);
+}
+
+/// Of the run before, which wrote more often.
+TEST_F(Runs, ARestartThatWritesLessOftenKeepsTheFrameOfTheCheckpoint) {
+    expect_good(run("restart-branch", {"--set", "output.every=10", "--steps", "40", "--output", "o"}));
+    Words const less{"--set", "output.every=30", "--restart", "o/checkpoint.h5", "--steps"};
+    for (auto const& [steps, frames] : {std::pair{"40", std::vector<double>{0, 10, 20, 30, 40}}, {"70", {0, 10, 20, 30, 40, 60, 70}}}) {
+        Words words = less;
+        words.emplace_back(steps);
+        expect_good(run("restart-branch", words));
+        EXPECT_EQ(steps_of(at("o")), frames);
+        EXPECT_EQ(table_of(at("o")).at("step"), frames);
+    }
 }
 
 TEST_F(Runs, TheFirstFrameOutlivesAKill) {
@@ -306,6 +325,15 @@ TEST_F(Runs, LostFramesAndLinesAreSaidAtARestart) {
     fs::copy(at("early/trajectory.h5md"), at("short-trajectory/trajectory.h5md"), fs::copy_options::overwrite_existing);
     expect_refused(restart("short-trajectory"), 2, "has lost frames: 9 of the 20 before the checkpoint are there");
     expect_good(restart("short-table", {"--output", "beside"}));
+}
+
+TEST_F(Runs, ATrajectoryThatIsDeletedDuringTheRunIsMissed) {
+    std::string const run = program() + " run " + scene_of("restart-branch") + " --quiet --set output.every=1 --steps 1000 --output out";
+    Ended const ended =
+        run_program({"sh", "-c", run + " & p=$!; while [ ! -e out/checkpoint.h5 ]; do sleep 0.01; done; rm out/trajectory.h5md; wait $p"},
+                    folder_.path());
+    expect_refused(ended, 1, "deleted while it ran (out/trajectory.h5md)");
+    EXPECT_TRUE(fs::exists(at("out/summary.json")));
 }
 
 /// Three beads of 1, 1 and 98 amu at x = 0, 1, 2: about their middle sqrt((1 + 0 + 1) / 3), about their centre of mass at 1.97
