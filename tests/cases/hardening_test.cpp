@@ -111,8 +111,9 @@ TEST(Positions, BeyondWhatTheyHoldAreRefused) {
     EXPECT_EQ(far.status, 2) << far.out;
     EXPECT_EQ(count(far.err, "\n"), 1U) << far.err;
     TemporaryFolder const folder;
-    for (char const* const one : {"[2e9, 0, 0]", "[0, -1e300, 0]", "[1e22, 1e22, 1e22]"}) {
-        write(folder / "s.yaml", std::string("chains: [{bodies: [{mass: 1, position: ") + one + "}]}]\n");
+    for (char const* const one : {"[2e9, 0, 0]", "[0, -1e30, 0]", "[1e22, 1e22, 1e22]"}) {
+        write(folder / "s.yaml",
+              std::string("chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, {mass: 1, position: ") + one + ", joint: {type: link}}]}]\n");
         expect_refused(catena({"check", "s.yaml"}, folder.path()), 2, "from the origin, beyond what positions hold");
     }
 }
