@@ -95,6 +95,8 @@ class ChainReader {
         refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
         bool const free_to_move = movable(first);
         Regrown const shape = regrown(first);
+        std::size_t const wanted = drafts.size() + static_cast<std::size_t>(count_);
+        if (wanted > drafts.capacity()) drafts.reserve(std::max(wanted, 2 * drafts.capacity()));
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             drafts.push_back({is_random() ? make(copy) : first, &request_.node, free_to_move, shape});
             drafts.back().chain.name = fmt::format("{}-{}", name, copy + 1);
