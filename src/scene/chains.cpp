@@ -107,6 +107,8 @@ class ChainReader {
         refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
         bool const free_to_move = movable(first);
         Regrown const shape = regrown(first);
+        std::size_t const wanted = drafts.size() + static_cast<std::size_t>(count_);
+        if (wanted > drafts.capacity()) drafts.reserve(std::max(wanted, 2 * drafts.capacity()));
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 
@@ -20,8 +21,26 @@ namespace {
 
 double constexpr best_compression = 1100;  // deflate makes 1032 bytes of one
 double constexpr bytes_a_body = 256;
-hsize_t constexpr largest_chunk = hsize_t{1} << 30, widest_number = 16;  // bytes
+hsize_t constexpr largest_chunk = hsize_t{1} << 30;  // bytes
 std::size_t constexpr rows_a_block = 1 << 16, longest_text = 1024;
+
+/// Half precision as h5py writes it; HDF5 1.10 has no name for it.
+hdf5::Type half() {
+    hdf5::Type type(H5Tcopy(H5T_IEEE_F32LE));
+    H5Tset_fields(type.get(), 15, 10, 5, 0, 10);
+    H5Tset_size(type.get(), 2);
+    H5Tset_ebias(type.get(), 15);
+    return type;
+}
+
+/// Whether it is one of those that machines have. HDF5 runs over its buffers converting others, such as integers of no bits.
+bool is_number(hdf5::Type const& type) {
+    hid_t const known[] = {H5T_IEEE_F64LE, H5T_IEEE_F64BE, H5T_IEEE_F32LE, H5T_IEEE_F32BE, H5T_NATIVE_LDOUBLE, H5T_STD_I64LE, H5T_STD_I64BE,
+                           H5T_STD_U64LE,  H5T_STD_U64BE,  H5T_STD_I32LE,  H5T_STD_I32BE,  H5T_STD_U32LE,      H5T_STD_U32BE, H5T_STD_I16LE,
+                           H5T_STD_I16BE,  H5T_STD_U16LE,  H5T_STD_U16BE,  H5T_STD_I8LE,   H5T_STD_I8BE,       H5T_STD_U8LE,  H5T_STD_U8BE};
+    auto const is = [&](hid_t other) { return H5Tequal(type.get(), other) > 0; };
+    return std::any_of(std::begin(known), std::end(known), is) || is(half().get());
+}
 
 std::string shape_text(std::vector<hsize_t> const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
 
@@ -173,10 +192,8 @@ std::vector<hsize_t> Hdf5Table::shape_of(hdf5::Dataset const& data, std::string 
 
 void Hdf5Table::refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
-    H5T_class_t const kind = H5Tget_class(type.get());
+    if (!is_number(type)) refuse(name, whole, "the dataset holds no numbers", "store it as float64");
     std::size_t const width = H5Tget_size(type.get());
-    if ((kind != H5T_FLOAT && kind != H5T_INTEGER) || width > widest_number)
-        refuse(name, whole, "the dataset holds no numbers", "store it as float64");
     hsize_t extent[H5S_MAX_RANK], chunk = width;
     hdf5::Properties const how(sound(H5Dget_create_plist(data.get()), name));
     if (H5Pget_layout(how.get()) != H5D_CHUNKED) return;

@@ -46,8 +46,8 @@ bool is_regrown(Draft const* draft) { return draft->regrown == Regrown::yes; }
 
 void refuse_far(Draft const& draft, Sphere const& sphere) {
     double reach = 0;
-    for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius + sphere.gap);
-    if (reach <= farthest) return;
+    for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius);
+    if (reach <= farthest && sphere.gap <= 4 * farthest) return;
     fail(*draft.node, fmt::format("chain `{}` reaches {:.3g} from the origin, beyond what positions hold", shown(draft.chain.name), reach),
          fmt::format("correct its coordinates: {:g} is the most", farthest));
 }

@@ -102,6 +102,7 @@ Scene parse_scene(std::string const& text, std::string const& name, std::vector<
     std::vector<scene::Draft> drafts = read_chains(fields, made);
     scene::check_together(*root, made, drafts);
     give_places(fields, drafts, made);
+    made.chains.reserve(drafts.size());
     for (scene::Draft& draft : drafts) made.chains.push_back(std::move(draft.chain));
     made.hash = scene::fingerprint(made);
     return made;

@@ -111,8 +111,9 @@ TEST(Positions, BeyondWhatTheyHoldAreRefused) {
     EXPECT_EQ(far.status, 2) << far.out;
     EXPECT_EQ(count(far.err, "\n"), 1U) << far.err;
     TemporaryFolder const folder;
-    for (char const* const one : {"[2e9, 0, 0]", "[0, -1e300, 0]", "[1e22, 1e22, 1e22]"}) {
-        write(folder / "s.yaml", std::string("chains: [{bodies: [{mass: 1, position: ") + one + "}]}]\n");
+    for (char const* const one : {"[2e9, 0, 0]", "[0, -1e30, 0]", "[1e22, 1e22, 1e22]"}) {
+        write(folder / "s.yaml",
+              std::string("chains: [{bodies: [{mass: 1, position: [0, 0, 0]}, {mass: 1, position: ") + one + ", joint: {type: link}}]}]\n");
         expect_refused(catena({"check", "s.yaml"}, folder.path()), 2, "from the origin, beyond what positions hold");
     }
 }
@@ -133,6 +134,20 @@ TEST(Chains, AreCheckedInTimeLinearInTheirNumber) {
         EXPECT_EQ(e.json().at("bodies"), 300'000);
     });
     EXPECT_LT(seconds, 40);
+}
+
+TEST(Chains, BeyondTwentyRowsOfTheTableAreCounted) {
+    TemporaryFolder const folder;
+    std::string text = "chains:\n";
+    for (int i = 0; i < 30; ++i)  // neighbours differ in size: no two share a row
+        text +=
+            "  - {name: c" + std::to_string(i) + ", generator: {freely_jointed: {beads: " + std::to_string(3 + i % 2) + ", length: 1}}}\n";
+    write(folder / "s.yaml", text);
+    Ended const e = catena({"check", "s.yaml"}, folder.path());
+    expect_good(e);
+    EXPECT_NE(e.out.find("c19"), std::string::npos) << e.out;
+    EXPECT_EQ(e.out.find("c20"), std::string::npos) << e.out;
+    EXPECT_NE(e.out.find("others"), std::string::npos) << e.out;
 }
 
 // ---- HDF5
@@ -184,6 +199,29 @@ TEST(VariableTexts, ThatAreDamagedAreRefused) {
         Ended const e = catena({"check", "s.yaml"}, folder.path());
         EXPECT_TRUE(e.status == 0 || e.status == 2) << i << ": " << e.status << e.err;
     }
+}
+
+TEST(Datasets, OfIntegersWithoutBitsAreRefused) {
+    TemporaryFolder const folder;
+    write_bodies(folder / "x.h5");
+    hid_t const file = H5Fopen((folder / "x.h5").c_str(), H5F_ACC_RDWR, H5P_DEFAULT), odd = H5Tcopy(H5T_STD_I64LE);
+    H5Tset_precision(odd, 21);
+    hsize_t const rows = 2;
+    hid_t const space = H5Screate_simple(1, &rows, nullptr);
+    H5Ldelete(file, "joint_type", H5P_DEFAULT);
+    std::int64_t const types[2] = {3, 2};
+    hid_t const data = H5Dcreate2(file, "joint_type", odd, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    H5Dwrite(data, H5T_NATIVE_INT64, H5S_ALL, H5S_ALL, H5P_DEFAULT, types);
+    H5Dclose(data);
+    H5Fclose(file);
+    // In the file the precision follows its offset, both of two bytes: HDF5 1.10 ends in SIGBUS where it is 0.
+    std::string bytes = bytes_of(folder / "x.h5");
+    std::size_t const at = bytes.find(std::string("\0\0\x15\0", 4));
+    ASSERT_NE(at, std::string::npos);
+    bytes[at + 2] = 0;
+    write(folder / "x.h5", bytes);
+    write(folder / "s.yaml", "units: si\nchains: [{base: fixed, bodies: {hdf5: x.h5}}]\n");
+    expect_refused(catena({"check", "s.yaml"}, folder.path()), 2, "dataset `joint_type`");
 }
 
 TEST(Datasets, ThatClaimMoreThanTheFileHoldsAreRefused) {
