@@ -225,6 +225,7 @@ class Selection {
     void take_site(Residue const& residue) {
         std::vector<PdbAtom const*> const all = candidates(residue);
         PdbAtom const& atom = **std::max_element(all.begin(), all.end(), [](auto* a, auto* b) { return a->occupancy < b->occupancy; });
+        refuse_lost_alternate(residue, all, atom);
         if (all.size() > 1) {
             ++alternates_;
             for (PdbAtom const* const other : all)
@@ -234,6 +235,18 @@ class Selection {
         made.sites.push_back({in_nm(atom.position), shown(atom.residue), label_of(atom), residue_number(atom.number),
                               beside(residue, atom, "C"), beside(residue, atom, "N")});
         from_.push_back(&atom);
+    }
+    /// An alternate location that would be taken, were its site in the file.
+    void refuse_lost_alternate(Residue const& residue, std::vector<PdbAtom const*> const& all, PdbAtom const& taken) const {
+        for (PdbAtom const& atom : residue.atoms) {
+            bool const has_site = std::any_of(all.begin(), all.end(), [&](auto* site) { return site->alternate == atom.alternate; });
+            bool const preferred = atom.occupancy > taken.occupancy || (atom.occupancy == taken.occupancy && atom.line < taken.line);
+            if (taken.alternate == ' ' || atom.alternate == ' ' || has_site || !preferred) continue;
+            fail(at_,
+                 fmt::format("residue {} of `{}` has no {} atom in alternate location {} (line {})", name_of(residue), made.file,
+                             shown(taken.name), shown(std::string_view(&atom.alternate, 1)), atom.line),
+                 "add it, or take the location out of the file");
+        }
     }
     static Residue residue_of(PdbAtom const& atom) { return {{atom}, {}}; }
 

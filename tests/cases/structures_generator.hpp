@@ -273,7 +273,10 @@ inline bool is_wrapped(Structure const& s) {
     return false;
 }
 
-inline void lose_alpha_carbon(Structure& s, Generator& g) { alpha(s.residues[g.index(0, s.residues.size())]).name = "CX"; }
+inline void lose_alpha_carbon(Structure& s, Generator& g) {
+    for (Atom& atom : s.residues[g.index(0, s.residues.size())].atoms)
+        if (atom.name == "CA") atom.name = "CX";
+}
 
 inline void reverse(Structure& s, Generator&) { std::reverse(s.residues.begin(), s.residues.end()); }
 

@@ -175,6 +175,19 @@ TEST_F(SceneFiles, alternate_locations_in_blocks_and_of_two_residues) {
                                        "of chain A is taken, not SER"});
 }
 
+TEST_F(SceneFiles, an_alternate_location_without_its_alpha_carbon) {
+    auto const file = [&](char const* first, char const* second) {
+        write("a.pdb", atom(1, "CB", "GLY", 'A', 1, 0, 'A').replace(56, 4, first) +
+                           atom(2, "CA", "GLY", 'A', 1, 0, 'B').replace(56, 4, second) + atom(3, "CA", "ALA", 'A', 2, 3.8));
+    };
+    file("0.60", "0.40");
+    EXPECT_EQ(refusal(with_pdb_),
+              "residue GLY 1 of chain A of `a.pdb` has no CA atom in alternate location A (line 1) (s.yaml: chains[0].pdb, "
+              "line 1): add it, or take the location out of the file");
+    file("0.40", "0.60");
+    EXPECT_EQ(refusal(with_pdb_), "accepted");
+}
+
 TEST_F(SceneFiles, residues_that_seqres_lists_and_the_file_lacks) {
     write("a.pdb", "SEQRES   1 A    4  GLY ALA SER GLY\n" + atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "ALA", 'A', 2, 3.8));
     EXPECT_EQ(notes_of(read(with_pdb_)),
