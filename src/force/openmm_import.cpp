@@ -65,7 +65,7 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     auto const system = read_openmm_system(spec.system, where);
     ImportedSystem imported;
     imported.notes = leave_movers_out(*system, spec.force_groups, where);
-    auto const chains = read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"));
+    auto const chains = read_pdb_topology(spec.topology, openmm_key(scene_file, "topology"), &imported.notes);
     std::size_t atoms = 0;
     for (auto const& chain : chains) atoms += chain.size();
     if (static_cast<int>(atoms) != system->getNumParticles())

@@ -103,6 +103,39 @@ BeadArrays at_start(ChainRequest const& request, std::int64_t beads, std::int64_
     return made;
 }
 
+Residues residues_of_pdb(ChainRequest& request, Node const& file, PdbSites& from) {
+    from = read_pdb(resolved(text(file), request.scene.file), file, true);
+    for (std::string const& note : from.notes) request.scene.note(note);
+    Residues residues = residues_named(from, file, request.scene);
+    refuse_gaps(from, request, file);
+    return residues;
+}
+
+/// `from` takes the sites of a PDB file.
+Residues read_residues(ChainRequest& request, PdbSites& from) {
+    Fields const& fields = request.fields;
+    Node const* const fasta = fields.find("fasta");
+    Node const* const record = fields.find("record");
+    if (record && !fasta) fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
+    if (Node const* const file = fields.find("pdb")) return residues_of_pdb(request, *file, from);
+    if (fasta) {
+        std::string const path = resolved(text(*fasta), request.scene.file);
+        return residues_of(one_letter_codes(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta, request.scene));
+    }
+    Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
+    return residues_of(one_letter_codes(text(sequence), sequence, request.scene));
+}
+
+void read_rigid(ChainRequest& request, std::size_t residues, PdbSites const& from) {
+    Fields const& fields = request.fields;
+    Node const* const rigid = fields.find("rigid");
+    if (!rigid) return;
+    Node const* const conformation = fields.find("conformation");
+    if (!fields.find("pdb") && !fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
+        fail(*rigid, "rigid domains in a chain without positions", "give `pdb` or `positions`: they say what shape the domains have");
+    set_rigid(request, *rigid, residues, from);
+}
+
 }  // namespace
 
 BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
@@ -113,28 +146,9 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
                       : Names{"model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"});
     if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
-    Residues residues;
     PdbSites from;
-    Node const* const record = fields.find("record");
-    if (Node const* const file = fields.find("pdb")) {
-        from = read_pdb(resolved(text(*file), request.scene.file), *file, true);
-        for (std::string const& note : from.notes) request.scene.note(note);
-        residues = residues_named(from, *file, request.scene);
-        refuse_gaps(from, request, *file);
-    } else if (Node const* const fasta = fields.find("fasta")) {
-        std::string const path = resolved(text(*fasta), request.scene.file);
-        residues = residues_of(one_letter_codes(read_fasta(path, *fasta, {record, fields.find("name")}), *fasta, request.scene));
-    } else {
-        Node const& sequence = fields.need("sequence", "sequence: MDVFMKGLSK");
-        residues = residues_of(one_letter_codes(text(sequence), sequence, request.scene));
-    }
-    if (record && !fields.find("fasta")) fail(*record, "key `record` chooses among the sequences of a `fasta` file", "leave it out");
-    if (Node const* const rigid = fields.find("rigid")) {
-        Node const* const conformation = fields.find("conformation");
-        if (!pdb && !fields.find("positions") && !(conformation && conformation->kind == Node::Kind::map))
-            fail(*rigid, "rigid domains in a chain without positions", "give `pdb` or `positions`: they say what shape the domains have");
-        set_rigid(request, *rigid, residues.size(), from);
-    }
+    Residues const residues = read_residues(request, from);
+    read_rigid(request, residues.size(), from);
     request.residues.clear();
     for (Calvados2Residue const* const residue : residues) request.residues.push_back(residue->name);
     BeadArrays beads = at_start(request, static_cast<std::int64_t>(residues.size()), copy);

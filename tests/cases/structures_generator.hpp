@@ -125,7 +125,8 @@ inline Atom& alpha(Residue& residue) {
     return residue.atoms.front();
 }
 
-enum class Must { open, open_with_note, be_refused };
+/// open: without a note. open_somehow: with notes or without.
+enum class Must { open, open_with_note, open_somehow, be_refused };
 
 struct Damage {
     char const* name;
@@ -193,9 +194,9 @@ inline void duplicate(Structure& s, Generator& g) {
     s.residues.insert(g.coin() ? s.residues.begin() + k : s.residues.end(), copy);
 }
 
-inline void add_noise(Structure& s, Generator& g) {
+inline void add_noise(Structure& s, Generator& g, double deviation = 0.004) {
     for (std::size_t k = 0; k < s.residues.size(); ++k) {
-        Vec3 const by{{g.normal(0.004), g.normal(0.004), g.normal(0.004)}};
+        Vec3 const by{{g.normal(deviation), g.normal(deviation), g.normal(deviation)}};
         shift(s.residues[k], by);
         s.positions[k] = s.positions[k] + by;
     }
@@ -288,7 +289,7 @@ inline std::vector<Damage> const damages = {
     {"skipped numbers", Must::open_with_note, skip_numbers},
     {"insertion codes", Must::open, insert_codes},
     {"alternates", Must::open_with_note, alternate},
-    {"noise", Must::open, add_noise},
+    {"noise", Must::open_somehow, [](Structure& s, Generator& g) { add_noise(s, g); }},
     {"other names", Must::open_with_note, rename},
     {"solvent", Must::open_with_note, add_solvent},
     {"models", Must::open_with_note, add_models},
