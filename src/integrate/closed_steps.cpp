@@ -4,9 +4,16 @@
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
+#include "integrate/stays_open.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
+namespace {
+
+/// Where sweeps alone do not close a step's joints its drifts are taken in up to so many times as many parts, each with its own matrices.
+constexpr int most_times = 64;
+
+}  // namespace
 
 void ClosedSteps::note(std::int64_t n) {
     if (uses_gpu(system_.backend())) return;
@@ -55,9 +62,19 @@ void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {
     ConstrainedIntegrator::Kept const before = integrator_.keep();
     integrator_.step(n);
     if (error() <= tolerance_) return;
-    integrator_.put_back(before);
-    prepare();
-    most_sweeps_ = std::max(most_sweeps_, integrator_.sweeps() + integrator_.step_closing(n));
+    int const parts = integrator_.parts();
+    for (int times = 1;; times *= 2) {
+        integrator_.put_back(before);
+        prepare();
+        integrator_.set_parts(parts * times);
+        try {
+            most_sweeps_ = std::max(most_sweeps_, integrator_.sweeps() + integrator_.step_closing(n));
+            break;
+        } catch (StaysOpen const&) {
+            if (times == most_times) throw;
+        }
+    }
+    integrator_.set_parts(parts);
     if (steps_++ == 0) first_ = n;
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <sstream>
 
-#include "error.hpp"
+#include "integrate/stays_open.hpp"
 
 namespace catena {
 namespace {
@@ -16,7 +16,7 @@ constexpr double largest_rounding = 1e-7;
     std::ostringstream line;
     line << "the joints do not close to dynamics.constraint_tolerance = " << tolerance << " within " << sweeps << " sweeps (error " << error
          << "): the step is too long for how fast bodies move here: choose a smaller dynamics.step, or look at the start and the forces";
-    throw ComputationError(line.str());
+    throw StaysOpen(line.str());
 }
 
 }  // namespace
