@@ -6,6 +6,7 @@ source "${CATENA_ROOT:-$PWD}/jobs/common.sh"
 cd "${SLURM_SUBMIT_DIR:-$root}" || exit
 catena=${CATENA_PROGRAM:-$root/build/release/catena}
 [ -x "$catena" ] || fail "no such program ($catena): build it (jobs/quickstart.sh), or name it by CATENA_PROGRAM"
+export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-0}  # a job's cores are its own: a rank that waits may keep its core
 mpi_environment
 threads=${SLURM_CPUS_PER_TASK:-1}
 # Each rank has the cores that the job asked for; the words of mpirun about a rank that ended are wanted here.

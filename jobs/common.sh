@@ -106,5 +106,7 @@ mpi_environment() {
     export OMPI_MCA_btl_vader_single_copy_mechanism=none   # containers forbid it, with a banner a rank
     export OMPI_MCA_oob_tcp_keepalive_time=5 OMPI_MCA_oob_tcp_keepalive_intvl=2 OMPI_MCA_oob_tcp_keepalive_probes=3
     export OMPI_MCA_odls_base_sigkill_timeout=3            # seconds between SIGTERM and SIGKILL: a last checkpoint fits in
+    # Ranks that wait give their core to others: with more ranks than free cores a step else lasts as long as the system lets one of them wait.
+    export OMPI_MCA_mpi_yield_when_idle=${OMPI_MCA_mpi_yield_when_idle:-1}
     mpirun=(mpirun --bind-to none --oversubscribe -q)
 }

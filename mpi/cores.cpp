@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "error.hpp"
 #include "mpi/communicator.hpp"
+#include "mpi/thread_limit.hpp"
 
 namespace catena {
 
@@ -19,6 +21,14 @@ int cores_of_rank(Communicator const& communicator) {
     CoreSet const bound = cores_bound_to();
     int const cores = bound.known ? CPU_COUNT(&bound.cores) : static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN));
     return std::max(1, cores / communicator.ranks_on_cores());
+}
+
+void require_possible_threads(int threads, std::string const& where) {
+    constexpr long always = 64, a_processor = 16;
+    long const processors = std::max(1L, sysconf(_SC_NPROCESSORS_ONLN)), most = std::max(always, a_processor * processors);
+    if (threads <= most) return;
+    throw InputError(std::to_string(threads) + " threads on " + std::to_string(processors) + " processors", where,
+                     "take as many as there are processors, or 0");
 }
 
 }  // namespace catena

@@ -1,5 +1,6 @@
 // The command line: catena check | plan | solve | run | report | bench. What each does is in command/.
 #include "command/commands.hpp"
+#include "command/plan_network.hpp"
 #include "command/report_scenes.hpp"
 #include "command/session.hpp"
 
@@ -17,6 +18,7 @@ int execute(Session const& session, CheckRequest const& request) {
 int execute(Session const& session, PlanRequest const& request) {
     Communicator const& ranks = session.communicator();
     if (request.scene.empty()) return session.conclude(calibrate(ranks, request));
+    if (request.ranks > 0) network_of(request);  // said before bodies are made
     Scene const scene = session.load(request.scene);
     if (request.calibrate) calibrate(ranks, request);
     return session.conclude(plan_scene(scene, ranks, request));

@@ -10,6 +10,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
+  fuzz        damaged files for the readers of scenes, tables, PDB and FASTA, 5 seconds each (libFuzzer, where clang has it)
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests but for some that are slow under them (1, 2 ranks)
   no-mpi      build without MPI, the tests but long ones of mathematics that is the same there
   minimal     build without any optional package, the same tests
@@ -17,7 +18,7 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
 
   --quick  format and release alone
   --slow-device-code  the GPU's code is compiled in half the time, and slower: for where nobody will run what is in build/release
-  --long   also the long tests (statistics, drift; an hour or so), most of those that sanitizers make slow, and all without MPI
+  --long   also the long tests (statistics, drift; an hour or so), an hour of each damaged file's reader, most of those that sanitizers make slow, and all without MPI
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
            job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
 On two cores a first run takes an hour, half of it compilers, whose work ccache keeps.
@@ -144,6 +145,10 @@ else
     printf '\n   LEFT OUT: no nvcc here, so nothing shows that the backend for GPUs still compiles\n'
     summary+=("cuda                   left out, no nvcc")
 fi
+fuzz() { tests/fuzz/run.sh "$1" || [ $? -eq 77 ]; }
+say "fuzz"
+check fuzz fuzz "$([ $long = yes ] && echo 3600 || echo 5)" || true
+cat "$logs/fuzz.log"
 # What takes half of the tests' time under sanitizers. Vectors' kernels have none, and shared chains run on 2 ranks.
 unbuilt=(dca_stage_kernels dca_levels force_ranks_mpi openmm_runs dca_campaign_long)
 if [ $long = yes ]; then unbuilt=(); fi

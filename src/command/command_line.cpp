@@ -30,7 +30,7 @@ constexpr std::string_view later_option = "--precision", later_bench = "sweeps";
 struct Words {
     CommonOptions common;
     std::string scene, repeat, accelerations, steps, output, restart, name, sizes, joints, loads, backends, figures, ranks, hosts, network,
-        suite, cases;
+        latency, bandwidth, suite, cases;
     std::vector<std::string> scenes;
     SamplingWords sampling;
     bool quick = false, overwrite = false, branch = false, explain = false, measure = false, calibrate = false, alike = false;
@@ -101,6 +101,9 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
     command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
         ->type_name("FILE");
+    command->add_option("--latency", words.latency, "of a message between hosts, in the place of the file's (s, ms, us, ns)")
+        ->type_name("T");
+    command->add_option("--bandwidth", words.bandwidth, "between hosts, in the place of the file's (B/s to GB/s, Gbit/s)")->type_name("B");
     command->footer(
         "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n"
         "  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
@@ -264,6 +267,16 @@ R scene_request(Words const& words, std::string const& command) {
     return request;
 }
 
+void read_link(Words const& words, PlanRequest& request) {
+    static constexpr Unit seconds[] = {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}};
+    static constexpr Unit bytes[] = {{"B/s", 1}, {"kB/s", 1e3}, {"MB/s", 1e6}, {"GB/s", 1e9}, {"Mbit/s", 1.25e5}, {"Gbit/s", 1.25e8}};
+    if (words.latency.empty() != words.bandwidth.empty())
+        throw InputError("--latency and --bandwidth go together", "command line", "give both, as in --latency 1.5us --bandwidth 12.5GB/s");
+    if (words.latency.empty()) return;
+    request.latency = number_with_unit("--latency", words.latency, seconds);
+    request.seconds_a_byte = 1 / number_with_unit("--bandwidth", words.bandwidth, bytes);
+}
+
 PlanRequest plan_request(Words const& words) {
     PlanRequest request;
     if (words.calibrate && words.scene.empty())
@@ -276,13 +289,15 @@ PlanRequest plan_request(Words const& words) {
     if (!words.ranks.empty()) request.ranks = whole_number("--ranks", words.ranks, 1, 1000000);
     if (!words.hosts.empty()) request.hosts = whole_number("--hosts", words.hosts, 1, 1000000);
     request.network = words.network;
-    if (request.ranks == 0 && (!words.hosts.empty() || !words.network.empty()))
-        throw InputError("--hosts or --network without --ranks", "command line", "say for how many ranks: --ranks P");
+    read_link(words, request);
+    if (request.ranks == 0 && (!words.hosts.empty() || !words.network.empty() || request.latency))
+        throw InputError("--hosts, --network or --latency without --ranks", "command line", "say for how many ranks: --ranks P");
     if (request.ranks > 0 && request.hosts > request.ranks)
         throw InputError("more hosts than ranks", "command line", "give each host a rank at least");
-    if (request.ranks > 0 && request.network.empty())
+    if (request.ranks > 0 && request.network.empty() && !request.latency)
         throw InputError("--ranks without --network", "command line",
-                         "measure it by mpirun -np 2 catena bench network --json network.json, then add --network network.json");
+                         "measure it by mpirun -np 2 catena bench network --json network.json, then add --network network.json; or give "
+                         "--latency and --bandwidth");
     return request;
 }
 

@@ -14,11 +14,11 @@ constexpr double microseconds = 1e6, milliseconds = 1e3;
 std::string levels_picture(LevelStudy const& study) {
     CurveFamily family{
         fmt::format("Figure 2.3: where a level belongs; assembly of {} bodies, {} handles", study.bodies, name_of(study.handles)),
-        "merges of the level",
+        "merges of the level (crosses: not resolved)",
         "microseconds",
         {}};
     auto const add = [&](std::string const& name, bool dashed, auto const& seconds) {
-        NamedCurve curve{name, {}, {}, dashed};
+        NamedCurve curve{name, {}, {}, dashed, true};
         for (LevelPoint const& level : study.levels)
             if (std::optional<double> const value = seconds(level)) {
                 curve.x.push_back(static_cast<double>(level.merges));
@@ -45,7 +45,7 @@ std::string steps_picture(std::vector<FigurePoint> const& points, FigureQuantity
         if (point.handles != handles || !seconds) continue;
         auto curve =
             std::find_if(family.curves.begin(), family.curves.end(), [&](NamedCurve const& c) { return c.name == point.what.name; });
-        if (curve == family.curves.end()) curve = family.curves.insert(curve, {point.what.name, {}, {}, false});
+        if (curve == family.curves.end()) curve = family.curves.insert(curve, {point.what.name, {}, {}, false, true});
         curve->x.push_back(static_cast<double>(point.bodies));
         curve->y.push_back(milliseconds * seconds->median);
     }
@@ -78,7 +78,8 @@ std::vector<std::pair<std::string, std::string>> draw_figures(Figures const& fig
     for (FigureQuantity const& quantity : figure_quantities) {
         if (!wanted(quantity.figure)) continue;
         for (Handles const handles : {Handles::full, Handles::projected})
-            if (std::any_of(figures.points.begin(), figures.points.end(), [&](FigurePoint const& p) { return p.handles == handles; }))
+            if (std::any_of(figures.points.begin(), figures.points.end(),
+                            [&](FigurePoint const& p) { return p.handles == handles && quantity_of(p, quantity.figure); }))
                 files.emplace_back(fmt::format("figure-{}-{}.svg", quantity.figure, name_of(handles)),
                                    steps_picture(figures.points, quantity, handles));
     }

@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <numeric>
 
@@ -20,7 +21,10 @@ namespace {
 
 constexpr double microseconds = 1e6, milliseconds = 1e3;
 
-std::string number(std::optional<double> const& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
+std::string number(std::optional<double> const& value) {
+    if (value && !std::isfinite(*value)) return "not resolved";
+    return value ? fmt::format("{:.3g}", *value) : "-";
+}
 char const* verdict(bool valid) { return valid ? "VALID" : "INVALID"; }
 
 Json json_of(Operations const& o) {
@@ -77,17 +81,48 @@ void add_table(Outcome& outcome) {
 
 Json json_of(LevelSeconds const& s) { return {{"assembly", s.assembly}, {"disassembly", s.disassembly}}; }
 
+/// "CPU", "GPU", or "-" where there is nothing to compare.
+char const* cheapest_place(LevelPoint const& p) {
+    double cpu = p.one_core.assembly;
+    if (p.threads) cpu = std::min(cpu, p.threads->assembly);
+    bool const known =
+        p.gpu && std::isfinite(p.gpu->assembly) && std::isfinite(p.one_core.assembly) && (!p.threads || std::isfinite(p.threads->assembly));
+    return !known ? "-" : p.gpu->assembly < cpu ? "GPU" : "CPU";
+}
+
+/// How many of the levels' times there are, and how many of them drown in noise.
+struct Resolved {
+    int all = 0, missing = 0;
+    void add(LevelSeconds const& s) {
+        for (double const value : {s.assembly, s.disassembly}) ++all, missing += std::isfinite(value) ? 0 : 1;
+    }
+};
+Resolved resolved(std::vector<LevelStudy> const& studies) {
+    Resolved count;
+    for (LevelStudy const& study : studies)
+        for (LevelPoint const& p : study.levels) {
+            count.add(p.one_core);
+            for (auto const* more : {&p.threads, &p.gpu})
+                if (*more) count.add(**more);
+        }
+    return count;
+}
+std::string resolution_text(std::vector<LevelStudy> const& studies) {
+    Resolved const count = resolved(studies);
+    if (count.missing == 0) return "";
+    return fmt::format("; figure 2.3: {} of {} times not resolved, noise is larger (raise --repeat, or measure on an idle machine)",
+                       count.missing, count.all);
+}
+
 void add_levels(Outcome& outcome, LevelStudy const& study) {
     Table table({"level", "merges", "one core", "threads", "GPU", "transfers", "cheapest", "one core", "threads", "GPU"}, {0, 6});
     Json levels = Json::array();
     for (LevelPoint const& p : study.levels) {
         auto const us = [](double seconds) { return number(microseconds * seconds); };
         auto const part = [&](std::optional<LevelSeconds> const& s, double LevelSeconds::* what) { return s ? us((*s).*what) : "-"; };
-        double const cpu = std::min(p.one_core.assembly, p.threads ? p.threads->assembly : p.one_core.assembly);
-        char const* const cheapest = !p.gpu ? "-" : p.gpu->assembly < cpu ? "GPU" : "CPU";
         table.add({std::to_string(p.level), std::to_string(p.merges), us(p.one_core.assembly), part(p.threads, &LevelSeconds::assembly),
-                   part(p.gpu, &LevelSeconds::assembly), p.transfers ? us(*p.transfers) : "-", cheapest, us(p.one_core.disassembly),
-                   part(p.threads, &LevelSeconds::disassembly), part(p.gpu, &LevelSeconds::disassembly)});
+                   part(p.gpu, &LevelSeconds::assembly), p.transfers ? us(*p.transfers) : "-", cheapest_place(p),
+                   us(p.one_core.disassembly), part(p.threads, &LevelSeconds::disassembly), part(p.gpu, &LevelSeconds::disassembly)});
         levels.push_back({{"level", p.level},
                           {"merges", p.merges},
                           {"one_core", json_of(p.one_core)},
@@ -237,6 +272,7 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
                                {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
                                {"milliseconds", chapter}};
     outcome.json["valid"] = outcome.valid;
+    outcome.json["not_resolved"] = resolved(figures.levels).missing;
     outcome.complaint = "a residual above its bound: see the results";
     on_first_rank(communicator, [&] {
         write_text_file(folder + "/figures.json", json_text(outcome.json));
@@ -245,7 +281,7 @@ Outcome bench_figures(Communicator const& communicator, BenchRequest const& requ
             write_text_file(fmt::format("{}/{}", folder, name), svg);
             outcome.text += ", " + name;
         }
-        outcome.text += fmt::format("\n{}\n", verdict(outcome.valid));
+        outcome.text += fmt::format("\n{}{}\n", verdict(outcome.valid), resolution_text(figures.levels));
     });
     return outcome;
 }

@@ -193,6 +193,11 @@ void add_savings(Text& text, Json& json, Scene const& scene, ChainSystem const& 
             plan::Share const& share = shares[each.share];
             std::int64_t const bodies = std::min(share.bodies, largest_measured);
             double const saved = each.takes(bodies), of_evaluation = saved / seconds_without(share.family, bodies);
+            if (!(saved > 0)) {  // a time is never below zero
+                table.add({each.text, "not resolved", "-"});
+                json["savings"].push_back({{"left_out", each.text}, {"seconds", nullptr}, {"of_an_evaluation", nullptr}});
+                continue;
+            }
             double const of_scene = saved * static_cast<double>(share.bodies) / static_cast<double>(bodies);
             table.add({each.text, duration_text(of_scene), fmt::format("{:.0f} %", 100 * of_evaluation)});
             json["savings"].push_back({{"left_out", each.text}, {"seconds", of_scene}, {"of_an_evaluation", of_evaluation}});

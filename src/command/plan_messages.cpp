@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <concepts>
 
+#include "command/plan_network.hpp"
 #include "command/plan_steps.hpp"
 #include "error.hpp"
 #include "integrate/step_messages.hpp"
-#include "io/output_file.hpp"
-#include "mpi/network.hpp"
 
 namespace catena::command {
 namespace {
@@ -79,23 +78,12 @@ class Groups {
     std::vector<StepMessages> of_step_;
 };
 
-Link link_of(Json const& json) { return {json.at("latency").get<double>(), json.at("seconds_a_byte").get<double>()}; }
-
-Network read_network(std::string const& file, std::int64_t ranks, std::int64_t hosts) {
-    Network network;
-    try {
-        Json const json = Json::parse(read_text_file(file)).at("network");
-        if (!json.at("near").is_null()) network.near = link_of(json.at("near"));
-        if (!json.at("far").is_null()) network.far = link_of(json.at("far"));
-        network.gather_overhead = json.at("gather_overhead").get<double>();
-    } catch (Json::exception const&) {
-        throw InputError("not the JSON of a network", "--network " + file, "write it by mpirun -np 2 catena bench network --json " + file);
-    }
-    if (ranks > 1 && !network.near)
-        throw InputError("measured on one rank", "--network " + file, "measure it on two at least: mpirun -np 2 catena bench network");
-    if (hosts > 1 && !network.far)
-        throw InputError("measured on one host", "--network " + file, "measure it over two hosts, or leave --hosts out");
-    return network;
+std::string network_text(PlanRequest const& request, Network const& network) {
+    std::string text = request.network;
+    if (!request.latency) return text;
+    return text + fmt::format("{}{} and {:.3g} GB/s between hosts{}", text.empty() ? "" : ", with ", duration_text(network.far->latency),
+                              1e-9 / network.far->seconds_a_byte,
+                              text.empty() ? "; the same within a host, and gathers as the model says: nothing was measured" : "");
 }
 
 double seconds_of(Traffic const& t, Network const& network, GatherWay const& way, std::int64_t hosts) {
@@ -160,11 +148,11 @@ void add_messages(Text& text, Json& json, ChainSystem const& system, PlanRequest
     Groups const groups(system);
     add_counts(text, json, system, groups);
     if (request.ranks == 0) return;
-    Network const network = read_network(request.network, request.ranks, request.hosts);
+    Network const network = network_of(request);
     add_measured(text, json, system, groups, network);
     json["network"].update(
         {{"near", network.near ? json_of(*network.near) : Json(nullptr)}, {"far", network.far ? json_of(*network.far) : Json(nullptr)}});
-    text.entry("network", request.network);
+    text.entry("network", network_text(request, network));
     if (system.communicator().rank() == 0) add_steps(text, json, scene, messages_on(groups, network, request), predictions);
 }
 

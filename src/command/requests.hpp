@@ -29,7 +29,9 @@ struct CheckRequest : SceneOptions {};
 struct PlanRequest : SceneOptions {  // the scene may be missing where the machine is calibrated
     bool explain = false, measure = false, calibrate = false;
     std::int64_t ranks = 0, hosts = 1;  // 0: no prediction
-    std::string network;                // JSON of `bench network`
+    std::string network;                // JSON of `bench network`; empty: none
+    /// Of the link between hosts, in the place of the file's: both or neither.
+    std::optional<double> latency, seconds_a_byte;
 };
 struct SolveRequest : SceneOptions {
     int repeat = 11;

@@ -44,6 +44,20 @@ std::int64_t whole_number(std::string const& option, std::string const& text, st
     return number;
 }
 
+double number_with_unit(std::string const& option, std::string const& text, std::span<Unit const> units) {
+    std::size_t const end = text.find_last_of("0123456789.");
+    std::size_t const length = end == std::string::npos ? 0 : end + 1;
+    std::string unit = text.substr(length);
+    unit.erase(0, unit.find_first_not_of(' '));
+    double value = 0;
+    bool const good = scene::parse_number(text.substr(0, length), value) == scene::NumberFault::none && value > 0;
+    auto const known = std::find_if(units.begin(), units.end(), [&](Unit const& each) { return each.name == unit; });
+    if (good && known != units.end()) return value * known->worth;
+    std::string names;
+    for (Unit const& each : units) names += (names.empty() ? "" : ", ") + std::string(each.name);
+    throw InputError(fmt::format("`{}` is no positive number with a unit", text), option, "put one of these behind it: " + names);
+}
+
 std::string const& known_value(std::string const& option, std::string const& text, std::span<std::string_view const> known) {
     if (std::find(known.begin(), known.end(), text) == known.end())
         throw InputError(fmt::format("`{}` is not a value of {}", text, option), "command line", remedy_for(text, known));

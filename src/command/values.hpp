@@ -16,6 +16,12 @@ namespace catena::command {
 void require_files_apart(std::string const& scene, std::string const& json, std::string const& accelerations);
 
 std::int64_t whole_number(std::string const& option, std::string const& text, std::int64_t least, std::int64_t most = INT64_MAX);
+/// A positive number with one of the units behind it ("1.5us"), times what the unit is worth.
+struct Unit {
+    std::string_view name;
+    double worth;
+};
+double number_with_unit(std::string const& option, std::string const& text, std::span<Unit const> units);
 /// The value itself when it is among `known`; InputError with the nearest known one otherwise.
 std::string const& known_value(std::string const& option, std::string const& text, std::span<std::string_view const> known);
 /// Parts between commas, none of them empty.

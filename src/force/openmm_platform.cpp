@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "force/openmm_model.hpp"
+#include "mpi/thread_limit.hpp"
 
 namespace catena {
 
@@ -95,6 +96,7 @@ OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, 
     };
     if (name == "CPU") {
         auto const useful = static_cast<int>(std::min<std::int64_t>(1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
+        require_possible_threads(spec.threads, openmm_key(beads.scene_file, "threads"));
         chosen.threads = spec.threads > 0 ? spec.threads : useful;
         set("Threads", std::to_string(chosen.threads));
     } else if (!chosen.on_cpu()) {

@@ -9,6 +9,7 @@
 #include "cuda/memory.hpp"
 #include "cuda/solver.hpp"
 #include "error.hpp"
+#include "mpi/thread_limit.hpp"
 
 namespace catena {
 namespace {
@@ -62,6 +63,7 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
 }
 
 int choose_threads(Scene const& scene, Communicator const& communicator) {
+    require_possible_threads(scene.solver.threads, scene.file + ": solver.threads");
     if (scene.solver.threads > 0) return scene.solver.threads;
     return cores_of_rank(communicator);
 }
@@ -176,7 +178,8 @@ void ChainSystem::forces_and_matrices(StepTimeline* timeline) {
     note_overlap(start, begun, assembled, simple, finished);
     if (!openmm_) return;
     Interval const ran = openmm_->last_evaluation(), brought = openmm_->last_gathering();
-    note("hand over positions", "catena", start, begun);
+    // On path inline the forces are computed before begin_openmm() returns: what comes before them is the handing over.
+    note("hand over positions", "catena", start, ran.end <= begun ? std::clamp(ran.begin, start, begun) : begun);
     if (communicator_.size() > 1) note("exchange of positions", "messages", brought.begin, brought.end);
     note("wait for forces", "catena", simple, finished);
     note("forces", "openmm", ran.begin, ran.end);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "io/axis.hpp"
 #include "io/html.hpp"
@@ -14,9 +15,27 @@ namespace {
 
 constexpr double width = 760, height = 420, left = 66, right = 190, top = 40, bottom = 46, line_height = 18;
 constexpr double inner_width = width - left - right, inner_height = height - top - bottom;
-constexpr char const* colours[] = {"#0b6bcb", "#c2410c", "#15803d", "#7c3aed", "#b91c1c", "#0e7490", "#a16207", "#be185d", "#475569"};
+// Okabe and Ito's colours and two dark ones; with the marks no two of 45 curves look alike.
+constexpr char const* colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#882255", "#332288", "#475569"};
+constexpr std::string_view marks[] = {"M-3.2,0a3.2,3.2 0 1,0 6.4,0a3.2,3.2 0 1,0 -6.4,0z", "M-3,-3h6v6h-6z", "M0,-4l3.7,6.6h-7.4z",
+                                      "M0,-4.3l3.4,4.3l-3.4,4.3l-3.4,-4.3z", "M0,4l3.7,-6.6h-7.4z"};
+constexpr std::string_view cross = "M-3,-3L3,3M-3,3L3,-3";
 
 bool drawn(double x, double y) { return x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y); }
+
+char const* colour_of(std::size_t curve) { return colours[curve % std::size(colours)]; }
+
+std::string mark_at(std::size_t curve, double x, double y) {
+    return fmt::format("<path fill=\"{}\" transform=\"translate({:.1f},{:.1f})\" d=\"{}\"/>", colour_of(curve), x, y,
+                       marks[curve % std::size(marks)]);
+}
+/// A value that could not be resolved, on the axis.
+std::string gap_at(std::size_t curve, double x) {
+    return fmt::format(
+        "<path fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" transform=\"translate({:.1f},{:.1f})\" d=\"{}\"><title>not "
+        "resolved</title></path>",
+        colour_of(curve), x, height - bottom, cross);
+}
 
 struct Range {
     double low = std::numeric_limits<double>::infinity(), high = 0;
@@ -32,7 +51,10 @@ std::string curve_family(CurveFamily const& family) {
     Range xs, ys;
     for (NamedCurve const& curve : family.curves)
         for (std::size_t i = 0; i < curve.x.size(); ++i)
-            if (drawn(curve.x[i], curve.y[i])) xs.add(curve.x[i]), ys.add(curve.y[i]);
+            if (drawn(curve.x[i], curve.y[i]))
+                xs.add(curve.x[i]), ys.add(curve.y[i]);
+            else if (std::isnan(curve.y[i]) && curve.x[i] > 0)
+                xs.add(curve.x[i]);
     std::string svg = fmt::format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" height=\"{1}\" role=\"img\">\n"
         "<style>text {{ fill: #1b2733; font: 12px system-ui, \"Segoe UI\", Roboto, Arial, sans-serif; }} .grid {{ stroke: #e9edf1; }} "
@@ -58,20 +80,28 @@ std::string curve_family(CurveFamily const& family) {
                        height - 6, escaped(family.x_label), escaped(family.y_label));
     for (std::size_t i = 0; i < family.curves.size(); ++i) {
         NamedCurve const& curve = family.curves[i];
-        std::string const style =
-            fmt::format("stroke=\"{}\"{}", colours[i % std::size(colours)], curve.dashed ? " stroke-dasharray=\"5 4\"" : "");
-        std::string dots;
-        svg += "<polyline " + style + " points=\"";
+        std::string const style = fmt::format("stroke=\"{}\"{}", colour_of(i), curve.dashed ? " stroke-dasharray=\"5 4\"" : "");
+        std::string lines, line, dots;
+        auto const end_line = [&] {
+            if (!line.empty()) lines += "<polyline " + style + " points=\"" + line + "\"/>";
+            line.clear();
+        };
         for (std::size_t k = 0; k < curve.x.size(); ++k) {
-            if (!drawn(curve.x[k], curve.y[k])) continue;
-            if (curve.joined) svg += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[k]), at_y(curve.y[k]));
-            if (curve.marked)
-                dots += fmt::format("<circle fill=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\"/>", colours[i % std::size(colours)],
-                                    at_x(curve.x[k]), at_y(curve.y[k]));
+            if (std::isnan(curve.y[k]) && curve.x[k] > 0) dots += gap_at(i, at_x(curve.x[k]));
+            if (!drawn(curve.x[k], curve.y[k])) {
+                end_line();
+                continue;
+            }
+            if (curve.joined) line += fmt::format("{:.1f},{:.1f} ", at_x(curve.x[k]), at_y(curve.y[k]));
+            if (curve.marked) dots += mark_at(i, at_x(curve.x[k]), at_y(curve.y[k]));
         }
+        end_line();
         double const y = top + 8 + line_height * static_cast<double>(i), x = left + inner_width + 12;
-        svg += fmt::format("\"/><line {} stroke-width=\"1.8\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/><text x=\"{}\" y=\"{}\">{}</text>\n",
-                           style, x, x + 22, y, y, x + 28, y + 4, escaped(curve.name));
+        svg += lines;
+        if (curve.joined)
+            svg += fmt::format("<line {} stroke-width=\"1.8\" x1=\"{}\" x2=\"{}\" y1=\"{}\" y2=\"{}\"/>", style, x, x + 22, y, y);
+        if (curve.marked) svg += mark_at(i, x + 11, y);
+        svg += fmt::format("<text x=\"{}\" y=\"{}\">{}</text>\n", x + 28, y + 4, escaped(curve.name));
         svg += dots + (dots.empty() ? "" : "\n");
     }
     return svg + "</svg>\n";

@@ -26,6 +26,17 @@ bool forces_ask_for_gpu(Scene const& scene, Machine const& machine, int ranks) {
     return free && beads && machine.openmm_on_gpu();
 }
 
+/// Seconds that OpenMM's forces take of a step at the least, where they are computed on processors: a microsecond a bead.
+double least_seconds_of_forces(Scene const& scene, Machine const& machine, int ranks) {
+    if (!scene.forces.openmm) return 0;
+    std::string const& platform = scene.forces.openmm->platform;
+    if (platform.empty() ? machine.openmm_on_gpu() : platform != "CPU" && platform != "Reference") return 0;
+    double constexpr a_bead = 1e-6;
+    std::size_t beads = 0;
+    for (ChainSpec const& chain : scene.chains) beads += chain.bead_count();
+    return a_bead * static_cast<double>(beads) / ranks;
+}
+
 std::string text_of(Prediction const& p) {
     return p.unusable.empty() ? fmt::format("{} {:.3g} ms", p.arrangement.name(), 1e3 * p.seconds[typical_evaluation])
                               : fmt::format("{} not: {}", p.arrangement.name(), p.unusable);
@@ -46,20 +57,29 @@ Choice choose_backend(Scene const& scene, Axes axes, Planner& planner, int ranks
     std::string const without = no_gpu.empty() ? "" : "; " + no_gpu;
     std::vector<Arrangement> usable = planner.machine().alike;
     if (!no_gpu.empty()) std::erase_if(usable, [](Arrangement const& a) { return uses_gpu(a.backend); });
-    if (usable.size() == 1) return {usable.front(), {}, "auto: one core" + without};
+    std::string beside;
+    if (int const spare = planner.machine().spare; spare > 0) {
+        // Threads that wait for each other would wait for other programs.
+        if (std::erase_if(usable, [&](Arrangement const& a) { return a.backend == Backend::openmp && a.threads > spare; }) > 0)
+            beside = fmt::format("; other programs leave {} of {} cores", spare, planner.machine().threads);
+    }
+    if (usable.size() == 1) return {usable.front(), {}, "auto: one core" + beside + without};
     std::vector<Share> const shares = shares_of(scene, axes, ranks);
     std::vector<Prediction> predictions;
     for (Arrangement const& each : usable) predictions.push_back(planner.predict(shares, each));
     bool const for_forces = no_gpu.empty() && forces_ask_for_gpu(scene, planner.machine(), ranks);
-    if (for_forces || uses_gpu(quickest(predictions).arrangement.backend)) refuse_what_does_not_fit(predictions, shares, planner.machine());
+    double const forces = least_seconds_of_forces(scene, planner.machine(), ranks);
+    if (forces > 0) beside += fmt::format("; beside forces of {:.3g} ms and more, gains under a tenth of both do not count", 1e3 * forces);
+    if (for_forces || uses_gpu(quickest(predictions, forces).arrangement.backend))
+        refuse_what_does_not_fit(predictions, shares, planner.machine());
     auto const on_gpu = std::find_if(predictions.begin(), predictions.end(),
                                      [](Prediction const& p) { return uses_gpu(p.arrangement.backend) && p.unusable.empty(); });
     bool const with_forces = for_forces && on_gpu != predictions.end();
-    Prediction const& best = with_forces ? *on_gpu : quickest(predictions);
+    Prediction const& best = with_forces ? *on_gpu : quickest(predictions, forces);
     std::string reason = std::string(with_forces ? "auto: where OpenMM's forces are, " : "auto: ") + "predicted " + text_of(best);
     for (Prediction const& p : predictions)
         if (&p != &best) reason += ", " + text_of(p);
-    return {best.arrangement, {}, reason + without};
+    return {best.arrangement, {}, reason + beside + without};
 }
 
 Choice choose_levels(Scene const& scene, Axes axes, Planner& planner, int ranks) {

@@ -46,12 +46,19 @@ auto with_sample(Family const& family, std::int64_t bodies, Arrangement const& a
     return use(system);
 }
 
+/// Of a rank's cores those that other programs leave to it just now.
+int spare_cores(Communicator const& communicator) {
+    int const ranks = communicator.ranks_on_host(), others = std::max(0, tasks_running() - ranks);
+    return std::clamp((processor_threads() - others) / ranks, 1, cores_of_rank(communicator));
+}
+
 }  // namespace
 
 Machine this_machine(Communicator const& communicator, int threads) {
     int const cores = cores_of_rank(communicator);
     Machine m;
     m.threads = openmp_is_built() ? (threads > 0 ? threads : cores) : 1;
+    if (m.threads > 1 && threads == 0) m.spare = spare_cores(communicator);  // a number that was asked for is the user's word
     m.no_gpu = cuda::why_not();
     m.alike.push_back({Backend::segments, 1});
     for (int const number : numbers_of_threads(m.threads, threads > 0)) m.alike.push_back({Backend::openmp, number});

@@ -15,6 +15,7 @@ struct Machine {
     /// By another tree: never chosen unasked.
     std::vector<Arrangement> others;
     int threads = 1;     // of the host's share in cuda-levels
+    int spare = 0;       // of this rank's processors those that no other program wants just now; 0: not looked at
     std::string no_gpu;  // empty where there is one, else why not
     /// Times are those of this machine, this many cores and this program alone.
     std::string identity;

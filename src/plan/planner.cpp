@@ -116,12 +116,12 @@ void Planner::measure_everything() {
     }
 }
 
-Prediction const& quickest(std::vector<Prediction> const& predictions) {
-    double constexpr worth_it = 0.95;  // fewer threads are left to others
+Prediction const& quickest(std::vector<Prediction> const& predictions, double beside) {
+    double constexpr worth_it = 0.9;  // fewer threads wait for each other, and more are left to others
     Prediction const* best = nullptr;
     for (Prediction const& p : predictions) {
         if (!p.alike || !p.unusable.empty()) continue;
-        if (!best || p.seconds[typical_evaluation] < worth_it * best->seconds[typical_evaluation]) best = &p;
+        if (!best || beside + p.seconds[typical_evaluation] < worth_it * (beside + best->seconds[typical_evaluation])) best = &p;
     }
     return *best;
 }

@@ -1,6 +1,7 @@
 #include "report/figures.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "cuda/solver.hpp"
 #include "error.hpp"
@@ -112,11 +113,14 @@ class CutTree {
     std::vector<SplitSeconds> spent_;
 };
 
-/// Median of what `more` spent in that part beyond `less`, evaluation by evaluation: they were taken one after the other.
+/// Median of what `more` spent in that part beyond `less`, evaluation by evaluation: they were taken one after the other. NaN where more
+/// than a quarter of the differences are not positive: noise is larger than what was to be measured.
 double median_of_differences(CutTree const& more, CutTree const& less, double SplitSeconds::* part) {
     std::vector<double> differences;
     for (std::size_t i = 0; i < more.spent().size(); ++i) differences.push_back(more.spent()[i].*part - less.spent()[i].*part);
-    return spread_of(differences).median;
+    auto const quarter = differences.begin() + std::ssize(differences) / 4;
+    std::nth_element(differences.begin(), quarter, differences.end());
+    return *quarter > 0 ? spread_of(differences).median : std::nan("");
 }
 /// Of the level between two cuts.
 LevelSeconds as_lower(CutTree const& below, CutTree const& above) {

@@ -38,7 +38,7 @@ std::vector<FigurePoint> measure_steps(std::vector<FigureCase> const&, Handles, 
                                        Communicator const&);
 
 /// One level of the tree; the first one includes the bodies' own work. Seconds of one solve, medians of differences between trees cut below
-/// and above the level, so that noise may make a small one negative.
+/// and above the level; NaN where noise is larger than the difference: not resolved.
 struct LevelSeconds {
     double assembly = 0, disassembly = 0;
 };

@@ -2,6 +2,9 @@
 
 #include <sys/utsname.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <fstream>
 #include <thread>
 
@@ -18,6 +21,20 @@ std::string processor_name() {
 }
 
 int processor_threads() { return static_cast<int>(std::thread::hardware_concurrency()); }
+
+int tasks_running() {
+    std::array<int, 5> counts{};
+    for (int& count : counts) {
+        std::ifstream file("/proc/loadavg");  // "0.20 0.18 0.12 1/80 11206": the fourth are tasks that run, and all
+        std::string skipped;
+        char slash = 0;
+        int all = 0;
+        if (!(file >> skipped >> skipped >> skipped >> count >> slash >> all)) return 1;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::nth_element(counts.begin(), counts.begin() + 2, counts.end());
+    return std::max(1, counts[2]);
+}
 
 #define CATENA_TEXT_OF(value) #value
 #define CATENA_TEXT(value) CATENA_TEXT_OF(value)

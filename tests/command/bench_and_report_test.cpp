@@ -36,7 +36,7 @@ TEST(Bench, FiguresStandBesideTheChapters) {
     TemporaryFolder const folder;
     Ended const e = catena({"bench", "figures", "--sizes", "2,8,64", "--repeat", "3", "--output", folder / "figures"});
     expect_good(e);
-    EXPECT_TRUE(e.out.ends_with("VALID\n")) << e.out;
+    EXPECT_NE(e.out.find("\nVALID"), std::string::npos) << e.out;
     Json const json = Json::parse(std::ifstream(folder / "figures/figures.json"));
     std::size_t const gpu = json.at("hardware").at("gpu").is_null() ? 0 : 5;
     EXPECT_EQ(json.at("points").size() % (2 * 3), 0U);

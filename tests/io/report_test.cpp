@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 
 #include "error.hpp"
 #include "io/axis.hpp"
+#include "io/curve_family.hpp"
+#include "io/html.hpp"
 #include "io/line_chart.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
@@ -80,6 +83,32 @@ TEST(LineChart, FewOddOrNoPointsAreFine) {
     EXPECT_EQ(line_chart({"t", "", {0}, {nan}}), "<p>No finite values.</p>\n");
     EXPECT_EQ(line_chart({"t", "", {0, 1}, {1, 1}}).find("nan"), std::string::npos);
     EXPECT_NE(line_chart({"t", "", {0, 1}, {1e-12, 1e-6}}).find(">10⁻⁶<"), std::string::npos) << "six decades ask for a logarithm";
+}
+
+TEST(CurveFamily, AValueThatIsNotResolvedIsAGapWithACross) {
+    CurveFamily const family{"t", "x", "y", {{"a", {1, 2, 4, 8, 16}, {1, 2, std::nan(""), 3, 4}, false, true}}};
+    std::string const svg = curve_family(family);
+    EXPECT_EQ(count(svg, "<polyline"), 2U);
+    EXPECT_EQ(count(svg, "not resolved"), 1U);
+    EXPECT_EQ(count(svg, "<path fill=\"#"), 5U) << "four points, and one in the legend";
+}
+
+TEST(CurveFamily, NoTwoOfManyCurvesLookAlike) {
+    CurveFamily family{"t", "x", "y", {}};
+    for (int k = 0; k < 20; ++k) family.curves.push_back({"a" + std::to_string(k), {1, 2}, {1, 2}, false, true});
+    std::string const svg = curve_family(family);
+    std::set<std::string> looks;
+    for (auto at = svg.find("<path fill"); at != std::string::npos; at = svg.find("<path fill", at + 1)) {
+        std::string const mark = svg.substr(at, svg.find("/>", at) - at);
+        looks.insert(mark.substr(0, mark.find("transform")) + mark.substr(mark.find(" d=")));
+    }
+    EXPECT_EQ(looks.size(), 20U);
+}
+
+TEST(Html, WhatIsNoUtf8OrAControlCharacterIsReplaced) {
+    EXPECT_EQ(escaped("a\xE9<\x1b[31m"), "a\xEF\xBF\xBD&lt;?[31m");
+    EXPECT_EQ(escaped("\xC2\x9B\xED\xA0\x80\xC0\x80"), "?" + std::string("\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD"));
+    EXPECT_EQ(escaped("µ – \n\t"), "µ – \n\t");
 }
 
 void write_folder(TemporaryFolder const& folder) {

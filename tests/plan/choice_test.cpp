@@ -83,6 +83,37 @@ TEST(Choice, ChainsGoWhereOpenMmTakesTheGpu) {
     EXPECT_EQ(choose(bodies, machine).arrangement, core);
 }
 
+// Told: 1000 beads take 1 ms on one core, 270 us on four. Forces of a microsecond a bead hide that gain where there are many more beads:
+// of 10000 beads in chains of 10 a step takes 10 ms of forces and more.
+TEST(Choice, ThreadsAreNotTakenForAGainThatIsSmallBesideTheForces) {
+    plan::Machine machine = told_machine(false);
+    machine.openmm_on_gpu = [] { return false; };
+    machine.measure = [](plan::Family const&, std::int64_t bodies, Arrangement const& on) {
+        double const t = 2e-8 * static_cast<double>(bodies) / on.threads;
+        return plan::PhaseSeconds{0.2 * t, 0.5 * t, 0.3 * t, t, t};
+    };
+    Scene scene = parse_scene("chains: [{name: a, count: 10, generator: {freely_jointed: {beads: 1000, length: 1}}}]", "told.yaml");
+    EXPECT_EQ(choose(scene, machine).arrangement, (Arrangement{Backend::openmp, 4}));
+    scene.forces.openmm.emplace();
+    plan::Choice const choice = choose(scene, machine);
+    EXPECT_EQ(choice.arrangement, (Arrangement{Backend::segments, 1}));
+    EXPECT_NE(choice.reason.find("beside forces of 10 ms and more"), std::string::npos) << choice.reason;
+    machine.openmm_on_gpu = [] { return true; };
+    EXPECT_EQ(choose(scene, machine).arrangement, (Arrangement{Backend::openmp, 4})) << "forces on a GPU are not so slow";
+}
+
+TEST(Choice, CoresThatOtherProgramsUseGetNoThreads) {
+    plan::Machine machine = told_machine(false);
+    machine.spare = 4;
+    EXPECT_EQ(choose(told_scene(10000), machine).arrangement, (Arrangement{Backend::openmp, 4}));
+    machine.spare = 3;
+    plan::Choice const some = choose(told_scene(10000), machine);
+    EXPECT_EQ(some.arrangement, (Arrangement{Backend::openmp, 2}));
+    EXPECT_NE(some.reason.find("other programs leave 3 of 4 cores"), std::string::npos) << some.reason;
+    machine.spare = 1;
+    EXPECT_EQ(choose(told_scene(10000), machine).arrangement, (Arrangement{Backend::segments, 1}));
+}
+
 /// As on another rank's GPU, or where OpenMM is there as well: known when everything is about to be made.
 TEST(Choice, AGpuThatTurnsOutTooSmallIsLeftOut) {
     std::vector<Backend> tried;

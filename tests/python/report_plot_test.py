@@ -2,6 +2,7 @@
 """jobs/report_plot.py on a report in which numbers were not finite, which are null in JSON: every picture is drawn.
 
 Exit status 0: all as it should be; 1: not; 77: skipped, a package is missing."""
+import importlib.util
 import json
 import os
 import subprocess
@@ -35,6 +36,31 @@ def report(number):
             "stability": [{"growth": number, "oracle": oracle, "points": [case, held], "peers": [peer]}]}
 
 
+def whole_legend():
+    """Of one panel: the legend is no wider or higher than the picture; an error of zero is no point."""
+    spec = importlib.util.spec_from_file_location("report_plot", PLOT)
+    plot = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(plot)
+    told = report(1e-9)
+    points = [{"backend": backend, "handles": "projected", "residual": 1e-16, "forward_error": 1e-12, "seconds": SECONDS}
+              for backend in ("serial", "segments", "openmp", "cuda", "cuda-levels")]
+    told["studies"][0]["points"] += points
+    told["forces"][0]["points"].append({"platform": "Reference", "precision": "double", "error": 0, "seconds": SECONDS})
+    for draw in (plot.solver, plot.integrators, plot.forces, plot.stability):
+        figure = draw(told, "any")
+        figure.canvas.draw()
+        for legend in figure.legends:
+            inside, whole = legend.get_window_extent(), figure.bbox
+            if inside.x0 < whole.x0 or inside.x1 > whole.x1 or inside.y0 < whole.y0 or inside.y1 > whole.y1:
+                sys.exit(f"FAILED: the legend of {draw.__name__} is cut: {inside} of {whole}")
+    lines = plot.forces(told, "any").axes[0].get_lines()
+    if any(value == plot.FLOOR for line in lines for value in line.get_ydata()):
+        sys.exit("FAILED: the platform that the others are compared with is drawn as measured")
+    if not any(label.get_text() for label in plot.forces(told, "any").axes[0].get_xticklabels()):
+        sys.exit("FAILED: no time has a label")
+
+
+whole_legend()
 for number in (1e-9, None):
     with tempfile.TemporaryDirectory() as folder:
         source = os.path.join(folder, "report.json")
