@@ -73,6 +73,7 @@ class Displacements {
             JointState at_rest = group->state();
             for (Field<3>* const rates : {&at_rest.qd, &at_rest.base_velocity})
                 for (std::int64_t k = 0; k < rates->size(); ++k) rates->set(k, Vec3::zero());
+            group->set_state(at_rest);
             start_.push_back(std::move(at_rest));
         }
         for (JointState const& s : start_) along_.push_back({s.qd, s.base_velocity});
