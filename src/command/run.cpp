@@ -9,9 +9,11 @@
 #include "command/commands.hpp"
 #include "command/describe.hpp"
 #include "command/stop_signals.hpp"
+#include "integrate/joint_integrators.hpp"
 #include "integrate/simulation.hpp"
 #include "integrate/step_limit.hpp"
 #include "plan/choice.hpp"
+#include "report/forward_error.hpp"
 
 namespace catena::command {
 namespace {
@@ -155,10 +157,29 @@ std::string complaint_of(nlohmann::json const& s, bool whole) {
                        s.at("files").at("checkpoint.h5").get<std::string>());
 }
 
+/// Articulated handles are refined where the first accelerations need it; of others, and where they cannot be, a note says how far off
+/// these may be. Collective.
+void look_at_forward_error(Scene& scene, Communicator const& communicator) {
+    if (!scene.dynamics.given) return;
+    std::optional<double> const error = forward_error_at_start(scene, communicator);
+    bool const refinable = is_refined(scene.dynamics.integrator);
+    bool const unasked = refinable && scene.solver.handles == Handles::articulated && scene.solver.refine == 0;
+    if (!error || *error <= (unasked ? refined_beyond : largest_forward_error)) return;
+    std::string const found = fmt::format("the first accelerations may be off by {:.1e} of the largest", *error);
+    if (unasked) {
+        scene.solver.refine = 2;
+        return scene.note(found + ": every solution is refined by two steps (solver.refine)");
+    }
+    std::string const remedy = remedy_of_forward_error(
+        scene, refinable, {scene.solver.refine < 2 ? "solver.refine: 2" : "a larger solver.refine", "solver.handles: articulated"});
+    scene.note(found + (remedy.empty() ? "" : ": take " + remedy));
+}
+
 }  // namespace
 
 Outcome run_scene(Scene given, Communicator const& communicator, RunRequest const& request) {
     StopSignals const signals;
+    look_at_forward_error(given, communicator);
     if (std::string const note = note_of_step(given, estimate_step_limit(given)); !note.empty()) given.note(note);
     for (std::string const& note : given.notes) spdlog::warn("{}", note);
     Axes const axes = given.dynamics.given && uses_joint_coordinates(given.dynamics.integrator) ? Axes::joint : Axes::world;

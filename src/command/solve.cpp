@@ -15,6 +15,7 @@
 #include "integrate/start_velocities.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/choice.hpp"
+#include "report/forward_error.hpp"
 #include "report/solution.hpp"
 #include "report/timing.hpp"
 
@@ -24,11 +25,13 @@ namespace {
 constexpr std::int64_t most_bodies_in_json = 10000;
 
 /// The recursive Newton-Euler residual of the worst chain, where the oracle can have it: every body on this rank, not too many, none
-/// joined by links, no forces that it does not know.
+/// joined by links, no forces that it does not know. Of loops of bodies it says nothing: what their joints' moments are compared with may
+/// vanish where forces pass through the joints.
 Json inverse_dynamics_residual(ChainSystem const& system, Solution const& s) {
     Scene const& scene = system.scene();
-    bool const linked = std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& c) { return c.is_linked(); });
-    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || linked || scene.dynamics.fixman) return nullptr;
+    bool const left_out = std::any_of(scene.chains.begin(), scene.chains.end(),
+                                      [](ChainSpec const& c) { return c.is_linked() || (!c.is_beads() && c.tip == Tip::jointed); });
+    if (system.communicator().size() > 1 || scene.bodies() > most_bodies_in_json || left_out || scene.dynamics.fixman) return nullptr;
     double worst = 0;
     std::size_t body = 0, bead = 0;
     for (ChainSpec const& chain : scene.chains) {
@@ -159,9 +162,17 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     for (auto const& [term, energy] : json["potential_energy"].items())
         text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
     Json const& inverse = json["rnea_residual"];
-    text.entry("inverse dynamics", inverse.is_null()
-                                       ? "residual not computed (several ranks, many bodies, bodies on links or a Fixman potential)"
-                                       : fmt::format("residual {:.2e}, as information", inverse.get<double>()));
+    text.entry("inverse dynamics",
+               inverse.is_null() ? "residual not computed (several ranks, many bodies, bodies on links or in loops, or a Fixman potential)"
+                                 : fmt::format("residual {:.2e}, which grows with the condition number: the estimated error counts",
+                                               inverse.get<double>()));
+    Json const& error = json["estimated_error"];
+    text.entry("estimated error", error.is_null()
+                                      ? "not estimated (beads and linked bodies, or very many bodies)"
+                                      : fmt::format("{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
+                                                    error.get<double>(), json["estimated_error_bound"].get<double>()));
+    if (int const more = json["refinement"]["steps_unasked"]; more > 0)
+        text.entry("", fmt::format("after {} of refinement, which articulated handles take unasked", counted(more, "step", "steps")));
     text.entry("residual",
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
@@ -191,6 +202,15 @@ void prepare_file(Communicator const& communicator, std::string const& file) {
     });
 }
 
+std::string complaint_of(Scene const& scene, ForwardError const& error, double residual, double bound) {
+    if (error.is_small() || !(residual <= bound))
+        return fmt::format("residual {:.2e}, bound {:.2e}: compare with --refine 2 or, of open chains on joints, --handles articulated",
+                           residual, bound);
+    char const* const refine = scene.solver.refine < 2 ? "--refine 2" : "more steps of --refine";
+    return fmt::format("estimated error of the accelerations {:.1e}, bound {:.0e}: take {}", *error.estimate, largest_forward_error,
+                       remedy_of_forward_error(scene, true, {refine, "--handles articulated"}));
+}
+
 Outcome solve_chosen(Scene const& given, Communicator const& communicator, SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
     std::optional<RelaxedScene> relaxed = relaxed_where_asked(given, communicator);
@@ -206,16 +226,25 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
     Json& json = outcome.json = summary_json(system, timing);
     json["backend_reason"] = reason;
     json["refinement"] = {{"steps", refinements}, {"seconds_of_each", refinement}};
-    double const residual = system.residual(), bound = system.residual_bound();
     std::vector<EnergyTerm> const energies = system.potential_energy();
     // Arrays of all bodies are made where somebody reads them; what is not finite makes the residual so.
     bool const wanted = scene.bodies() <= most_bodies_in_json || communicator.max(request.accelerations.empty() ? 0 : 1) > 0;
-    Solution const solution = wanted ? solution_of(system) : Solution{};
-    outcome.valid = communicator.max(residual <= bound && finite(solution.acceleration) && finite(solution.joint_force) ? 0 : 1) == 0;
+    double const bound = system.residual_bound();
+    double residual = 0;
+    Solution solution;
+    ForwardError const error = forward_error(system, [&] {
+        residual = system.residual();
+        if (wanted) solution = solution_of(system);
+    });
+    bool const holds = residual <= bound && error.is_small() && finite(solution.acceleration) && finite(solution.joint_force);
+    outcome.valid = communicator.max(holds ? 0 : 1) == 0;
     on_first_rank(communicator, [&] {
         json["residual"] = residual;
         json["residual_bound"] = bound;
         json["residual_bound_formula"] = "32 depth(tree) 2^-53";
+        json["estimated_error"] = error.estimate ? Json(*error.estimate) : Json(nullptr);
+        json["estimated_error_bound"] = largest_forward_error;
+        json["refinement"]["steps_unasked"] = error.steps;
         json["rnea_residual"] = inverse_dynamics_residual(system, solution);
         json["valid"] = outcome.valid;
         json["potential_energy"] = Json::object();
@@ -223,10 +252,7 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["velocities"] = thermal ? "thermal" : "given";
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
-        if (!outcome.valid)
-            outcome.complaint =
-                fmt::format("residual {:.2e}, bound {:.2e}: compare with --refine 2 or, of open chains on joints, --handles articulated",
-                            residual, bound);
+        if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);
