@@ -25,11 +25,12 @@ hsize_t constexpr largest_chunk = hsize_t{1} << 30;  // bytes
 std::size_t constexpr rows_a_block = 1 << 16, longest_text = 1024;
 
 /// Half precision as h5py writes it; HDF5 1.10 has no name for it.
-hdf5::Type half() {
+hdf5::Type half(H5T_order_t order) {
     hdf5::Type type(H5Tcopy(H5T_IEEE_F32LE));
     H5Tset_fields(type.get(), 15, 10, 5, 0, 10);
     H5Tset_size(type.get(), 2);
     H5Tset_ebias(type.get(), 15);
+    H5Tset_order(type.get(), order);
     return type;
 }
 
@@ -39,7 +40,7 @@ bool is_number(hdf5::Type const& type) {
                            H5T_STD_U64LE,  H5T_STD_U64BE,  H5T_STD_I32LE,  H5T_STD_I32BE,  H5T_STD_U32LE,      H5T_STD_U32BE, H5T_STD_I16LE,
                            H5T_STD_I16BE,  H5T_STD_U16LE,  H5T_STD_U16BE,  H5T_STD_I8LE,   H5T_STD_I8BE,       H5T_STD_U8LE,  H5T_STD_U8BE};
     auto const is = [&](hid_t other) { return H5Tequal(type.get(), other) > 0; };
-    return std::any_of(std::begin(known), std::end(known), is) || is(half().get());
+    return std::any_of(std::begin(known), std::end(known), is) || is(half(H5T_ORDER_LE).get()) || is(half(H5T_ORDER_BE).get());
 }
 
 std::string shape_text(std::vector<hsize_t> const& shape) { return fmt::format("[{}]", fmt::join(shape, ", ")); }
