@@ -185,7 +185,9 @@ TEST(Plan, LinksThatCannotBeAreRefused) {
 }
 
 void expect_no_negative(Json const& value) {
-    if (value.is_number()) EXPECT_GE(value.get<double>(), 0);
+    if (value.is_number()) {
+        EXPECT_GE(value.get<double>(), 0);
+    }
     if (value.is_structured())
         for (Json const& each : value) expect_no_negative(each);
 }
