@@ -59,7 +59,7 @@ TEST(Process, AReaderThatStopsReadingIsNoError) {
 // setrlimit(2): a process that ignores SIGXFSZ gets EFBIG ("File too large") from write().
 TEST(Process, ALimitOfFileSizesEndsARunWithOneLine) {
     TemporaryFolder const folder;
-    Ended const e = shell("ulimit -f 1000; $catena run " + case_file("file-size-limit/scene.yaml") + " --quiet --output m", folder / "");
+    Ended const e = shell("ulimit -f 2000; $catena run " + case_file("file-size-limit/scene.yaml") + " --quiet --output m", folder / "");
     expect_refused(e, 1, "cannot write the trajectory (m/trajectory.h5md): File too large");
     EXPECT_TRUE(fs::exists(folder / "m/checkpoint.h5"));
 }
@@ -185,7 +185,9 @@ TEST(Plan, LinksThatCannotBeAreRefused) {
 }
 
 void expect_no_negative(Json const& value) {
-    if (value.is_number()) EXPECT_GE(value.get<double>(), 0);
+    if (value.is_number()) {
+        EXPECT_GE(value.get<double>(), 0);
+    }
     if (value.is_structured())
         for (Json const& each : value) expect_no_negative(each);
 }
@@ -225,7 +227,8 @@ TEST(Timeline, ForcesOfPathInlineAreNoHandingOver) {
                             "forces.openmm.platform=Reference", "--output", folder / "m"});
     EXPECT_EQ(e.status, 0) << e.err;
     double handing = 0, forces = 0;
-    for (Json const& step : Json::parse(contents(folder / "m/timeline.json")).at("ranks").at(0).at("steps"))
+    Json const timeline = Json::parse(contents(folder / "m/timeline.json"));
+    for (Json const& step : timeline.at("ranks").at(0).at("steps"))
         for (Json const& phase : step.at("phases")) {
             double const seconds = phase.at("end").get<double>() - phase.at("begin").get<double>();
             if (phase.at("name") == "hand over positions") handing += seconds;
