@@ -150,7 +150,9 @@ say "fuzz"
 check fuzz fuzz "$([ $long = yes ] && echo 3600 || echo 5)" || true
 cat "$logs/fuzz.log"
 # What takes half of the tests' time under sanitizers. Vectors' kernels have none, and shared chains run on 2 ranks.
-unbuilt=(dca_stage_kernels dca_levels force_ranks_mpi openmm_runs dca_campaign_long)
+# Of the inputs that once went wrong, those of readers meet the sanitizers; the others are runs.
+runs_of_cases=(cases_accuracy cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
+unbuilt=(dca_stage_kernels dca_levels force_ranks_mpi openmm_runs dca_campaign_long "${runs_of_cases[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then
     slow='^(simd|command_same_bits|trajectory).(ranks_[13-6]|two_stages|together)|force_ranks.Steps|^balance.ranks_[136]'
@@ -161,7 +163,8 @@ if build asan-ubsan "${unbuilt[@]}"; then
     if [ $long = yes ]; then slow='^gpu|ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
-unbuilt=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics mixed-precision)
+unbuilt=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics mixed-precision
+         "${runs_of_cases[@]}" cases_hardening cases_structures cases_systems)
 same_anywhere='^(simd.ranks|physics_(order|trimer|energy))'
 if [ $long = yes ]; then unbuilt=() same_anywhere='^$'; fi
 for preset in no-mpi minimal; do
