@@ -90,6 +90,7 @@ std::vector<DecidingValue> deciding_values(Scene const& scene) {
     add(values, "box", scene.box ? text_of(*scene.box) : "none");
     add(values, "units", scene.si ? "si" : "md", Role::fixed);
     add_chains(values, scene.chains);
+    if (scene.relax) add(values, "relax", true, Role::start);
     return values;
 }
 
@@ -103,7 +104,8 @@ std::vector<ChangedValue> changes(std::map<std::string, std::string> const& befo
         if (old != each.value) changed.push_back({each.key, old, each.value, each.role});
     }
     for (auto const& [key, value] : gone) {
-        changed.push_back({key, value, "none", key.starts_with("chain") ? Role::fixed : Role::free});
+        Role const role = key.starts_with("chain") ? Role::fixed : key == "relax" ? Role::start : Role::free;
+        changed.push_back({key, value, "none", role});
     }
     return changed;
 }
