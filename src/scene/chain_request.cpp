@@ -39,7 +39,7 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
 }  // namespace
 
 void ChainRequest::allow(char const* kind, Names keys) const {
-    for (char const* const key : {"model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"}) {
+    for (char const* const key : {"record", "model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
