@@ -77,6 +77,15 @@ TEST_F(SceneFiles, a_pdb_file_may_have_six_digits_of_serials_and_long_residue_na
     EXPECT_EQ(read(with_pdb_).chains.at(0).beads.residue, (std::vector<std::string>{"HIS", "HIS", "GLY"}));
 }
 
+TEST_F(SceneFiles, residues_at_ends_as_amber_names_them) {
+    write("a.pdb", std::string(atom(1, "CA", "GLY", 'A', 1, 0)).replace(17, 4, "NMET") + atom(2, "CA", "GLY", 'A', 2, 3.8) +
+                       std::string(atom(3, "CA", "GLY", 'A', 3, 7.6)).replace(17, 4, "CHIE"));
+    Scene const s = read("chains: [{pdb: a.pdb, model: calvados2}]");
+    EXPECT_EQ(s.chains.at(0).beads.residue, (std::vector<std::string>{"MET", "GLY", "HIS"}));
+    EXPECT_EQ(notes_of(s), std::vector<std::string>{"`a.pdb`: residues take the parameters and charge of their parents (1 CHIE as HIS, "
+                                                    "1 NMET as MET)"});
+}
+
 TEST_F(SceneFiles, a_long_chain_as_catena_writes_it) {
     std::string text;
     for (int k = 0; k < 20500; ++k) text += atom(k, "CA", "GLY", 'A', (k + 1) % 10000, 3.29 * (k % 20), ' ', k % 2, 0.3 * k);
