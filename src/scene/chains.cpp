@@ -85,6 +85,18 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     return made.velocities;
 }
 
+/// Links of rigid bodies are as long as the positions say, also where a side of the box cuts one.
+void note_cut_link(ChainRequest const& request, LinkedArrays const& linked) {
+    if (!request.scene.box) return;
+    Vec3 const& edge = *request.scene.box;
+    auto const longest = std::max_element(linked.length.begin(), linked.length.end());
+    if (*longest <= 0.5 * std::min({edge[0], edge[1], edge[2]})) return;
+    request.scene.note(
+        fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of the periodic box: give positions "
+                    "that are not wrapped into it, bodies on links are not made whole",
+                    shown(request.name()), longest - linked.length.begin() + 1, *longest));
+}
+
 class ChainReader {
   public:
     ChainReader(Node const& entry, std::size_t index, Scene& scene, bool warm, WrittenSystem const* system)
@@ -156,6 +168,7 @@ class ChainReader {
             request_.allow("bodies on links", {"anchor"});
             ExplicitLinked made = read_linked(source_, request_.base, request_.anchor());
             chain.linked = std::move(made.linked);
+            note_cut_link(request_, chain.linked);
             velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});
