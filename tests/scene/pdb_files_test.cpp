@@ -129,6 +129,15 @@ TEST_F(SceneFiles, rigid_domains_of_a_pdb_file_bear_its_residue_numbers) {
     EXPECT_EQ(refusal(with("[[10, 12], [12, 12A]]")).substr(0, 25), "residues 12 to 12A are no");
 }
 
+TEST_F(SceneFiles, rigid_domains_of_a_sequence_are_counted_from_one) {
+    write("a.pdb", atom(1, "CA", "GLY", 'A', 10, 0) + atom(2, "CA", "GLY", 'A', 11, 3.8) + atom(3, "CA", "GLY", 'A', 12, 3.8, ' ', 4.3) +
+                       atom(4, "CA", "GLY", 'A', 13, 0, ' ', 4.3));
+    Scene const s = read("chains: [{sequence: GGGG, model: calvados2, positions: a.pdb, rigid: [[1, 3]]}]");
+    EXPECT_EQ(s.chains.at(0).linked.size(), 2u);
+    EXPECT_EQ(notes_of(s),
+              std::vector<std::string>{"`rigid` counts the residues of the sequence from 1, not by their numbers in `a.pdb` (10 to 13)"});
+}
+
 TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
     write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 4));
     for (char const* const key : {"positions: a.pdb", "conformation: {pdb: a.pdb}"}) {
