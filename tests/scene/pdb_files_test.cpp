@@ -154,6 +154,17 @@ TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
               "in metres");
 }
 
+/// All beads are within a link of each other: the search for overlaps is not to look at all pairs.
+TEST_F(SceneFiles, a_long_table_in_another_unit_is_refused_at_once) {
+    std::size_t constexpr beads = 100000;
+    std::string table;
+    for (std::size_t k = 0; k < beads; ++k) table += std::to_string(k) + "e-7,0,0\n";
+    write("start.csv", table);
+    std::string const message = refusal("chains: [{sequence: " + std::string(beads, 'G') + ", model: calvados2, positions: start.csv}]");
+    EXPECT_NE(message.find("and 99998 other links would change by more than 30 %; beads "), std::string::npos) << message;
+    EXPECT_NE(message.find(" overlap: 2e-07 nm apart"), std::string::npos) << message;
+}
+
 TEST_F(SceneFiles, what_is_no_chain_is_left_out_of_a_pdb_file) {
     auto const het = [](std::string const& name, std::string const& residue, int number) {
         return "HETATM" + atom(1, name, residue, 'A', number, 50).substr(6);
