@@ -78,6 +78,7 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
 
 std::vector<Vec3> PlaceGrid::clear_cells(Counts const& n, std::size_t wanted) {
     std::vector<Vec3> cells;
+    if (n[0] == 0 || n[1] == 0) return cells;  // layers and rows without cells may be very many
     for (std::int64_t z = 0; z < n[2] && cells.size() < wanted && work_ <= end_of_patience; ++z) add_layer(z, n, wanted, cells);
     return cells;
 }
