@@ -165,6 +165,18 @@ TEST_F(SceneFiles, a_long_table_in_another_unit_is_refused_at_once) {
     EXPECT_NE(message.find(" overlap: 2e-07 nm apart"), std::string::npos) << message;
 }
 
+/// A fusion bears the numbers of its parts. The atoms of the peptide bond tell it from residues in disorder.
+TEST_F(SceneFiles, numbers_may_fall_across_a_peptide_bond) {
+    std::string const one = atom(1, "CA", "GLY", 'A', 1003, 0), two = atom(3, "CA", "GLY", 'A', 263, 3.8);
+    write("a.pdb", one + atom(2, "C", "GLY", 'A', 1003, 1.3, ' ', 1) + atom(4, "N", "GLY", 'A', 263, 2.6, ' ', 1) + two);
+    Scene const s = read("chains: [{pdb: a.pdb, model: calvados2}]");
+    EXPECT_EQ(s.chains.at(0).beads.size(), 2u);
+    EXPECT_EQ(notes_of(s), std::vector<std::string>{"`a.pdb`: residue numbers skip once between neighbours at a link's distance (first: "
+                                                    "1003 to 263): no residue is missing there"});
+    write("a.pdb", one + two);
+    EXPECT_EQ(refusal("chains: [{pdb: a.pdb, model: calvados2}]").rfind("residue GLY 263 follows GLY 1003 in `a.pdb`", 0), 0u);
+}
+
 TEST_F(SceneFiles, what_is_no_chain_is_left_out_of_a_pdb_file) {
     auto const het = [](std::string const& name, std::string const& residue, int number) {
         return "HETATM" + atom(1, name, residue, 'A', number, 50).substr(6);
