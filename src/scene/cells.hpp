@@ -35,12 +35,10 @@ class Images {
 class Cells {
   public:
     Cells(Vec3 const& box, double width, std::size_t points) {
-        double const least = std::cbrt(box[0] * box[1] * box[2] / (8.0 * static_cast<double>(points) + 64));
-        for (std::size_t i = 0; i < 3; ++i) {
-            double const edge = box[static_cast<int>(i)];
-            count_[i] = std::max<std::int64_t>(1, static_cast<std::int64_t>(std::floor(edge / std::max(width, least))));
-            per_length_[i] = static_cast<double>(count_[i]) / edge;
-        }
+        double const wanted = 8.0 * static_cast<double>(points) + 64;
+        double least = std::max(width, std::cbrt(box[0] * box[1] * box[2] / wanted));
+        // A box flatter than its cells has one layer of them, and with that more in all than its volume says.
+        while (cut(box, least) > 16 * wanted) least *= 2;
     }
 
     std::size_t size() const { return static_cast<std::size_t>(count_[0] * count_[1] * count_[2]); }
@@ -69,6 +67,17 @@ class Cells {
         }
     };
 
+    /// Into cells `width` wide or wider; their number.
+    double cut(Vec3 const& box, double width) {
+        double cells = 1;
+        for (std::size_t i = 0; i < 3; ++i) {
+            double const edge = box[static_cast<int>(i)], along = std::max(1.0, std::floor(edge / width));
+            cells *= along;
+            count_[i] = static_cast<std::int64_t>(std::min(along, 1e15));
+            per_length_[i] = static_cast<double>(count_[i]) / edge;
+        }
+        return cells;
+    }
     std::int64_t at(Vec3 const& wrapped, std::size_t axis) const {
         // Rounding may put a point of the last cell one too far.
         return std::min(static_cast<std::int64_t>(wrapped[static_cast<int>(axis)] * per_length_[axis]), count_[axis] - 1);

@@ -36,10 +36,17 @@ std::size_t other_residues(PdbSites const& from, std::vector<std::string> const&
     return others;
 }
 
+/// Whether the file counts its residues from 1 on, or not at all.
+bool counts_from_one(PdbSites const& from) {
+    for (std::size_t k = 0; k < from.sites.size(); ++k)
+        if (from.sites[k].number && from.sites[k].label != std::to_string(k + 1)) return false;
+    return true;
+}
+
 }  // namespace
 
 void ChainRequest::allow(char const* kind, Names keys) const {
-    for (char const* const key : {"model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"}) {
+    for (char const* const key : {"record", "model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"}) {
         Node const* const here = fields.find(key);
         if (here && std::find(keys.begin(), keys.end(), key) == keys.end())
             fail(*here, fmt::format("key `{}` means nothing for {}", key, kind), "leave it out");
@@ -99,6 +106,9 @@ std::vector<Vec3> ChainRequest::from_structure(std::string const& path, Node con
     if (std::size_t const others = other_residues(sites, residues); others > 0)
         scene.note(fmt::format("`{}` names other residues than the sequence in {} of {} places: its positions are taken all the same",
                                sites.file, others, residues.size()));
+    if (!rigid.empty() && !counts_from_one(sites))
+        scene.note(fmt::format("`rigid` counts the residues of the sequence from 1, not by their numbers in `{}` ({} to {})", sites.file,
+                               sites.sites.front().label, sites.sites.back().label));
     return sites.positions();
 }
 

@@ -26,8 +26,8 @@ struct ChainRequest {
     WrittenSystem const* system = nullptr;   // that the scene names beside its chains
     std::int64_t particle = 0;               // of the first bead in it
 
-    /// Refuses those of `model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this kind of
-    /// chain.
+    /// Refuses those of `record, model, positions, links, anchor, conformation, rigid` that are not in `keys`: they mean nothing for this
+    /// kind of chain.
     void allow(char const* kind, Names keys) const;
     /// Origin where none is given.
     Vec3 anchor() const;

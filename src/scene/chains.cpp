@@ -68,19 +68,33 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     ExplicitBeads made = read_beads(source, request.base);
     beads = std::move(made.beads);
     beads.anchor = request.anchor();
-    request.refuse_coincident(beads, source);
     std::vector<double> const written = beads.length;
+    std::ptrdiff_t const first = request.base == Base::fixed ? 0 : 1;
+    auto const is_open = [](double length) { return std::isnan(length); };
+    bool const as_given = request.links_as_given() || std::any_of(written.begin() + first, written.end(), is_open);
+    StartFit fit(request.scene, source, "give positions that fit the links, or leave `length` out");
+    StartFit::Chain const chain{request.name(), beads, request.base};
+    fit.make_whole(chain, as_given);
+    request.refuse_coincident(beads, source);
     take_lengths(beads, request.base);
-    if (request.links_as_given()) return made.velocities;
     bool any = false;
-    for (std::size_t k = 0; k < written.size(); ++k)
-        if (!std::isnan(written[k])) beads.length[k] = written[k], any = true;
-    if (any) {
-        StartFit fit(request.scene, source, "give positions that fit the links, or leave `length` out");
-        fit.fit({request.name(), beads, request.base});
-        fit.note();
-    }
+    for (std::size_t k = 0; k < written.size() && !request.links_as_given(); ++k)
+        if (!is_open(written[k])) beads.length[k] = written[k], any = true;
+    if (any) fit.fit(chain);
+    fit.note();
     return made.velocities;
+}
+
+/// Links of rigid bodies are as long as the positions say, also where a side of the box cuts one.
+void note_cut_link(ChainRequest const& request, LinkedArrays const& linked) {
+    if (!request.scene.box) return;
+    Vec3 const& edge = *request.scene.box;
+    auto const longest = std::max_element(linked.length.begin(), linked.length.end());
+    if (*longest <= 0.5 * std::min({edge[0], edge[1], edge[2]})) return;
+    request.scene.note(
+        fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of the periodic box: give positions "
+                    "that are not wrapped into it, bodies on links are not made whole",
+                    shown(request.name()), longest - linked.length.begin() + 1, *longest));
 }
 
 class ChainReader {
@@ -154,6 +168,7 @@ class ChainReader {
             request_.allow("bodies on links", {"anchor"});
             ExplicitLinked made = read_linked(source_, request_.base, request_.anchor());
             chain.linked = std::move(made.linked);
+            note_cut_link(request_, chain.linked);
             velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});

@@ -13,6 +13,7 @@ namespace catena::scene {
 namespace {
 
 constexpr std::size_t most_single_chains = 1000;
+constexpr std::size_t longest_list = 200;  // characters
 
 using Values = std::vector<DecidingValue>;
 
@@ -45,7 +46,9 @@ void add_openmm(Values& values, OpenMmSpec const& o) {
     content("topology", o.topology);
     std::vector<std::string> map;
     for (auto const& [chain, range] : o.map) map.push_back(fmt::format("{}: [{}, {}]", chain, range.first, range.second));
-    if (!map.empty()) add(values, at + (o.builder.empty() ? "map" : "charge_termini"), fmt::format("{}", fmt::join(map, ", ")));
+    std::string list = fmt::format("{}", fmt::join(map, ", "));
+    if (list.size() > longest_list) list = fmt::format("{} entries {}", map.size(), text_print(list));  // a line names what differs
+    if (!map.empty()) add(values, at + (o.builder.empty() ? "map" : "charge_termini"), list);
     add(values, at + "temperature", o.temperature);
     add(values, at + "ionic_strength", o.ionic_strength);
     if (o.ph) add(values, at + "ph", *o.ph);
@@ -90,6 +93,7 @@ std::vector<DecidingValue> deciding_values(Scene const& scene) {
     add(values, "box", scene.box ? text_of(*scene.box) : "none");
     add(values, "units", scene.si ? "si" : "md", Role::fixed);
     add_chains(values, scene.chains);
+    if (scene.relax) add(values, "relax", true, Role::start);
     return values;
 }
 
@@ -103,7 +107,8 @@ std::vector<ChangedValue> changes(std::map<std::string, std::string> const& befo
         if (old != each.value) changed.push_back({each.key, old, each.value, each.role});
     }
     for (auto const& [key, value] : gone) {
-        changed.push_back({key, value, "none", key.starts_with("chain") ? Role::fixed : Role::free});
+        Role const role = key.starts_with("chain") ? Role::fixed : key == "relax" ? Role::start : Role::free;
+        changed.push_back({key, value, "none", role});
     }
     return changed;
 }

@@ -31,12 +31,13 @@ class Neighbours {
     void check(PdbSite const& a, PdbSite const& b) {
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped = a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
-        if (step < 0 && !wrapped) refuse_order(a, b);
-        bool const skips = step > 1 && !follows_in_hex(a.label, b.label);
+        bool const falls = step < 0 && !wrapped, skips = falls || (step > 1 && !follows_in_hex(a.label, b.label));
         double const apart = distance(a.position, b.position);
         double const peptide = a.carbonyl && b.nitrogen ? distance(*a.carbonyl, *b.nitrogen) : 0;
-        bool const bonded = peptide <= largest_peptide_bond;
-        bool const near = apart <= (skips ? largest_where_numbers_skip : largest_distance);
+        bool const bonded = peptide <= largest_peptide_bond, seen = bonded && a.carbonyl && b.nitrogen;
+        bool const near = apart <= (skips && !seen ? largest_where_numbers_skip : largest_distance);
+        // Fusions bear the numbers of their parts: there the peptide bond says that they are neighbours.
+        if (falls && !(seen && near)) refuse_order(a, b);
         if (near && bonded && apart >= least_distance) return count(a, b, skips);
         if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);

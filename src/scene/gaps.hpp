@@ -6,8 +6,9 @@
 
 namespace catena::scene {
 
-/// InputError, with both residues and their distance, where numbers fall or residues are missing between two that no link of the model can
-/// join; with `links: as_given` a note. Numbers that skip between residues at a link's distance get a note.
+/// InputError, with both residues and their distance, where residues are missing between two that no link of the model can join (with
+/// `links: as_given` a note), and where numbers fall between two without a peptide bond that the file shows. Numbers that skip between
+/// residues at a link's distance get a note.
 void refuse_gaps(PdbSites const& from, ChainRequest const& request, Node const& at);
 
 }  // namespace catena::scene

@@ -225,9 +225,11 @@ ChainPrints prints_of(std::span<ChainSpec const> chains) {
     return {kind.short_text(), loads.short_text(), positions.short_text(), velocities.short_text()};
 }
 
-std::string content_print(std::string const& path) {
+std::string content_print(std::string const& path) { return text_print(content_of(path)); }
+
+std::string text_print(std::string const& text) {
     Fingerprint print;
-    print.add(content_of(path));
+    print.add(text);
     return print.short_text();
 }
 

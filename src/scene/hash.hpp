@@ -21,5 +21,6 @@ struct ChainPrints {
 ChainPrints prints_of(std::span<ChainSpec const> chains);
 /// Of a file's content. Throws as fingerprint().
 std::string content_print(std::string const& path);
+std::string text_print(std::string const& text);
 
 }  // namespace catena::scene

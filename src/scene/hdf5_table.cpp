@@ -137,6 +137,7 @@ void Hdf5Table::for_each_text(std::string const& name, ReadText const& read) con
     std::size_t const length = H5Tget_size(type.get());
     if (length == 0 || length > longest_text)
         refuse(name, whole, fmt::format("the dataset holds texts of {} bytes", length), fmt::format("give {} or fewer", longest_text));
+    refuse_large_chunks(data, name);
     std::vector<char> block(std::min(rows_, rows_a_block) * length);
     for (std::size_t first = 0; first < rows_; first += rows_a_block) {
         std::size_t const count = std::min(rows_a_block, rows_ - first);
@@ -194,8 +195,13 @@ std::vector<hsize_t> Hdf5Table::shape_of(hdf5::Dataset const& data, std::string 
 void Hdf5Table::refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const {
     hdf5::Type const type(sound(H5Dget_type(data.get()), name));
     if (!is_number(type)) refuse(name, whole, "the dataset holds no numbers", "store it as float64");
-    std::size_t const width = H5Tget_size(type.get());
-    hsize_t extent[H5S_MAX_RANK], chunk = width;
+    refuse_large_chunks(data, name);
+}
+
+/// HDF5 takes the memory of a chunk whether or not the file holds it.
+void Hdf5Table::refuse_large_chunks(hdf5::Dataset const& data, std::string const& name) const {
+    hdf5::Type const type(sound(H5Dget_type(data.get()), name));
+    hsize_t extent[H5S_MAX_RANK], chunk = H5Tget_size(type.get());
     hdf5::Properties const how(sound(H5Dget_create_plist(data.get()), name));
     if (H5Pget_layout(how.get()) != H5D_CHUNKED) return;
     int const rank = sound(H5Pget_chunk(how.get(), H5S_MAX_RANK, extent), name);

@@ -39,6 +39,7 @@ class Hdf5Table {
     std::vector<hsize_t> shape_of(hdf5::Dataset const& data, std::string const& name) const;
     void refuse_too_large(std::string const& name) const;
     void refuse_unless_numbers(hdf5::Dataset const& data, std::string const& name) const;
+    void refuse_large_chunks(hdf5::Dataset const& data, std::string const& name) const;
     void for_each_variable_text(hdf5::Dataset const& data, std::string const& name, ReadText const& read) const;
     void read_block(hdf5::Dataset const& data, std::string const& name, std::vector<hsize_t> const& shape, std::size_t first,
                     std::size_t count, hid_t type, void* values) const;

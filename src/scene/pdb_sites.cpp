@@ -230,7 +230,7 @@ class Selection {
             ++alternates_;
             for (PdbAtom const* const other : all)
                 if (other->residue != atom.residue)
-                    mixed_ = fmt::format("; {} is taken, not {}", name_of(residue_of(atom)), other->residue);
+                    mixed_ = fmt::format("; {} is taken, not {}", name_of(residue_of(atom)), shown(other->residue));
         }
         made.sites.push_back({in_nm(atom.position), shown(atom.residue), label_of(atom), residue_number(atom.number),
                               beside(residue, atom, "C"), beside(residue, atom, "N")});

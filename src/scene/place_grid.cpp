@@ -14,6 +14,23 @@ std::int64_t constexpr widest = 4096;
 /// Rounding, of distances: what is within it is tested cell by cell.
 double constexpr rounding = 1e-9;
 
+/// The smallest n from `least` on with `wanted` cells in a grid of n along each edge, where it is not longer than `limit`; else the largest
+/// of these: a long or flat box has far fewer cells than a cube.
+std::int64_t with_room_for(std::size_t wanted, std::int64_t least, std::array<std::int64_t, 3> const& limit) {
+    auto const has_room = [&](std::int64_t n) {
+        double cells = 1;
+        for (std::int64_t const most : limit) cells *= static_cast<double>(std::min(n, most));
+        return cells >= static_cast<double>(wanted);
+    };
+    std::int64_t none = least, some = *std::max_element(limit.begin(), limit.end());
+    if (none >= some || has_room(none)) return none;
+    while (some - none > 1) {
+        std::int64_t const middle = none + (some - none) / 2;
+        (has_room(middle) ? some : none) = middle;
+    }
+    return some;
+}
+
 }  // namespace
 
 PlaceGrid::PlaceGrid(std::vector<Sphere> const& placed, double width, std::optional<Vec3> const& box)
@@ -29,7 +46,8 @@ std::vector<Vec3> PlaceGrid::find(std::size_t wanted) {
     std::int64_t const largest = *std::max_element(limit.begin(), limit.end());
     std::vector<Vec3> cells;
     // The coarsest grid that has room, so that few chains spread over the box and a lone one lies in its middle.
-    for (std::int64_t n = smallest_of_use(wanted); cells.size() < wanted; n = work_ < patience ? n + 1 : 2 * n) {
+    for (std::int64_t n = with_room_for(wanted, smallest_of_use(wanted), limit); cells.size() < wanted;
+         n = work_ < patience ? n + 1 : 2 * n) {
         if (!box_ && n > widest && !placed_.empty()) return beside(wanted);
         cells = clear_cells({std::min(n, limit[0]), std::min(n, limit[1]), std::min(n, limit[2])}, wanted);
         if (n >= largest || work_ > end_of_patience) break;
@@ -60,6 +78,7 @@ std::int64_t PlaceGrid::smallest_of_use(std::size_t wanted) const {
 
 std::vector<Vec3> PlaceGrid::clear_cells(Counts const& n, std::size_t wanted) {
     std::vector<Vec3> cells;
+    if (n[0] == 0 || n[1] == 0) return cells;  // layers and rows without cells may be very many
     for (std::int64_t z = 0; z < n[2] && cells.size() < wanted && work_ <= end_of_patience; ++z) add_layer(z, n, wanted, cells);
     return cells;
 }

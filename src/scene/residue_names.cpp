@@ -80,8 +80,10 @@ ResidueMeaning meaning_of(std::string_view name) {
     std::string key;
     for (char const c : name)
         if (c != ' ') key += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    auto const found = all.find(key);
-    return found == all.end() ? ResidueMeaning{} : found->second;
+    if (auto const found = all.find(key); found != all.end()) return found->second;
+    bool const end = key.size() == 4 && (key[0] == 'N' || key[0] == 'C');
+    auto const inner = end ? all.find(key.substr(1)) : all.end();
+    return inner != all.end() && inner->second.kind == ResidueKind::amino_acid ? inner->second : ResidueMeaning{};
 }
 
 }  // namespace catena::scene

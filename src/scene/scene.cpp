@@ -85,7 +85,10 @@ std::int64_t Scene::bodies() const {
 }
 
 void Scene::note(std::string text) {
-    if (std::find(notes.begin(), notes.end(), text) == notes.end()) notes.push_back(std::move(text));
+    // What is said again follows soon; a search of all would be quadratic where each of many chains has its own note.
+    std::size_t constexpr looked_at = 1000;
+    auto const from = notes.end() - static_cast<std::ptrdiff_t>(std::min(notes.size(), looked_at));
+    if (std::find(from, notes.end(), text) == notes.end()) notes.push_back(std::move(text));
 }
 
 Scene load_scene(std::string const& file, std::vector<std::string> const& overrides) {

@@ -142,8 +142,8 @@ BeadArrays read_sequence(ChainRequest& request, std::int64_t copy) {
     Fields const& fields = request.fields;
     bool const pdb = fields.find("pdb");
     request.allow(pdb ? "a chain from a PDB file" : "a sequence",
-                  pdb ? Names{"model", "links", "anchor", "rigid", "charge_termini"}
-                      : Names{"model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"});
+                  pdb ? Names{"record", "model", "links", "anchor", "rigid", "charge_termini"}
+                      : Names{"record", "model", "positions", "links", "anchor", "conformation", "rigid", "charge_termini"});
     if (request.scene.si) fail(request.node, "model calvados2 in SI units", "write `units: md`: its parameters are in nm, amu and kJ/mol");
     choice<int>(fields.need("model", "model: calvados2"), {{"calvados2", 0}});
     PdbSites from;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "scene/cells.hpp"
 #include "scene/link_projection.hpp"
@@ -180,7 +181,17 @@ void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<doubl
 /// Of an overlap beside what else is wrong.
 std::string StartFit::nearest_text(Chain const& chain) const {
     double const within = overlap * *std::max_element(chain.beads.length.begin(), chain.beads.length.end());
-    auto const near = nearest_pair(chain.beads.position, scene_.box, within, [](std::size_t i, std::size_t j) { return j > i + 1; });
+    std::vector<Vec3> const& position = chain.beads.position;
+    // Beads next but one bound the search, whose time goes with the pairs that it meets: a table in another unit has all within a link.
+    double bound = within;
+    std::size_t nearest = 0;
+    for (std::size_t k = 2; k < position.size(); ++k)
+        if (double const apart = norm(position[k] - position[k - 2]); apart < bound) bound = apart, nearest = k;
+    std::optional<NearPair> near;
+    if (nearest > 0 && bound <= rounding * within)
+        near = NearPair{nearest - 2, nearest, bound};
+    else
+        near = nearest_pair(position, scene_.box, bound * (1 + rounding), [](std::size_t i, std::size_t j) { return j > i + 1; });
     if (!near) return "";
     return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", near->first + 1, near->second + 1, near->distance, unit());
 }

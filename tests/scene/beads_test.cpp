@@ -94,6 +94,19 @@ TEST(Beads, explicit_ones_with_velocities_and_an_anchor) {
     EXPECT_EQ(beads.residue, (std::vector<std::string>{"TRP", "UNK"}));
 }
 
+/// Written with lengths or without: the third bead's image at 10.6 is the one 0.8 from its neighbour.
+TEST(Beads, explicit_ones_are_made_whole_across_the_box) {
+    for (char const* const joint : {"{type: link}", "{type: link, length: 0.8}"}) {
+        Scene const scene = read(std::string("box: {periodic: [10, 10, 10]}\nchains: [{bodies: [{mass: 1, position: [9, 5, 5]}, "
+                                             "{mass: 1, position: [9.8, 5, 5], joint: ") +
+                                 joint + "}, {mass: 1, position: [0.6, 5, 5], joint: " + joint + "}]}]");
+        EXPECT_NEAR(scene.chains[0].beads.position[2][0], 10.6, 1e-12) << joint;
+        EXPECT_NEAR(scene.chains[0].beads.length[2], 0.8, 1e-12) << joint;
+        ASSERT_EQ(scene.notes.size(), 1U) << joint;
+        EXPECT_NE(scene.notes[0].find("1 link of 1 chain is cut by the sides of the periodic box"), std::string::npos) << scene.notes[0];
+    }
+}
+
 TEST(Beads, a_tether_starts_at_its_anchor) {
     for (char const* const conformation : {"extended", "self_avoiding"}) {
         BeadArrays const beads =

@@ -87,6 +87,26 @@ TEST_F(Hdf5Bodies, types_by_number_and_defaults) {
     EXPECT_TRUE(b.torque.empty() && b.stiffness.empty() && b.wrench.empty() && b.first_axis.empty() && b.pitch.empty() && b.drag.empty());
 }
 
+/// A few hundred bytes that would take 2 GB of memory.
+TEST_F(Hdf5Bodies, a_chunk_of_texts_beyond_a_gigabyte) {
+    types_.clear();
+    std::string const scene = write();
+    {
+        hdf5::File const file(H5Fopen(file_.c_str(), H5F_ACC_RDWR, H5P_DEFAULT));
+        hsize_t const rows = 3, most = H5S_UNLIMITED, chunk = hsize_t{1} << 27;
+        hdf5::Type const text(H5Tcopy(H5T_C_S1));
+        H5Tset_size(text.get(), 16);
+        hdf5::Space const space(H5Screate_simple(1, &rows, &most));
+        hdf5::Properties const how(H5Pcreate(H5P_DATASET_CREATE));
+        H5Pset_chunk(how.get(), 1, &chunk);
+        H5Pset_deflate(how.get(), 1);
+        hdf5::Dataset const data(H5Dcreate2(file.get(), "joint_type", text.get(), space.get(), H5P_DEFAULT, how.get(), H5P_DEFAULT));
+        ASSERT_TRUE(data);
+    }
+    EXPECT_EQ(refusal_of(scene),
+              "a chunk of the dataset is larger than a gigabyte, which is read at once" + at("joint_type") + "write it in smaller chunks");
+}
+
 TEST_F(Hdf5Bodies, refusals_of_the_file) {
     EXPECT_EQ(refusal_of("chains: [{base: fixed, bodies: {hdf5: nowhere.h5}}]").rfind("the file is not there or no HDF5 file: ", 0), 0u);
     data_["dampening"] = {{3}, {0, 0, 0}};

@@ -28,6 +28,15 @@ void expect_closed_links(ChainSpec const& chain) {
     }
 }
 
+TEST(Linked, a_link_across_half_the_box_is_noted) {
+    std::string const chain =
+        "chains: [{bodies: [{mass: 1, inertia: [1, 1, 1], position: [9.5, 5, 5]}, {mass: 1, position: [0.5, 5, 5], joint: {type: link}}]}]";
+    EXPECT_TRUE(parse_scene(chain, "s.yaml").notes.empty());
+    Scene const scene = parse_scene("box: {periodic: [10, 10, 10]}\n" + chain, "s.yaml");
+    ASSERT_EQ(scene.notes.size(), 1U);
+    EXPECT_NE(scene.notes[0].find("the link to body 2 is 9 long, beyond half an edge of the periodic box"), std::string::npos);
+}
+
 TEST(Linked, everything_that_a_body_can_say) {
     ChainSpec const chain = chain_of(
         "chains: [{base: fixed, anchor: [0, 0, 1], bodies: ["

@@ -53,6 +53,25 @@ double nearest_pair(std::vector<Bead> const& beads, Vec3 const& box) {
     return std::sqrt(nearest);
 }
 
+/// Grids beyond a box's cells along its short edge are not tried one by one.
+TEST(Places, a_flat_box_without_room_is_refused_at_once) {
+    for (char const* const edges : {"1e9, 1e9, 1e-3", "1e9, 1e-3, 1e9", "1e-3, 1e9, 1e9"}) {
+        std::string const refusal = refusal_of(std::string("units: si\nbox: {periodic: [") + edges +
+                                               "]}\nchains: [{count: 2, generator: {freely_jointed: {beads: 2, length: 0.001}}}]");
+        EXPECT_NE(refusal.find("has room for 0 chains side by side"), std::string::npos) << refusal;
+    }
+}
+
+TEST(Places, a_long_box_is_filled_row_by_row) {
+    Scene const scene =
+        read("box: {periodic: [3.1, 3.1, 3e5]}\nchains: [{count: 20000, generator: {freely_jointed: {beads: 2, length: 1}}}]");
+    ASSERT_EQ(scene.chains.size(), 20000U);
+    for (std::size_t i = 0; i < scene.chains.size(); ++i) {
+        auto const& at = scene.chains[i].beads.position;
+        ASSERT_NEAR(0.5 * (at[0][2] + at[1][2]), 15 * (static_cast<double>(i) + 0.5), 1e-6) << i;
+    }
+}
+
 void expect_links(Scene const& scene) {
     for (ChainSpec const& chain : scene.chains)
         for (std::size_t k = 1; k < chain.beads.size(); ++k)

@@ -77,6 +77,15 @@ TEST_F(SceneFiles, a_pdb_file_may_have_six_digits_of_serials_and_long_residue_na
     EXPECT_EQ(read(with_pdb_).chains.at(0).beads.residue, (std::vector<std::string>{"HIS", "HIS", "GLY"}));
 }
 
+TEST_F(SceneFiles, residues_at_ends_as_amber_names_them) {
+    write("a.pdb", std::string(atom(1, "CA", "GLY", 'A', 1, 0)).replace(17, 4, "NMET") + atom(2, "CA", "GLY", 'A', 2, 3.8) +
+                       std::string(atom(3, "CA", "GLY", 'A', 3, 7.6)).replace(17, 4, "CHIE"));
+    Scene const s = read("chains: [{pdb: a.pdb, model: calvados2}]");
+    EXPECT_EQ(s.chains.at(0).beads.residue, (std::vector<std::string>{"MET", "GLY", "HIS"}));
+    EXPECT_EQ(notes_of(s), std::vector<std::string>{"`a.pdb`: residues take the parameters and charge of their parents (1 CHIE as HIS, "
+                                                    "1 NMET as MET)"});
+}
+
 TEST_F(SceneFiles, a_long_chain_as_catena_writes_it) {
     std::string text;
     for (int k = 0; k < 20500; ++k) text += atom(k, "CA", "GLY", 'A', (k + 1) % 10000, 3.29 * (k % 20), ' ', k % 2, 0.3 * k);
@@ -120,6 +129,15 @@ TEST_F(SceneFiles, rigid_domains_of_a_pdb_file_bear_its_residue_numbers) {
     EXPECT_EQ(refusal(with("[[10, 12], [12, 12A]]")).substr(0, 25), "residues 12 to 12A are no");
 }
 
+TEST_F(SceneFiles, rigid_domains_of_a_sequence_are_counted_from_one) {
+    write("a.pdb", atom(1, "CA", "GLY", 'A', 10, 0) + atom(2, "CA", "GLY", 'A', 11, 3.8) + atom(3, "CA", "GLY", 'A', 12, 3.8, ' ', 4.3) +
+                       atom(4, "CA", "GLY", 'A', 13, 0, ' ', 4.3));
+    Scene const s = read("chains: [{sequence: GGGG, model: calvados2, positions: a.pdb, rigid: [[1, 3]]}]");
+    EXPECT_EQ(s.chains.at(0).linked.size(), 2u);
+    EXPECT_EQ(notes_of(s),
+              std::vector<std::string>{"`rigid` counts the residues of the sequence from 1, not by their numbers in `a.pdb` (10 to 13)"});
+}
+
 TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
     write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 4));
     for (char const* const key : {"positions: a.pdb", "conformation: {pdb: a.pdb}"}) {
@@ -134,6 +152,29 @@ TEST_F(SceneFiles, positions_and_conformation_from_a_pdb_file) {
     EXPECT_EQ(refusal("units: si\nchains: [{generator: {freely_jointed: {beads: 2, length: 1}}, positions: a.pdb}]"),
               "positions in a PDB file are in angstrom, the scene is in SI units (s.yaml: chains[0].positions, line 2): give a table x,y,z "
               "in metres");
+}
+
+/// All beads are within a link of each other: the search for overlaps is not to look at all pairs.
+TEST_F(SceneFiles, a_long_table_in_another_unit_is_refused_at_once) {
+    std::size_t constexpr beads = 100000;
+    std::string table;
+    for (std::size_t k = 0; k < beads; ++k) table += std::to_string(k) + "e-7,0,0\n";
+    write("start.csv", table);
+    std::string const message = refusal("chains: [{sequence: " + std::string(beads, 'G') + ", model: calvados2, positions: start.csv}]");
+    EXPECT_NE(message.find("and 99998 other links would change by more than 30 %; beads "), std::string::npos) << message;
+    EXPECT_NE(message.find(" overlap: 2e-07 nm apart"), std::string::npos) << message;
+}
+
+/// A fusion bears the numbers of its parts. The atoms of the peptide bond tell it from residues in disorder.
+TEST_F(SceneFiles, numbers_may_fall_across_a_peptide_bond) {
+    std::string const one = atom(1, "CA", "GLY", 'A', 1003, 0), two = atom(3, "CA", "GLY", 'A', 263, 3.8);
+    write("a.pdb", one + atom(2, "C", "GLY", 'A', 1003, 1.3, ' ', 1) + atom(4, "N", "GLY", 'A', 263, 2.6, ' ', 1) + two);
+    Scene const s = read("chains: [{pdb: a.pdb, model: calvados2}]");
+    EXPECT_EQ(s.chains.at(0).beads.size(), 2u);
+    EXPECT_EQ(notes_of(s), std::vector<std::string>{"`a.pdb`: residue numbers skip once between neighbours at a link's distance (first: "
+                                                    "1003 to 263): no residue is missing there"});
+    write("a.pdb", one + two);
+    EXPECT_EQ(refusal("chains: [{pdb: a.pdb, model: calvados2}]").rfind("residue GLY 263 follows GLY 1003 in `a.pdb`", 0), 0u);
 }
 
 TEST_F(SceneFiles, what_is_no_chain_is_left_out_of_a_pdb_file) {

@@ -1,4 +1,7 @@
 // Whole scenes: every section's values and defaults, and the hash.
+#include <map>
+
+#include "scene/deciding.hpp"
 #include "tests/scene/refusal.hpp"
 
 namespace catena::test {
@@ -145,6 +148,32 @@ TEST(Hash, stays_the_same) {
                           "s.yaml")
                   .hash,
               "6388f9d9a6fc53d23975b7b8d3de31c0");
+}
+
+std::map<std::string, std::string> deciding_values_of(std::string const& yaml) {
+    std::map<std::string, std::string> values;
+    for (scene::DecidingValue const& each : scene::deciding_values(parse_scene(yaml, "s.yaml"))) values[each.key] = each.value;
+    return values;
+}
+
+/// What changes the hash can be named.
+TEST(Deciding, relaxation_is_among_what_a_restart_compares) {
+    std::string const chain = "chains: [{sequence: GG, model: calvados2}]\n";
+    auto const changed = scene::changes(deciding_values_of(chain), scene::deciding_values(parse_scene(chain + "relax: true", "s.yaml")));
+    ASSERT_EQ(changed.size(), 1U);
+    EXPECT_EQ(changed[0].key, "relax");
+    EXPECT_EQ(changed[0].role, scene::Role::start);
+}
+
+TEST(Deciding, ends_of_many_chains_fit_a_line) {
+    std::string const few =
+        "forces: {openmm: {builder: calvados2}}\nchains: [{name: a, sequence: GG, model: calvados2, charge_termini: N}]";
+    EXPECT_EQ(deciding_values_of(few).at("forces.openmm.charge_termini"), "a: [1, 0]");
+    std::string const many =
+        "forces: {openmm: {builder: calvados2}}\nchains: [{count: 500, sequence: GG, model: calvados2, charge_termini: N}]";
+    std::string const value = deciding_values_of(many).at("forces.openmm.charge_termini");
+    EXPECT_EQ(value.substr(0, 12), "500 entries ");
+    EXPECT_LT(value.size(), 40U);
 }
 
 TEST(Names, of_what_can_be_chosen) {
