@@ -152,6 +152,9 @@ class ConstrainedStepper final : public Stepper {
     double look(std::int64_t n) override {
         return closed_.look(n, [this] { prepare(nullptr); });
     }
+    bool mend(std::int64_t n) override {
+        return closed_.mend(n, [this] { prepare(nullptr); });
+    }
     std::string note_of_sweeps() const override { return closed_.text(); }
     double early() const override { return ConstrainedIntegrator::early; }
     bool add_sweep() override {
@@ -191,9 +194,7 @@ class ConstrainedStepper final : public Stepper {
     }
 
   private:
-    static double pending_in(Checkpoint const& c) {
-        return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2));
-    }
+    static double pending_in(Checkpoint const& c) { return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2)); }
     void draw_velocities(DynamicsSpec const& d) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             std::vector<bool> thermal;
