@@ -65,6 +65,8 @@ void ClosedSteps::repeat(std::int64_t n, std::function<void()> const& prepare) {
     integrator_.put_back(kept_->state);
     for (std::int64_t m = kept_->step; m <= n; ++m) {
         try {
+            // A checkpoint there may be the next to come: as after a restart from it.
+            if (m == n && system_.openmm()) system_.openmm()->renew_ghosts();
             prepare();
             if (m < n) take(m, prepare);
         } catch (SharedError const& error) {
