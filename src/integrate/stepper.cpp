@@ -63,6 +63,7 @@ class JointStepper final : public Stepper {
     }
     void branch(Checkpoint const& c) override {
         origin_ = number_in(c, array_of_origin, 0);
+        integrator_->set_origin(origin_);
         set_time(c.step);
     }
     void restore(Checkpoint const& c) override {
