@@ -101,7 +101,7 @@ class Run {
             bool const saves_by_time = agreed == save_wish;
             stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
-            if (saves_by_time && !renews && system_.openmm()) {
+            if (saves_by_time && !renews && system_.openmm() && communicator_.size() > 1) {
                 system_.openmm()->renew_ghosts();
                 prepare(n, nullptr);
             }

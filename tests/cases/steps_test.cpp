@@ -110,7 +110,14 @@ TEST(Steps, ASlackRopeGoesThroughItsJerk) {
     expect_closed(column(folder, "constraint_error"), 7);
     // Whose sweeps have grown until then, so that they lose the joints' matrices at the jerk.
     EXPECT_EQ(run(folder, "slack.yaml", "700", {"--overwrite"}).at("valid"), true);
+    std::vector<double> const alone = column(folder, "total_energy");
     expect_closed(column(folder, "constraint_error"), 700);
+    // On two ranks, of which one alone may lose matrices.
+    Ended const ended = catena_on(
+        2, {"run", "slack.yaml", "--output", "out", "--quiet", "--overwrite", "--set", "output.every=1", "--set", "solver.threads=1"},
+        folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(column(folder, "total_energy"), alone);
 }
 
 TEST(Steps, AnInvalidRunSaysWhichCheckAtWhichStepOnItsLastLine) {
