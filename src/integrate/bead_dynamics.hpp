@@ -197,6 +197,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
 
     void evaluate() override {
+        trouble_.check();
         settle_forces();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         ring_ends_.take(observed_.view(), observed_.view());
