@@ -1,6 +1,7 @@
 #include "integrate/stepper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "integrate/checkpoint_values.hpp"
@@ -169,7 +170,8 @@ class ConstrainedStepper final : public Stepper {
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
-        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
+        // A branch with a shorter step that was not taken yet owes more.
+        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(std::clamp(2 * integrator_.pending(), 0.0, 2.0));
         c.arrays[array_of_kick] = {integrator_.pending()};
     }
     /// The half kick that ends the last step is of that step's length.
@@ -216,7 +218,9 @@ class ConstrainedStepper final : public Stepper {
 
 double number_in(Checkpoint const& c, char const* array, double otherwise) {
     auto const found = c.arrays.find(array);
-    return found == c.arrays.end() || found->second.empty() ? otherwise : found->second.front();
+    if (found == c.arrays.end() || found->second.empty()) return otherwise;
+    if (!std::isfinite(found->second.front())) refuse_checkpoint(std::string(array) + " is not finite");
+    return found->second.front();
 }
 
 bool Stepper::adapt(SweepWatch& watch, double error, double tolerance) {
