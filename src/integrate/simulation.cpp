@@ -101,10 +101,6 @@ class Run {
             bool const saves_by_time = agreed == save_wish;
             stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
-            if (saves_by_time && !renews && system_.openmm() && communicator_.size() > 1) {
-                system_.openmm()->renew_ghosts();
-                prepare(n, nullptr);
-            }
             // What is saved has been looked at: steps that left joints open cannot be taken again after a restart.
             double const error = looks || saves_by_time || ends || n == first ? look(n) : 0;
             if (looks) adapt(n, error);
