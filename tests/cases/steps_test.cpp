@@ -95,6 +95,22 @@ TEST(Steps, CheckTellsTheLongestStableStep) {
     expect_good(ended);
     EXPECT_NE(ended.out.find("longest stable step"), std::string::npos) << ended.out;
 }
+// Rods of 1e8 and 1e-8 amu in turn, which handles of less digits cannot take.
+TEST(Steps, TheLongestStableStepIsFoundWithTheRunsHandles) {
+    TemporaryFolder const folder;
+    std::ofstream scene(folder / "rods.yaml");
+    scene << "chains:\n  - name: r\n    base: fixed\n    bodies:\n";
+    for (int k = 0; k < 20; ++k) {
+        double const mass = k % 2 == 0 ? 1e8 : 1e-8;
+        scene << "      - {mass: " << mass << ", inertia: [" << mass / 1000 << ", " << mass / 12 << ", " << mass / 12
+              << "], com: [0.5, 0, 0], joint: {type: revolute, axis: [0, 0, 1], translation: [" << (k == 0 ? 0 : 1)
+              << ", 0, 0], stiffness: 1}}\n";
+    }
+    scene << "dynamics: {integrator: velocity-verlet, step: 1e-7, steps: 5}\nsolver: {handles: articulated}\n";
+    scene.close();
+    expect_good(catena({"check", "rods.yaml"}, folder.path()));
+}
+
 // A folded rope with a weight of 10 kg falls by 2 m and is taut within one step of 1 ms.
 TEST(Steps, ASlackRopeGoesThroughItsJerk) {
     TemporaryFolder const folder;
