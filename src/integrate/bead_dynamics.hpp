@@ -75,7 +75,9 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
 
     void update_configuration() override { parts().update_configuration(); }
-    void assemble_matrices() override { solver_->assemble_matrices(directions()); }
+    void assemble_matrices() override {
+        held([&] { solver_->assemble_matrices(directions()); });
+    }
     void set_simple_forces() override {
         forces_ = {gravity_, {}};
         forces_are_ahead_ = true;
@@ -132,7 +134,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
     int drift_closing(double h, int sweeps, Closing const& closing) override {
         drift(h, sweeps);
-        return closing.close(sweeps, [&] { return constraint_error(); }, [&] { parts().close(h); });
+        return closing.close(sweeps, [&] { return agreed_error(); }, [&] { parts().close(h); });
     }
     void thermalise(Thermostat const& thermostat, std::uint64_t step) override { parts().thermalise(thermostat, step); }
     /// Block by block where it pays.
@@ -155,10 +157,19 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
 
     double constraint_error() override {
         settle_forces();  // whoever reads them says what is wrong with them
-        solver_->check();
+        check();
+        return agreed_error();
+    }
+    double agreed_error() override {
+        settle_forces();
         exchange_from_inboard(communicator_, group_, position_.view(), space_);
         ring_ends_.take(position_.view(), position_.view());
         return communicator_.max(own_error());
+    }
+    std::string trouble() override {
+        HeldTrouble found;
+        found.hold([&] { check(); });
+        return found.text();
     }
     /// Neighbours' positions are here: update_configuration() has brought them.
     double own_error() override {
@@ -169,22 +180,24 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     }
 
     std::vector<StateArray> state() const override {
-        solver_->check();
+        check();
         return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
                 to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host())};
     }
     void set_state(std::vector<StateArray> const& arrays) override {
         put_at_step_ = never;
+        trouble_.forget();
         space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view, space_.on_host()); });
         space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view, space_.on_host()); });
     }
     std::vector<StateArray> observed_state() const override {
-        solver_->check();
+        check();
         return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
                 to_array<3>("velocity", space_.read(observed_).view(), space_.on_host())};
     }
 
     void evaluate() override {
+        trouble_.check();
         settle_forces();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         ring_ends_.take(observed_.view(), observed_.view());
@@ -206,11 +219,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         return solver_->time_evaluations(where(), what(), {{}, change_.view(), {}, {}}, chained, repeat);
     }
     BodyResults results() const override {
-        solver_->check();
+        check();
         return with_solution([](BeadSolution const& s) { return s.results(); });
     }
     double residual() override {
-        solver_->check();
+        check();
         exchange_from_inboard(communicator_, group_, observed_.view(), space_);
         auto const& observed = space_.read(observed_);
         return with_solution([&](BeadSolution const& s) { return s.residual(communicator_, observed.view(), tip_); });
@@ -263,6 +276,18 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
 
   private:
     static constexpr std::int64_t never = -1;
+    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that itself.
+    template <class Action>
+    void held(Action const& action) {
+        if constexpr (Space::answers_at_once)
+            trouble_.hold(action);
+        else
+            action();
+    }
+    void check() const {
+        solver_->check();
+        trouble_.check();
+    }
     BeadStep<Way> parts() { return {chains(), {*this}}; }
     /// Whether the solver, if it is one of this leaf, carried the chains through the step.
     template <class Leaf>
@@ -270,8 +295,10 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         if constexpr (Space::template has_blocks<Leaf::K>) {
             auto* const solver = dynamic_cast<dca::TreeSolver<Leaf, Space>*>(solver_.get());
             if (solver == nullptr || !solver->carries()) return false;
-            solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(), [&](dca::TreeSweeps<Leaf> const& sweeps) {
-                return StepOfChains<Leaf>{sweeps, chains(), step, forces_are_ahead_, forces_};
+            held([&] {
+                solver->carry(directions(), step.matrix_sweeps(), step.bias_sweeps(), [&](dca::TreeSweeps<Leaf> const& sweeps) {
+                    return StepOfChains<Leaf>{sweeps, chains(), step, forces_are_ahead_, forces_};
+                });
             });
             put_at_step_ = forces_are_ahead_ && forces_.particles.bead ? forces_.particles.order : never;
             return true;
@@ -346,6 +373,7 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     RingEnds<Space> ring_ends_;
     typename Space::template Mirror<3> position_mirror_, force_mirror_;
     BeadForces forces_;
+    HeldTrouble trouble_;
     bool forces_are_ahead_ = false, forces_are_out_ = false;
     std::int64_t put_at_step_ = never;  // DeviceParticles::order of the particles that the last step moved with the beads
     std::unique_ptr<FixmanPotential> fixman_;

@@ -1,6 +1,8 @@
 #include "integrate/closed_steps.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
@@ -24,9 +26,14 @@ void ClosedSteps::note(std::int64_t n) {
 
 double ClosedSteps::error() {
     double worst = 0;
-    for (AbsoluteDynamics* const group : system_.absolute()) worst = larger(worst, group->constraint_error());
+    trouble_.clear();
+    for (AbsoluteDynamics* const group : system_.absolute()) {
+        ClosingDrifts& drifts = closing_drifts_of(*group);
+        if (std::string const found = drifts.trouble(); trouble_.empty()) trouble_ = found;
+        worst = larger(worst, drifts.agreed_error());
+    }
     system_.check_forces();
-    return worst;
+    return system_.communicator().max(trouble_.empty() ? worst : std::numeric_limits<double>::quiet_NaN());
 }
 
 bool ClosedSteps::can_keep(std::int64_t n) const { return !uses_gpu(system_.backend()) || n < first_steps; }
@@ -34,28 +41,42 @@ bool ClosedSteps::can_keep(std::int64_t n) const { return !uses_gpu(system_.back
 double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
     double now = error();
     double const worst = larger(system_.communicator().max(worst_since_), now);
-    if (!(worst <= tolerance_) && kept_ && kept_->step < n) {
+    if (!(worst <= tolerance_) && can_repeat(n)) {
         repeat(n, prepare);
         now = error();
     }
+    if (std::isnan(now))
+        on_every_rank(system_.communicator(), [&] {
+            if (!trouble_.empty()) throw ComputationError("at step " + std::to_string(n) + ": " + trouble_);
+        });
     kept_ = can_keep(n) ? std::optional(Start{n, integrator_.keep()}) : std::nullopt;
     worst_since_ = 0;
     return now;
 }
 
+bool ClosedSteps::mend(std::int64_t n, std::function<void()> const& prepare) {
+    if (!can_repeat(n) || larger(system_.communicator().max(worst_since_), error()) <= tolerance_) return false;
+    repeat(n, prepare);
+    return true;
+}
+
 void ClosedSteps::repeat(std::int64_t n, std::function<void()> const& prepare) {
+    worst_since_ = 0;
     integrator_.put_back(kept_->state);
-    for (std::int64_t m = kept_->step; m < n; ++m) {
+    for (std::int64_t m = kept_->step; m <= n; ++m) {
         try {
+            // A checkpoint there may be the next to come: as after a restart from it.
+            if (m == n && system_.openmm()) system_.openmm()->renew_ghosts();
             prepare();
-            take(m, prepare);
+            if (m < n) take(m, prepare);
         } catch (SharedError const& error) {
+            throw SharedError("at step " + std::to_string(m) + ": " + error.what());
+        } catch (StaysOpen const& error) {
             throw SharedError("at step " + std::to_string(m) + ": " + error.what());
         } catch (ComputationError const& error) {
             throw ComputationError("at step " + std::to_string(m) + ": " + error.what());
         }
     }
-    prepare();
 }
 
 void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {

@@ -24,9 +24,12 @@ class ClosedSteps {
     /// at after each of the first steps and then now and again.
     void note(std::int64_t n);
     /// At step n, prepared. Returns the error there; what took steps again has called `prepare` last. Collective. Throws ComputationError
-    /// that names the step where no number of sweeps closes the joints.
+    /// that names the step where no number of sweeps closes the joints, or where matrices are lost and steps cannot be taken again.
     double look(std::int64_t n, std::function<void()> const& prepare);
-    /// At the positions of now; NaN where a position is none. Collective.
+    /// At step n, which could not be prepared, as all ranks know: steps since the look before that left joints open are taken again.
+    /// Returns whether there were any. Collective.
+    bool mend(std::int64_t n, std::function<void()> const& prepare);
+    /// At the positions of now; NaN where a position is none or matrices are lost. The same on all ranks. Collective.
     double error();
     /// Steps that took further sweeps: how many, from which on, the most sweeps; null of none.
     nlohmann::json summary() const;
@@ -34,6 +37,7 @@ class ClosedSteps {
     std::string text() const;
 
   private:
+    bool can_repeat(std::int64_t n) const { return kept_ && kept_->step < n; }
     void repeat(std::int64_t n, std::function<void()> const& prepare);
     void take(std::int64_t n, std::function<void()> const& prepare);
     bool can_keep(std::int64_t n) const;
@@ -51,6 +55,7 @@ class ClosedSteps {
     double worst_since_ = 0;
     std::int64_t steps_ = 0, first_ = 0;
     int most_sweeps_ = 0;
+    std::string trouble_;  // of this rank's matrices, as error() found it
 };
 
 }  // namespace catena

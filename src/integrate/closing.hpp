@@ -2,6 +2,9 @@
 #pragma once
 
 #include <functional>
+#include <string>
+
+#include "error.hpp"
 
 namespace catena {
 
@@ -9,7 +12,7 @@ namespace catena {
 struct Closing {
     double tolerance = 1e-10;  // sweeps go on where the error exceeds it
     double enough = 1e-12;     // they end below that, or where rounding is all that is left
-    int most = 30;             // sweeps of a drift in all
+    int most = 30;             // sweeps of a drift in all, or the few that tell rounding
 
     /// Calls `sweep` while `error()` asks for it, after `done` sweeps. Returns the number of calls. Throws ComputationError where the
     /// joints stay open after `most` sweeps or come apart.
@@ -24,6 +27,32 @@ class ClosingDrifts {
     virtual int drift_closing(double h, int sweeps, Closing const& closing) = 0;
     /// AbsoluteDynamics::constraint_error() of this rank's joints, after step(). Collective, without an agreement of the ranks.
     virtual double own_error() = 0;
+    /// AbsoluteDynamics::constraint_error() whatever became of matrices: where these are lost on one rank, all ranks come back. Collective.
+    virtual double agreed_error() = 0;
+    /// What is wrong with matrices on this rank since the state was set last; empty: nothing.
+    virtual std::string trouble() = 0;
+};
+
+/// What a rank finds wrong within a step, kept until all ranks look: thrown at once it would leave the others waiting, and no step could be
+/// taken again.
+class HeldTrouble {
+  public:
+    template <class Action>
+    void hold(Action const& action) {
+        try {
+            action();
+        } catch (ComputationError const& error) {
+            if (text_.empty()) text_ = error.what();
+        }
+    }
+    void check() const {
+        if (!text_.empty()) throw ComputationError(text_);
+    }
+    std::string const& text() const { return text_; }
+    void forget() { text_.clear(); }
+
+  private:
+    std::string text_;
 };
 
 }  // namespace catena

@@ -24,6 +24,8 @@ class JointIntegrator {
     virtual void step(double h) = 0;
     /// What the next step needs beside the states is made where it is not there yet. Collective.
     virtual void prepare() {}
+    /// The groups' time at step 0, from where noise counts steps: not 0 in a branch with another step.
+    virtual void set_origin(double /*time*/) {}
     /// Whether that is the groups' carried rates.
     virtual bool carries_rates() const { return false; }
     /// Corrections of jointed tips within a step, where these are closed between inner steps.

@@ -8,6 +8,7 @@ namespace {
 class Kicks final : public JointIntegrator {
   public:
     Kicks(ChainSystem& system, JointThermostat const& thermostat) : system_(system), thermostat_(thermostat) { system.keep_matrices(); }
+    void set_origin(double time) override { origin_ = time; }
     bool carries_rates() const override { return true; }
     void restored(Checkpoint const&) override { ready_ = true; }
     void prepare() override {
@@ -20,7 +21,7 @@ class Kicks final : public JointIntegrator {
     void step(double h) override {
         prepare();
         for (JointDynamics* const group : system_.joint()) {
-            auto const number = static_cast<std::uint64_t>(std::llround(group->time() / h));
+            auto const number = static_cast<std::uint64_t>(std::llround((group->time() - origin_) / h));
             group->kick_by_carried(0.5 * h);
             group->drift(is_warm() ? 0.5 * h : h);
             if (!is_warm()) continue;
@@ -46,6 +47,7 @@ class Kicks final : public JointIntegrator {
 
     ChainSystem& system_;
     JointThermostat thermostat_;
+    double origin_ = 0;
     bool ready_ = false;
 };
 

@@ -96,7 +96,9 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
                         [c = chains(), ring = rings_.data()] CATENA_LAMBDA(std::int64_t i) { c.set_first_direction(ring[i], i); });
         exchange_from_outboard(communicator_, group_, direction_.view(), space_);
     }
-    void assemble_matrices() override { solver_->assemble_matrices(configuration()); }
+    void assemble_matrices() override {
+        held([&] { solver_->assemble_matrices(configuration()); });
+    }
     void set_simple_forces() override {
         RigidChains const c = chains();
         if (given_.joint_loads) {
@@ -151,8 +153,14 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
     double constraint_error() override {
-        solver_->check();
-        return communicator_.max(own_error());
+        check();
+        return agreed_error();
+    }
+    double agreed_error() override { return communicator_.max(own_error()); }
+    std::string trouble() override {
+        HeldTrouble found;
+        found.hold([&] { check(); });
+        return found.text();
     }
     double own_error() override {
         set_ends();
@@ -160,7 +168,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
     std::vector<StateArray> state() const override {
-        solver_->check();
+        check();
         std::vector<StateArray> all{to_array<3>("position", space_.read(position_).view(), space_.on_host()),
                                     to_array<3>("velocity", space_.read(velocity_).view(), space_.on_host()),
                                     to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
@@ -170,6 +178,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         return all;
     }
     void set_state(std::vector<StateArray> const& arrays) override {
+        trouble_.forget();
         space_.edit(position_, [&](View<3> view) { from_array<3>(array_named(arrays, "position"), view, space_.on_host()); });
         space_.edit(velocity_, [&](View<3> view) { from_array<3>(array_named(arrays, "velocity"), view, space_.on_host()); });
         space_.edit(orientation_, [&](View<4> view) { from_array<4>(array_named(arrays, "orientation"), view, space_.on_host()); });
@@ -177,7 +186,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         if (rotors() > 0) space_.edit(rotor_, [&](View<3> view) { from_array<3>(array_named(arrays, "rotor"), view, space_.on_host()); });
     }
     std::vector<StateArray> observed_state() const override {
-        solver_->check();
+        check();
         return {to_array<3>("position", space_.read(position_).view(), space_.on_host()),
                 to_array<3>("velocity", space_.read(observed_velocity_).view(), space_.on_host()),
                 to_array<4>("orientation", space_.read(orientation_).view(), space_.on_host()),
@@ -186,6 +195,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
 
     void evaluate() override {
         if (rotors() > 0) throw std::logic_error("forces of implicit joints are known within a step alone");
+        trouble_.check();
         set_loads();
         solver_->solve(loads(), found());
     }
@@ -199,11 +209,11 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         return solver_->time_evaluations(configuration(), loads_at_once(), out, chained, repeat);
     }
     BodyResults results() const override {
-        solver_->check();
+        check();
         return with_solution([](RigidSolution const& s) { return s.results(); });
     }
     double residual() override {
-        solver_->check();
+        check();
         return with_solution([&](RigidSolution const& s) { return s.residual(communicator_); });
     }
     PotentialEnergy potential() override {
@@ -270,6 +280,18 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
 
   private:
+    /// Where the solver finds matrices lost at once, for whoever looks next; on a GPU it keeps that itself.
+    template <class Action>
+    void held(Action const& action) {
+        if constexpr (Space::answers_at_once)
+            trouble_.hold(action);
+        else
+            action();
+    }
+    void check() const {
+        solver_->check();
+        trouble_.check();
+    }
     /// Sets the state where the scene starts. Returns where the tips are held there.
     std::vector<HeldTip> start(Scene const& scene) {
         RigidStart const at = place_bodies(group_, scene, communicator_);
@@ -390,6 +412,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     List<HeldTip> tips_;
     List<LocalRing> rings_;
     RingEnds<Space> ring_ends_;
+    HeldTrouble trouble_;
 };
 
 }  // namespace catena

@@ -94,14 +94,15 @@ class Run {
             bool const renews = (saves || n == last_) && system_.openmm();
             if (renews) system_.openmm()->renew_ghosts();  // as after a restart from here
             Traffic const before = chains_traffic();
-            at_step(n, [&] { stepper_->prepare(timeline); });
+            bool const mended = !prepare(n, timeline);
             Traffic of_step = chains_traffic() - before;
             if (n == first) open(n);  // nothing is written or replaced before forces have been found
             int const agreed = n == last_ ? 0 : agreement.reason_at(n);
             bool const saves_by_time = agreed == save_wish;
             stopped_by_ = std::max(0, agreed - save_wish);
             bool const ends = n == last_ || stopped_by_ != 0;
-            double const error = looks || ends || n == first ? look(n) : 0;
+            // What is saved has been looked at: steps that left joints open cannot be taken again after a restart.
+            double const error = looks || saves_by_time || ends || n == first ? look(n) : 0;
             if (looks) adapt(n, error);
             if (writes) output(n, error);
             if (!ends) at_start_.reset();
@@ -118,7 +119,7 @@ class Run {
             at_step(n, [&] { stepper_->step(n, timeline); });
             of_step += chains_traffic() - prepared;
             stepper_->note_error(n);
-            if (n > first && !renews) count_messages(of_step);  // others may evaluate once more
+            if (n > first && !renews && !mended) count_messages(of_step);  // others may evaluate once more
             if (n == first) {
                 system_.wait();
                 first_step_after_ = seconds_now() - options_.begun;
@@ -296,8 +297,8 @@ class Run {
     double look(std::int64_t n) {
         double const error = stepper_->look(n);
         if (!std::isfinite(error))
-            throw ComputationError("the state is not finite at step " + std::to_string(n) +
-                                   ": choose a smaller dynamics.step, or look at the start");
+            throw SharedError("the state is not finite at step " + std::to_string(n) +
+                              ": choose a smaller dynamics.step, or look at the start");
         return error;
     }
 
@@ -334,6 +335,20 @@ class Run {
         } catch (ComputationError const& error) {
             throw ComputationError("at step " + std::to_string(n) + ": " + error.what());
         }
+    }
+
+    /// Forces that fail where a step has torn joints open are those of a step that is taken again. Where one rank alone knows of the
+    /// failure, the run ends. Returns whether there was nothing to mend.
+    bool prepare(std::int64_t n, StepTimeline* timeline) {
+        try {
+            at_step(n, [&] { stepper_->prepare(timeline); });
+            return true;
+        } catch (SharedError const&) {
+            if (!stepper_->mend(n)) throw;
+        } catch (ComputationError const&) {
+            if (communicator_.size() > 1 || !stepper_->mend(n)) throw;
+        }
+        return false;
     }
 
     void checkpoint(std::int64_t n) {

@@ -55,6 +55,7 @@ Scene sprung_part(Scene const& scene) {
     part.dynamics.given = true;
     part.solver.backend = Backend::segments;
     part.solver.threads = 1;
+    part.solver.handles = scene.solver.handles;  // those of less digits may fail, or be far off
     for (ChainSpec const& chain : scene.chains) {
         if (!has_springs(chain) || part.chains.size() == most_chains) continue;
         part.chains.push_back(chain);
@@ -141,7 +142,7 @@ class Displacements {
     std::vector<JointRates> along_, unmoved_, moved_;
 };
 
-double largest_frequency(Scene const& scene) {
+double largest_frequency_of(Scene const& scene) {
     auto const alone = serial_communicator();
     ChainSystem system(scene, Axes::joint, *alone);
     Displacements displacements(system);
@@ -152,6 +153,15 @@ double largest_frequency(Scene const& scene) {
         if (i >= least_iterations && std::abs(square - last) < settled * square) break;
     }
     return std::sqrt(square);
+}
+
+/// 0 where there is none, or none can be computed: the run itself says what it cannot do.
+double largest_frequency(Scene const& scene) {
+    try {
+        return largest_frequency_of(scene);
+    } catch (ComputationError const&) {
+        return 0;
+    }
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "integrate/stepper.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "integrate/checkpoint_values.hpp"
@@ -63,6 +64,7 @@ class JointStepper final : public Stepper {
     }
     void branch(Checkpoint const& c) override {
         origin_ = number_in(c, array_of_origin, 0);
+        integrator_->set_origin(origin_);
         set_time(c.step);
     }
     void restore(Checkpoint const& c) override {
@@ -152,6 +154,9 @@ class ConstrainedStepper final : public Stepper {
     double look(std::int64_t n) override {
         return closed_.look(n, [this] { prepare(nullptr); });
     }
+    bool mend(std::int64_t n) override {
+        return closed_.mend(n, [this] { prepare(nullptr); });
+    }
     std::string note_of_sweeps() const override { return closed_.text(); }
     double early() const override { return ConstrainedIntegrator::early; }
     bool add_sweep() override {
@@ -165,7 +170,8 @@ class ConstrainedStepper final : public Stepper {
     void save(Checkpoint& c) const override {
         c.integers["sweeps_a_drift"] = integrator_.sweeps();
         if (integrator_.parts() > 1) c.integers["parts_a_drift"] = integrator_.parts();
-        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(2 * integrator_.pending());
+        // A branch with a shorter step that was not taken yet owes more.
+        c.integers["pending_half_kicks"] = static_cast<std::int64_t>(std::clamp(2 * integrator_.pending(), 0.0, 2.0));
         c.arrays[array_of_kick] = {integrator_.pending()};
     }
     /// The half kick that ends the last step is of that step's length.
@@ -191,9 +197,7 @@ class ConstrainedStepper final : public Stepper {
     }
 
   private:
-    static double pending_in(Checkpoint const& c) {
-        return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2));
-    }
+    static double pending_in(Checkpoint const& c) { return number_in(c, array_of_kick, 0.5 * counter_of(c, "pending_half_kicks", 0, 2)); }
     void draw_velocities(DynamicsSpec const& d) {
         for (AbsoluteDynamics* group : system_.absolute()) {
             std::vector<bool> thermal;
@@ -214,7 +218,9 @@ class ConstrainedStepper final : public Stepper {
 
 double number_in(Checkpoint const& c, char const* array, double otherwise) {
     auto const found = c.arrays.find(array);
-    return found == c.arrays.end() || found->second.empty() ? otherwise : found->second.front();
+    if (found == c.arrays.end() || found->second.empty()) return otherwise;
+    if (!std::isfinite(found->second.front())) refuse_checkpoint(std::string(array) + " is not finite");
+    return found->second.front();
 }
 
 bool Stepper::adapt(SweepWatch& watch, double error, double tolerance) {

@@ -37,6 +37,9 @@ class Stepper {
     /// constraint_error() at step n, after prepare(). Steps since the last call that left joints open beyond the tolerance are taken again
     /// first, with further sweeps. Collective.
     virtual double look(std::int64_t /*n*/) { return constraint_error(); }
+    /// After a prepare() at step n that failed on all ranks alike: takes steps since the last look() that left joints open again, and
+    /// prepares. False where there are none. Collective.
+    virtual bool mend(std::int64_t /*n*/) { return false; }
     /// What there is to say of that in the end; empty: nothing.
     virtual std::string note_of_sweeps() const { return ""; }
     /// One more projection sweep from now on where `watch` says that one is due and there is one to add. Returns whether it was added.

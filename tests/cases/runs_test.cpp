@@ -284,6 +284,15 @@ TEST_F(Runs, ABranchWithAShorterStepKeepsTheEnergy) {
     double const kinetic = after.at("kinetic_energy [kJ/mol]").back();
     EXPECT_NEAR(after.at("total_energy [kJ/mol]").back(), after.at("total_energy [kJ/mol]").front(), 1e-4 * kinetic);
     EXPECT_NEAR(after.at("time [ps]").back(), 0.2 + 50 * 0.0005, 1e-12);
+    // One that ends where it begins owes more than a whole kick of its own.
+    auto const go_on = [&](std::string const& from, std::string const& steps, Words const& more) {
+        Words words{"run", "rope.yaml", "--quiet", "--restart", from, "--set", "dynamics.step=0.0005", "--steps", steps};
+        words.insert(words.end(), more.begin(), more.end());
+        expect_good(catena(words, folder_.path()));
+    };
+    go_on("a/checkpoint.h5", "50", {"--branch", "--output", "c"});
+    go_on("c/checkpoint.h5", "100", {});
+    EXPECT_EQ(table_of(at("c")).at("total_energy [kJ/mol]").back(), after.at("total_energy [kJ/mol]").back());
 }
 
 TEST_F(Runs, ABranchThatCannotBeIsRefused) {

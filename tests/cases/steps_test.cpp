@@ -95,6 +95,22 @@ TEST(Steps, CheckTellsTheLongestStableStep) {
     expect_good(ended);
     EXPECT_NE(ended.out.find("longest stable step"), std::string::npos) << ended.out;
 }
+// Rods of 1e8 and 1e-8 amu in turn, which handles of less digits cannot take.
+TEST(Steps, TheLongestStableStepIsFoundWithTheRunsHandles) {
+    TemporaryFolder const folder;
+    std::ofstream scene(folder / "rods.yaml");
+    scene << "chains:\n  - name: r\n    base: fixed\n    bodies:\n";
+    for (int k = 0; k < 20; ++k) {
+        double const mass = k % 2 == 0 ? 1e8 : 1e-8;
+        scene << "      - {mass: " << mass << ", inertia: [" << mass / 1000 << ", " << mass / 12 << ", " << mass / 12
+              << "], com: [0.5, 0, 0], joint: {type: revolute, axis: [0, 0, 1], translation: [" << (k == 0 ? 0 : 1)
+              << ", 0, 0], stiffness: 1}}\n";
+    }
+    scene << "dynamics: {integrator: velocity-verlet, step: 1e-7, steps: 5}\nsolver: {handles: articulated}\n";
+    scene.close();
+    expect_good(catena({"check", "rods.yaml"}, folder.path()));
+}
+
 // A folded rope with a weight of 10 kg falls by 2 m and is taut within one step of 1 ms.
 TEST(Steps, ASlackRopeGoesThroughItsJerk) {
     TemporaryFolder const folder;
@@ -108,6 +124,16 @@ TEST(Steps, ASlackRopeGoesThroughItsJerk) {
     scene.close();
     EXPECT_EQ(run(folder, "slack.yaml", "700", {"--set", "output.every=100"}).at("valid"), true);
     expect_closed(column(folder, "constraint_error"), 7);
+    // Whose sweeps have grown until then, so that they lose the joints' matrices at the jerk.
+    EXPECT_EQ(run(folder, "slack.yaml", "700", {"--overwrite"}).at("valid"), true);
+    std::vector<double> const alone = column(folder, "total_energy");
+    expect_closed(column(folder, "constraint_error"), 700);
+    // On two ranks, of which one alone may lose matrices.
+    Ended const ended = catena_on(
+        2, {"run", "slack.yaml", "--output", "out", "--quiet", "--overwrite", "--set", "output.every=1", "--set", "solver.threads=1"},
+        folder.path());
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(column(folder, "total_energy"), alone);
 }
 
 TEST(Steps, AnInvalidRunSaysWhichCheckAtWhichStepOnItsLastLine) {

@@ -121,8 +121,8 @@ TEST(Verdict, JsonHasEveryCheck) {
 struct Falling {
     double error, factor, rounding;
     int sweeps = 0;
-    int close(Closing const& closing) {
-        return closing.close(2, [&] { return std::max(error, rounding); }, [&] { ++sweeps, error *= factor; });
+    int close(Closing const& closing, int done = 2) {
+        return closing.close(done, [&] { return std::max(error, rounding); }, [&] { ++sweeps, error *= factor; });
     }
 };
 TEST(Closing, SweepsGoOnUntilJointsClose) {
@@ -132,6 +132,9 @@ TEST(Closing, SweepsGoOnUntilJointsClose) {
 }
 TEST(Closing, ClosedJointsNeedNoSweep) { EXPECT_EQ((Falling{0.9e-10, 0.1, 0}.close({1e-10, 1e-12, 30})), 0); }
 TEST(Closing, RoundingEndsSweeps) { EXPECT_LT((Falling{1e-9, 0.01, 2e-12}.close({1e-10, 1e-12, 30})), 5); }
+TEST(Closing, RoundingAboveTheToleranceEndsSweepsHoweverManyThereWere) {
+    EXPECT_EQ((Falling{1e-9, 1, 1e-9}.close({1e-10, 1e-12, 30}, 30)), 5);
+}
 TEST(Closing, JointsThatStayOpenAreAnError) {
     EXPECT_THROW((Falling{1e-2, 1, 0}.close({1e-10, 1e-12, 30})), ComputationError);
     EXPECT_THROW((Falling{std::nan(""), 1, 0}.close({1e-10, 1e-12, 30})), ComputationError);
