@@ -176,6 +176,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry("residual",
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
+    for (std::string const& note : scene.notes) text.note(note);
     text.heading(json["valid"].get<bool>() ? "VALID" : "INVALID");
     return text.str();
 }
@@ -250,6 +251,7 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["potential_energy"] = Json::object();
         for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
         json["velocities"] = thermal ? "thermal" : "given";
+        json["notes"] = scene.notes;
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         outcome.text = text_of(system, json, timing);
         if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
