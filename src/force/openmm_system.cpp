@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "error.hpp"
@@ -100,13 +102,16 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
     }
     std::string const where = openmm_key(beads.scene_file, "map");
     std::vector<bool> used(spec.map.size(), false);
+    std::unordered_map<std::string_view, std::vector<std::size_t>> unused;  // entries by the chain's name, the first one last
+    for (std::size_t i = spec.map.size(); i-- > 0;) unused[spec.map[i].first].push_back(i);
     for (std::size_t c = 0; c < beads.chain_name.size(); ++c) {
         std::string const& name = beads.chain_name[c];
-        std::size_t entry = 0;
-        while (entry < spec.map.size() && (used[entry] || spec.map[entry].first != name)) ++entry;
-        if (entry == spec.map.size())
+        auto const entries = unused.find(name);
+        if (entries == unused.end() || entries->second.empty())
             throw InputError(fmt::format("chain {} is not in the map", name), where,
                              "give every chain of beads its first and last particle");
+        std::size_t const entry = entries->second.back();
+        entries->second.pop_back();
         used[entry] = true;
         auto const [first, last] = spec.map[entry].second;
         std::int64_t const count = beads.chain_offset[c + 1] - beads.chain_offset[c];
