@@ -135,7 +135,7 @@ bool starts_thermal(Scene const& scene) {
                        [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
 }
 
-std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing) {
+std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing, std::string const& complaint) {
     Scene const& scene = system.scene();
     Text text;
     text.heading(title_of(scene));
@@ -177,7 +177,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
     for (std::string const& note : scene.notes) text.note(note);
-    text.heading(json["valid"].get<bool>() ? "VALID" : "INVALID");
+    text.heading(complaint.empty() ? "VALID" : "INVALID: " + complaint);
     return text.str();
 }
 
@@ -253,8 +253,8 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["velocities"] = thermal ? "thermal" : "given";
         json["notes"] = scene.notes;
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
-        outcome.text = text_of(system, json, timing);
         if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
+        outcome.text = text_of(system, json, timing, outcome.complaint);
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);
