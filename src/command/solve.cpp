@@ -149,6 +149,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
         text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
     if (json["velocities"] == "thermal")
         text.entry("velocities", fmt::format("thermal, {} K, seed {}, as a run's first", scene.dynamics.temperature, scene.dynamics.seed));
+    if (json["relaxation"].is_string()) text.entry("relaxation", json["relaxation"]);
     text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median),
                                    timing.evaluation.count, duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                                    1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
@@ -251,6 +252,7 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["potential_energy"] = Json::object();
         for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
         json["velocities"] = thermal ? "thermal" : "given";
+        json["relaxation"] = relaxed ? Json(relaxed->relaxation.text()) : Json(nullptr);
         json["notes"] = scene.notes;
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
         if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
