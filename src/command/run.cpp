@@ -163,7 +163,8 @@ void look_at_forward_error(Scene& scene, Communicator const& communicator) {
     if (!scene.dynamics.given) return;
     std::optional<double> const error = forward_error_at_start(scene, communicator);
     bool const refinable = is_refined(scene.dynamics.integrator);
-    bool const unasked = refinable && scene.solver.handles == Handles::articulated && scene.solver.refine == 0;
+    bool const few = scene.bodies() <= most_estimated_of_run;
+    bool const unasked = refinable && few && scene.solver.handles == Handles::articulated && scene.solver.refine == 0;
     if (!error || *error <= (unasked ? refined_beyond : largest_forward_error)) return;
     std::string const found = fmt::format("the first accelerations may be off by {:.1e} of the largest", *error);
     if (unasked) {

@@ -135,7 +135,7 @@ bool starts_thermal(Scene const& scene) {
                        [](ChainSpec const& c) { return c.velocities == StartVelocities::thermal; });
 }
 
-std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing) {
+std::string text_of(ChainSystem const& system, Json const& json, Timing const& timing, std::string const& complaint) {
     Scene const& scene = system.scene();
     Text text;
     text.heading(title_of(scene));
@@ -149,6 +149,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
         text.entry(i == 0 ? "OpenMM" : "", system.openmm()->description()[i]);
     if (json["velocities"] == "thermal")
         text.entry("velocities", fmt::format("thermal, {} K, seed {}, as a run's first", scene.dynamics.temperature, scene.dynamics.seed));
+    if (json["relaxation"].is_string()) text.entry("relaxation", json["relaxation"]);
     text.entry("time", fmt::format("{}, median of {} ({} to {}); {:.4g} ns a body", duration_text(timing.evaluation.median),
                                    timing.evaluation.count, duration_text(timing.evaluation.min), duration_text(timing.evaluation.max),
                                    1e9 * timing.evaluation.median / static_cast<double>(scene.bodies())));
@@ -176,7 +177,8 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
     text.entry("residual",
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));
-    text.heading(json["valid"].get<bool>() ? "VALID" : "INVALID");
+    for (std::string const& note : scene.notes) text.note(note);
+    text.heading(complaint.empty() ? "VALID" : "INVALID: " + complaint);
     return text.str();
 }
 
@@ -250,9 +252,11 @@ Outcome solve_chosen(Scene const& given, Communicator const& communicator, Solve
         json["potential_energy"] = Json::object();
         for (EnergyTerm const& term : energies) json["potential_energy"][term.name] = term.value;
         json["velocities"] = thermal ? "thermal" : "given";
+        json["relaxation"] = relaxed ? Json(relaxed->relaxation.text()) : Json(nullptr);
+        json["notes"] = scene.notes;
         if (scene.bodies() <= most_bodies_in_json) add_arrays(json, scene, solution);
-        outcome.text = text_of(system, json, timing);
         if (!outcome.valid) outcome.complaint = complaint_of(scene, error, residual, bound);
+        outcome.text = text_of(system, json, timing, outcome.complaint);
         if (request.accelerations.empty()) return;
         write_accelerations(request.accelerations, solution);
         spdlog::info("wrote {}", request.accelerations);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "error.hpp"
 #include "force/openmm_links.hpp"
 #include "force/openmm_model.hpp"
@@ -28,16 +30,20 @@ ImportedChain import_chain(PdbChain const& from, int first, OpenMM::System const
     return chain;
 }
 
-/// Where the ends of chains are joined as stiffly as their first links: a sentence, or none.
-std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings) {
+/// Whether the ends of a chain are joined as stiffly as its first link, or as a link may be where that is a constraint.
+bool closes(Joining const& ends, Joining const& link, double temperature) {
+    if (std::isinf(link.stiffness)) return ends.holds() && ends.spread(temperature) <= StiffLinks::softest;
+    return ends.holds() && ends.stiffness >= 0.5 * link.stiffness;
+}
+
+/// Chains whose ends are joined: a sentence, or none.
+std::vector<std::string> note_rings(std::vector<PdbChain> const& chains, Joinings const& joinings, double temperature) {
     int first = 0, rings = 0;
     std::string name;
     for (PdbChain const& chain : chains) {
         int const size = static_cast<int>(chain.size()), last = first + size - 1;
-        if (size > 2 && joinings.between(first, last).stiffness >= 0.5 * joinings.to_previous(first + 1).stiffness &&
-            joinings.between(first, last).holds()) {
-            if (rings++ == 0) name = scene::shown(chain.name);
-        }
+        if (size > 2 && closes(joinings.between(first, last), joinings.to_previous(first + 1), temperature) && rings++ == 0)
+            name = scene::shown(chain.name);
         first += size;
     }
     if (rings == 0) return {};
@@ -79,7 +85,7 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
         imported.chains.push_back(import_chain(chain, first, *system, joinings, links, where));
         first += static_cast<int>(chain.size());
     }
-    for (auto const& notes : {links.notes(), note_rings(chains, joinings)})
+    for (auto const& notes : {links.notes(), note_rings(chains, joinings, spec.temperature)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
     imported.periodic = system->usesPeriodicBoundaryConditions();
     OpenMM::Vec3 a, b, c;

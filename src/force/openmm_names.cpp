@@ -13,7 +13,7 @@ namespace {
 std::string harmless(std::string const& name) {
     std::string text = scene::shown(name);
     for (char& c : text)
-        if (c < ' ' || std::string_view(",;\"'`<>&\\|").find(c) != std::string_view::npos) c = '_';  // bytes beyond ASCII are negative
+        if (c < ' ' || c > '~' || std::string_view(",;\"'`<>&\\|").find(c) != std::string_view::npos) c = '_';
     auto const first = text.find_first_not_of(' ');
     return first == std::string::npos ? "" : text.substr(first, text.find_last_not_of(' ') - first + 1);
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 
 #include "error.hpp"
@@ -22,7 +24,7 @@ using OpenMM::System;
 
 double constexpr same_length = 1e-6;  // nm: lengths that were written in decimals
 double constexpr same_mass = 1e-6;    // relative: masses likewise
-int constexpr force_groups_of_openmm = 32;
+std::size_t constexpr force_groups_of_openmm = 32;
 
 /// The links of the scene by the particles that they join.
 class LinkTable {
@@ -100,13 +102,16 @@ std::vector<std::int64_t> beads_of_particles(OpenMmSpec const& spec, BeadSystem 
     }
     std::string const where = openmm_key(beads.scene_file, "map");
     std::vector<bool> used(spec.map.size(), false);
+    std::unordered_map<std::string_view, std::vector<std::size_t>> unused;  // entries by the chain's name, the first one last
+    for (std::size_t i = spec.map.size(); i-- > 0;) unused[spec.map[i].first].push_back(i);
     for (std::size_t c = 0; c < beads.chain_name.size(); ++c) {
         std::string const& name = beads.chain_name[c];
-        std::size_t entry = 0;
-        while (entry < spec.map.size() && (used[entry] || spec.map[entry].first != name)) ++entry;
-        if (entry == spec.map.size())
+        auto const entries = unused.find(name);
+        if (entries == unused.end() || entries->second.empty())
             throw InputError(fmt::format("chain {} is not in the map", name), where,
                              "give every chain of beads its first and last particle");
+        std::size_t const entry = entries->second.back();
+        entries->second.pop_back();
         used[entry] = true;
         auto const [first, last] = spec.map[entry].second;
         std::int64_t const count = beads.chain_offset[c + 1] - beads.chain_offset[c];
@@ -177,7 +182,8 @@ std::unique_ptr<HarmonicBondForce> without_links(HarmonicBondForce const& bonds,
 }
 
 /// Forces get the names of their terms in the System's order, before those that lose bonds move to its end; `links` take others whole.
-void name_in_order(System& system, LinkTable const& links) {
+/// Refuses more forces than OpenMM has groups.
+void name_in_order(System& system, LinkTable const& links, std::string const& where) {
     auto const vanishes = [&](OpenMM::Force const& force) {
         auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&force);
         LeftOut ignored;
@@ -186,14 +192,17 @@ void name_in_order(System& system, LinkTable const& links) {
     std::vector<int> remaining;
     for (int i = 0; i < system.getNumForces(); ++i)
         if (!vanishes(system.getForce(i))) remaining.push_back(i);
+    if (remaining.size() > force_groups_of_openmm)
+        throw InputError(fmt::format("the System has {} forces", remaining.size()), where,
+                         fmt::format("merge forces of one kind: OpenMM tells {} groups apart", force_groups_of_openmm));
     std::vector<std::string> const names = term_names(system, remaining);
     for (std::size_t n = 0; n < names.size(); ++n) system.getForce(remaining[n]).setName(names[n]);
 }
 
 /// Takes the bonds along links out, and forces that are left without a term with them.
-std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links) {
+std::vector<std::string> remove_linked_bonds(System& system, LinkTable const& links, std::string const& where) {
     LeftOut left_out;
-    name_in_order(system, links);
+    name_in_order(system, links, where);
     for (int i = system.getNumForces() - 1; i >= 0; --i) {
         auto const* bonds = dynamic_cast<HarmonicBondForce const*>(&system.getForce(i));
         if (bonds == nullptr) continue;
@@ -242,10 +251,7 @@ std::vector<std::string> remove_other_groups(System& system, std::vector<int> co
 }
 
 /// Every force its own group; it has its own name.
-std::vector<std::string> name_terms(System& system, std::string const& where) {
-    if (system.getNumForces() > force_groups_of_openmm)
-        throw InputError(fmt::format("the System has {} forces", system.getNumForces()), where,
-                         fmt::format("merge forces of one kind: OpenMM tells {} groups apart", force_groups_of_openmm));
+std::vector<std::string> name_terms(System& system) {
     std::vector<std::string> names;
     for (int i = 0; i < system.getNumForces(); ++i) {
         auto& force = system.getForce(i);
@@ -326,10 +332,10 @@ OpenMmModel system_model(OpenMmSpec const& spec, BeadSystem const& beads) {
     add(movers);
     add(remove_constraints(*model.system, links, where));
     add(remove_other_groups(*model.system, spec.force_groups));
-    add(remove_linked_bonds(*model.system, links));
+    add(remove_linked_bonds(*model.system, links, where));
     add(exclude_within_bodies(*model.system, beads, particle_of_bead));
     settle_box(*model.system, beads, model.notes);
-    model.terms = name_terms(*model.system, where);
+    model.terms = name_terms(*model.system);
     add(note_charges(model, beads));
     return model;
 }

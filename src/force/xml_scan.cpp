@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
+#include <set>
 #include <utility>
 
 #include "error.hpp"
@@ -42,7 +43,8 @@ bool is_one_of(string_view name, std::array<string_view, N> const& names) {
 }
 
 /// Attributes that hold words.
-constexpr std::array<string_view, 8> words{"name", "type", "energy", "expression", "formula", "function", "openmmVersion", "typeName"};
+constexpr std::array<string_view, 9> words{"name",    "type",     "types",         "energy",  "expression",
+                                           "formula", "function", "openmmVersion", "typeName"};
 /// Elements that have nothing but numbers beside these.
 constexpr std::array<string_view, 11> records{"A",        "B",     "C",         "Bond",      "Angle",     "Torsion",
                                               "Particle", "Value", "Exclusion", "Exception", "Constraint"};
@@ -68,8 +70,9 @@ class Scanner {
   private:
     struct Element {
         string_view name;
-        std::size_t at;                // of its tag
-        std::vector<string_view> has;  // names of its children, of the System and of forces
+        std::size_t at;  // of its tag
+        bool has_type = false;
+        std::set<string_view> has = {};  // names of its children, of the System and of forces
     };
     using Attributes = std::vector<std::pair<string_view, string_view>>;
 
@@ -138,22 +141,31 @@ class Scanner {
         std::size_t const begin = at_++;
         if (open_.empty() && rooted_) fail(begin, "a second element beside the System");
         if (open_.size() == deepest) fail(begin, fmt::format("elements lie more than {} deep in each other", deepest));
-        Element element{name(), begin, {}};
+        Element element{name(), begin};
         Attributes attributes;
-        while (blanks() && at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/') attributes.push_back(attribute(attributes));
+        while (blanks() && at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/') attributes.push_back(attribute());
+        refuse_twice(begin, attributes);
         bool const empty = take("/");
         if (!take(">")) fail(begin, fmt::format("<{}> has no `>`", shown(element.name)));
         check_numbers(element, attributes);
+        element.has_type = !value_of(attributes, "type").empty();
         enter(element, attributes);
         rooted_ = true;
         if (!empty) open_.push_back(std::move(element));
     }
 
-    std::pair<string_view, string_view> attribute(Attributes const& before) {
+    /// In one pass over sorted names: an element may have as many attributes as the file has room for.
+    void refuse_twice(std::size_t at, Attributes const& attributes) const {
+        std::vector<string_view> keys;
+        for (auto const& [key, value] : attributes) keys.push_back(key);
+        std::sort(keys.begin(), keys.end());
+        auto const twice = std::adjacent_find(keys.begin(), keys.end());
+        if (twice != keys.end()) fail(at, fmt::format("attribute {} is given twice", shown(*twice)));
+    }
+
+    std::pair<string_view, string_view> attribute() {
         std::size_t const begin = at_;
         string_view const key = name();
-        for (auto const& [other, value] : before)
-            if (other == key) fail(begin, fmt::format("attribute {} is given twice", shown(key)));
         blanks();
         if (!take("=")) fail(begin, fmt::format("attribute {} has no value", shown(key)));
         blanks();
@@ -193,12 +205,11 @@ class Scanner {
         Element& parent = open_.back();
         bool const in_forces = open_.size() == 2 && parent.name == "Forces";
         if (in_forces) outline_.forces.emplace_back(value_of(attributes, "type"));
-        if (parent.name == "Force" && element.name == "Force")
+        if (parent.name == "Force" && parent.has_type && element.name == "Force")  // an ATMForce has its forces in <Force> without a type
             fail(parent.at, fmt::format("a <Force> is not closed before the next begins ({} lines below)", lines(parent.at, element.at)));
         if (open_.size() != 1 && parent.name != "Force") return;
-        if (std::find(parent.has.begin(), parent.has.end(), element.name) != parent.has.end())
+        if (!parent.has.insert(element.name).second)
             fail(element.at, fmt::format("<{}> is there twice in <{}>", shown(element.name), shown(parent.name)));
-        parent.has.push_back(element.name);
     }
 
     string_view text_;

@@ -22,7 +22,7 @@ ForwardError forward_error(ChainSystem& system, std::function<void()> const& loo
     look();
     if (system.joint().empty() || system.scene().bodies() > most_estimated * system.communicator().size()) return {};
     ForwardError found{next_correction(system)};
-    if (system.scene().solver.handles != Handles::articulated) return found;
+    if (system.scene().solver.handles != Handles::articulated || system.scene().bodies() > most_estimated) return found;
     while (found.steps < most_steps && *found.estimate > refined_beyond) {
         look();  // at what the step before left
         ++found.steps;

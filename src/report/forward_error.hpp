@@ -12,7 +12,8 @@ namespace catena {
 /// Of the largest acceleration. Beyond `largest_forward_error` an answer is not valid; beyond `refined_beyond` articulated handles, which
 /// promise more, are refined unasked.
 inline constexpr double largest_forward_error = 1e-6, refined_beyond = 1e-10;
-/// Bodies a rank up to which the error is estimated: of a solution, and of a run's start.
+/// Bodies a rank up to which the error is estimated: of a solution, and of a run's start. Only scenes of no more bodies in all are refined
+/// unasked: whether they are must not depend on the number of ranks, as the bits do not.
 inline constexpr std::int64_t most_estimated = 2000000, most_estimated_of_run = 100000;
 
 struct ForwardError {

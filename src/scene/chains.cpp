@@ -138,7 +138,7 @@ class ChainReader {
     /// Of the chain that is made next: its place in the System, and its charged ends where it says them.
     void prepare(std::string const& name, std::int64_t next) {
         OpenMmSpec* const openmm = request_.scene.forces.openmm ? &*request_.scene.forces.openmm : nullptr;
-        request_.particle = openmm && openmm->builder.empty() ? first_particle(*openmm, name, next) : next;
+        request_.particle = request_.system ? request_.system->first_particle(name, next) : next;
         if (openmm && !openmm->builder.empty() && request_.fields.find("charge_termini"))
             openmm->map.push_back({name, as_numbers(request_.termini())});
     }

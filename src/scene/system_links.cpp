@@ -1,6 +1,5 @@
 #include "scene/system_links.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 namespace catena::scene {
@@ -21,13 +20,14 @@ std::vector<std::int64_t> linked_beads(ChainSpec const& chain) {
 
 }  // namespace
 
-std::int64_t first_particle(OpenMmSpec const& spec, std::string const& chain, std::int64_t next) {
-    auto const entry = std::find_if(spec.map.begin(), spec.map.end(), [&](auto const& e) { return e.first == chain; });
-    return entry == spec.map.end() ? next : entry->second.first;
-}
-
 WrittenSystem::WrittenSystem(Scene& scene) : links_(read_system_links(*scene.forces.openmm, scene.file)) {
     for (std::string const& note : links_.notes) scene.note(note);
+    for (auto const& [chain, particles] : scene.forces.openmm->map) first_.emplace(chain, particles.first);
+}
+
+std::int64_t WrittenSystem::first_particle(std::string const& chain, std::int64_t next) const {
+    auto const entry = first_.find(chain);
+    return entry == first_.end() ? next : entry->second;
 }
 
 double WrittenSystem::length(std::int64_t particle) const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "force/openmm_import.hpp"
@@ -10,13 +11,13 @@
 
 namespace catena::scene {
 
-/// First particle of a chain in the System; `next`: one past the last of the chain before, which counts where the scene has no map.
-std::int64_t first_particle(OpenMmSpec const&, std::string const& chain, std::int64_t next);
-
 class WrittenSystem {
   public:
     /// Reads the System that the scene names, and adds to the scene's notes what of it is left out. Throws InputError.
     explicit WrittenSystem(Scene&);
+    /// First particle of a chain in the System; `next`: one past the last of the chain before, which counts where the map has no such
+    /// chain.
+    std::int64_t first_particle(std::string const& chain, std::int64_t next) const;
     /// nm, of the link that bonds and constraints make between a particle and the one before; NaN where none does.
     double length(std::int64_t particle) const;
     /// Whether links in chains of so many beads that begin with particles a and b are of the same lengths.
@@ -26,6 +27,7 @@ class WrittenSystem {
 
   private:
     SystemLinks links_;
+    std::unordered_map<std::string, std::int64_t> first_;  // of the map, by the chain's name
 };
 
 }  // namespace catena::scene

@@ -73,6 +73,9 @@ TEST(Accuracy, ASmallResidualWithAWrongAnswerIsInvalid) {
             EXPECT_LT(estimate, error * 1000);
             EXPECT_NE(e.err.find("estimated error of the accelerations"), std::string::npos) << e.err;
             EXPECT_NE(e.err.find("--refine 2 or --handles articulated"), std::string::npos) << e.err;
+            std::string const text = catena({"solve", scene, "--handles", handles}).out,
+                              last = text.substr(text.rfind('\n', text.size() - 2) + 1);
+            EXPECT_TRUE(last.starts_with("INVALID: estimated error of the accelerations")) << last;
             json const refined = solved({scene, "--handles", handles, "--refine", "4"});
             EXPECT_TRUE(refined["valid"].get<bool>());
             EXPECT_LE(relative_error(refined["joint_accelerations"], right_of(scene)), 1e-12);

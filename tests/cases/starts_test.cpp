@@ -133,6 +133,8 @@ TEST(OverlappingStart, IsMendedByRelaxation) {
         EXPECT_LT(summary["last_observables"]["temperature [K]"].get<double>(), 450) << name;
         EXPECT_EQ(summary["valid"], true);
     }
+    Ended const solved = catena({"solve", file("08-overlapping-start/hairpin.yaml"), "--set", "relax=true", "--repeat", "1"});
+    EXPECT_NE(solved.out.find("relaxation"), std::string::npos) << solved.out << solved.err;
 }
 
 TEST(OverlappingStart, IsRelaxedToTheSameBitsOnTwoRanksAndCanBeGoneOnWith) {

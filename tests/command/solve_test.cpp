@@ -143,6 +143,17 @@ TEST(Solve, KnowsTheFixmanPotential) {
     EXPECT_TRUE(json["valid"].get<bool>());
 }
 
+TEST(Solve, SaysWhatTheReaderOfTheSceneChanged) {
+    TemporaryFolder const folder;
+    std::ofstream(folder / "scene.yaml") << "title: caf\xE9\nchains: [{generator: {pendulum: {links: 3}}}]\n";
+    Ended const text = catena({"solve", folder / "scene.yaml", "--repeat", "1"}),
+                json = catena({"solve", folder / "scene.yaml", "--json", "-"});
+    expect_good(text);
+    expect_good(json);
+    ASSERT_EQ(json.json().at("notes").size(), 1U);
+    EXPECT_NE(text.out.find(json.json().at("notes")[0].get<std::string>()), std::string::npos) << text.out;
+}
+
 TEST(Solve, ArraysEndAtTenThousandBodies) {
     EXPECT_EQ(solved({input("random-link.yaml"), "--set", small + "10000"})["bead_accelerations"].size(), 10000U);
     Json const larger = solved({input("random-link.yaml"), "--set", small + "10001"});

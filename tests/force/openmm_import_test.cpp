@@ -138,6 +138,10 @@ TEST_F(Import, BranchesAndRingsAreNamed) {
     bonds->addBond(0, 3, 0.4, stiff);  // ends of the first chain
     EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
     EXPECT_TRUE(import(wound(beads, 1)).notes.at(0).starts_with("Chain A is closed into a ring by a harmonic bond, which stays a spring"));
+    system->addConstraint(0, 1, 0.38);  // an infinitely stiff first link
+    EXPECT_EQ(import(wound(beads, 1)).notes.size(), 1U);
+    bonds->setBondParameters(4, 0, 3, 0.4, 1);  // a restraint of the ends, no link
+    EXPECT_TRUE(import(wound(beads, 1)).notes.empty());
     bonds->setBondParameters(1, 3, 1, 0.41, stiff);  // was 3 to 2
     std::string const text = complaint([&] { import(wound(beads, 1)); });
     EXPECT_TRUE(text.starts_with("particle 3 (from 0) is joined to particle 1 and not to particle 2 before it: the molecule is branched"))

@@ -79,6 +79,28 @@ TEST(XmlScan, DeepNestingIsRefused) {
     EXPECT_EQ(forces_read(in_system(deep)), -1);
 }
 
+TEST(XmlScan, ManyAttributesAndChildrenTakeLinearTime) {
+    std::string attributes, children;
+    for (int i = 0; i < 200000; ++i) {
+        attributes += " a" + std::to_string(i) + "=\"1\"";
+        children += "<a" + std::to_string(i) + "/>";
+    }
+    EXPECT_NO_THROW(scan_system_xml(in_system("<Bond" + attributes + "/><Force>" + children + "</Force>"), "s.xml", where));
+    expect_fault(in_system("<Bond" + attributes + " a7=\"1\"/>"), "attribute a7 is given twice");
+}
+
+TEST(XmlScan, ListsOfTypesAndForcesWithinForcesAreLetIn) {
+    EXPECT_NO_THROW(
+        scan_system_xml(in_system("<Forces><Force type=\"CustomManyParticleForce\"><TypeFilters><Filter index=\"0\" types=\"0,1\"/>"
+                                  "</TypeFilters></Force></Forces>"),
+                        "s.xml", where));
+    auto const outline = scan_system_xml(
+        in_system("<Forces><Force type=\"ATMForce\"><Forces><Force><Force type=\"A\"/></Force><Force><Force type=\"B\"/></Force></Forces>"
+                  "</Force></Forces>"),
+        "s.xml", where);
+    EXPECT_EQ(outline.forces, (std::vector<std::string>{"ATMForce"}));
+}
+
 TEST(XmlScan, EveryForceIsAccepted) {
     auto const system = every_force(proteins({random_sequence(30, 1)}));
     EXPECT_EQ(forces_read(xml_of(*system)), system->getNumForces());
