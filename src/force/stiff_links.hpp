@@ -36,6 +36,8 @@ class StiffLinks {
     void add(std::int64_t a, std::int64_t b, Joining const&);
     /// Of links that replace soft springs, and several springs of different lengths; a sentence for each kind.
     std::vector<std::string> notes() const;
+    /// The largest spread of a link that stands for a soft spring; 0 of none.
+    double largest_spread() const { return soft_.count > 0 ? soft_.worst.spread(temperature_) : 0; }
 
   private:
     struct Some {
