@@ -101,9 +101,10 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
     command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
         ->type_name("FILE");
-    command->add_option("--latency", words.latency, "of a message between hosts, in the place of the file's (s, ms, us, ns)")
+    command->add_option("--latency", words.latency, "latency of a message between hosts, instead of the file's (s, ms, us, ns)")
         ->type_name("T");
-    command->add_option("--bandwidth", words.bandwidth, "between hosts, in the place of the file's (B/s to GB/s, Gbit/s)")->type_name("B");
+    command->add_option("--bandwidth", words.bandwidth, "bandwidth between hosts, instead of the file's (B/s to GB/s, Mbit/s, Gbit/s)")
+        ->type_name("B");
     command->footer(
         "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n"
         "  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"

@@ -170,7 +170,7 @@ std::string one_letter_codes(std::string const& text, Node const& source, Scene&
     }
     if (letters.empty()) fail(source, "the sequence is empty", "give one-letter codes");
     if (small > 0)
-        scene.note(fmt::format("`{}`: {} of {} letters are small and are read as capitals", source.path(), small, letters.size()));
+        scene.note(fmt::format("`{}`: {} of {} letters are lower case and are read as capitals", source.path(), small, letters.size()));
     note_three_letters(text, letters, source, scene);
     note_nucleotides(letters, source, scene);
     return letters;

@@ -48,8 +48,8 @@ class Neighbours {
                             "is missing there",
                             from_.file, times(skips_), first_skip_));
         if (gaps_ > 0)
-            request_.scene.note(fmt::format("`{}`: {} at which neighbours cannot stand kept as links (first: {}) as `links: as_given` asks",
-                                            from_.file, gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_), first_gap_));
+            request_.scene.note(fmt::format("`{}`: `links: as_given` keeps {} that neighbours cannot have (first: {})", from_.file,
+                                            gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_), first_gap_));
     }
 
   private:
@@ -81,7 +81,7 @@ class Neighbours {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label, b.residue, b.label, from_.file);
         if (apart < least_distance)
             fail(at_, fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
-                 "mend the file (its unit is angstrom), or write `links: as_given`");
+                 "correct the file (its unit is angstrom), or write `links: as_given`");
         std::string const broken = peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide) : "";
         fail(at_, fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
              is_wrapped(a, b)

@@ -154,7 +154,7 @@ class Selection {
         if (from_.empty()) return;
         auto const listed = summary.sequence.find(std::string(from_[0]->chain));
         if (listed == summary.sequence.end() || listed->second <= std::ssize(made.sites)) return;
-        made.notes.push_back(fmt::format("`{}`: SEQRES lists {} residues of the chain, {} of them have positions and become beads",
+        made.notes.push_back(fmt::format("`{}`: SEQRES lists {} residues of the chain, but only {} have positions and become beads",
                                          made.file, listed->second, made.sites.size()));
     }
 

@@ -177,13 +177,13 @@ TEST(Slips, TwoTemperaturesAreNoted) {
 
 TEST(Slips, MillimolarIsNoted) {
     EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/millimolar.yaml"),
-                      "forces.openmm.ionic_strength is 150 mol/l, more than any salt dissolves: did you mean 0.15"));
+                      "forces.openmm.ionic_strength is 150 mol/l, more than the solubility of any salt: did you mean 0.15"));
 }
 
 TEST(Slips, FrozenWaterIsNoted) {
     EXPECT_TRUE(holds(
         notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.temperature=200", "--set", "forces.openmm.temperature=200"}),
-        "at 200 K water is frozen"));
+        "water is frozen at 200 K"));
 }
 
 TEST(Residues, OfAFileAreRefusedByName) { expect_refused(check("16-residue-table/scene.yaml"), 2, "residues"); }

@@ -102,7 +102,7 @@ TEST_F(SceneFiles, slips_in_sequences_are_noted) {
     EXPECT_EQ(notes("met asp val").size(), 2u);
     EXPECT_EQ(notes("MKVF"), std::vector<std::string>{});
     EXPECT_EQ(notes("GSK EEL RKA"), std::vector<std::string>{});
-    EXPECT_EQ(notes("MKvf"), std::vector<std::string>{"`chains[0].sequence`: 2 of 4 letters are small and are read as capitals"});
+    EXPECT_EQ(notes("MKvf"), std::vector<std::string>{"`chains[0].sequence`: 2 of 4 letters are lower case and are read as capitals"});
     EXPECT_EQ(notes("ACGTACGTACGTACGTACGT").size(), 1u);
     EXPECT_EQ(notes("GAGAGAGAGAGAGAGAGAGA").size(), 0u);
 }

@@ -191,7 +191,7 @@ TEST_F(SceneFiles, an_alternate_location_without_its_alpha_carbon) {
 TEST_F(SceneFiles, residues_that_seqres_lists_and_the_file_lacks) {
     write("a.pdb", "SEQRES   1 A    4  GLY ALA SER GLY\n" + atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "ALA", 'A', 2, 3.8));
     EXPECT_EQ(notes_of(read(with_pdb_)),
-              std::vector<std::string>{"`a.pdb`: SEQRES lists 4 residues of the chain, 2 of them have positions and become beads"});
+              std::vector<std::string>{"`a.pdb`: SEQRES lists 4 residues of the chain, but only 2 have positions and become beads"});
 }
 
 TEST_F(SceneFiles, gaps_of_a_pdb_file) {
