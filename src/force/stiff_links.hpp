@@ -27,7 +27,7 @@ struct Joining {
 /// Collects the links of a System's chains and judges the springs that they replace.
 class StiffLinks {
   public:
-    static double constexpr stiff = 0.05, softest = 0.20;  // largest spreads of what is a link without and with a word
+    static double constexpr stiff = 0.05, softest = 0.20;  // largest spreads of bonds that become links: without a note, and with one
 
     /// Temperature in K. `where`: scene file and key, for messages.
     StiffLinks(double temperature, std::string where) : temperature_(temperature), where_(std::move(where)) {}

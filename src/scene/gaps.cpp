@@ -75,7 +75,7 @@ class Neighbours {
     }
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
         fail(at_, fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue, a.label, from_.file),
-             "sort the residues by their numbers, number them along the chain, or keep one chain a file");
+             "sort the residues by their numbers, number them along the chain, or keep one chain per file");
     }
     [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart, double peptide) const {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label, b.residue, b.label, from_.file);

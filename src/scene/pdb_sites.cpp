@@ -146,7 +146,7 @@ class Selection {
         }
         if (chains > 1)
             fail(at_, fmt::format("`{}` holds {} chains: {}{}", made.file, chains, list, chains > 4 ? ", ..." : ""),
-                 "keep one chain a file and give each its own entry");
+                 "keep one chain per file, each with its own entry in `chains`");
     }
 
     /// SEQRES lists the residues of the whole chain.
@@ -211,7 +211,7 @@ class Selection {
         for (PdbAtom const* const atom : found)
             if (atom->name != found.front()->name)
                 fail(at_, fmt::format("residue {} of `{}` has several atoms and none is its only CA", name_of(residue), made.file),
-                     "keep one atom a residue");
+                     "keep one atom per residue");
         for (auto a = found.begin(); a != found.end(); ++a)
             for (auto b = found.begin(); b != a; ++b)
                 if ((*a)->alternate == (*b)->alternate)

@@ -24,11 +24,13 @@ TEST_F(SceneFiles, bad_pdb_files) {
     };
     refused("HEADER\n", "no atoms in `a.pdb`" + where + "give ATOM records");
     refused(atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, 1),
-            "residue GLY 1 of chain A of `a.pdb` has several atoms and none is its only CA" + where + "keep one atom a residue");
-    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
-            "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where + "keep one chain a file and give each its own entry");
+            "residue GLY 1 of chain A of `a.pdb` has several atoms and none is its only CA" + where + "keep one atom per residue");
+    refused(
+        atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
+        "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where + "keep one chain per file, each with its own entry in `chains`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + "TER\n" + atom(2, "CA", "GLY", 'A', 2, 3.8) + atom(3, "CA", "GLY", 'A', 3, 7.6),
-            "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where + "keep one chain a file and give each its own entry");
+            "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where +
+                "keep one chain per file, each with its own entry in `chains`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "XYZ", 'A', 2, 1),
             "`XYZ 2` is no residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename or remove it in the file");
     refused(
@@ -44,7 +46,7 @@ TEST_F(SceneFiles, bad_pdb_files) {
         "residue GLY 1 of chain A of `a.pdb` comes again as ALA (line 2)" + where + "give each residue its own number or insertion code");
     refused(atom(1, "CA", "GLY", 'A', 2, 0) + atom(2, "CA", "ALA", 'A', 1, 3.8),
             "residue ALA 1 follows GLY 2 in `a.pdb`" + where +
-                "sort the residues by their numbers, number them along the chain, or keep one chain a file");
+                "sort the residues by their numbers, number them along the chain, or keep one chain per file");
     refused(" \n", "the file is empty" + own);
     refused("<!DOCTYPE html>\n", "the file holds HTML or XML" + own);
     refused(std::string("ATOM\0", 5), "the file is no text" + own);
