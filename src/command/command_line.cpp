@@ -131,8 +131,8 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
     command->add_flag(
         "--branch", words.branch,
-        "with --restart and --output: go on from there in a folder of its own, with another temperature, friction, seed, step, "
-        "integrator of the same coordinates, or forces; without --steps for dynamics.steps more");
+        "with --restart and --output: start a new run from the checkpoint, with another temperature, friction, seed, step, box, forces "
+        "or integrator (in the same coordinates); without --steps for dynamics.steps further steps");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     add_refine(*command, words);
     command->footer(

@@ -135,7 +135,7 @@ void note_three_letters(std::string const& text, std::string const& letters, Nod
     for (std::size_t k = 0; k < threes; ++k) named += meaning_of(letters.substr(3 * k, 3)).kind == ResidueKind::amino_acid;
     if (is_cut_into_threes(text) ? 2 * named < threes : threes < 3 || named < threes) return;
     scene.note(
-        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, {}, {}, ...): write one letter a residue",
+        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, {}, {}, ...): write one letter per residue",
                     source.path(), letters.size(), letters[0], letters[1], letters[2]));
 }
 

@@ -83,11 +83,12 @@ class Neighbours {
             fail(at_, fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
                  "correct the file (its unit is angstrom), or write `links: as_given`");
         std::string const broken = peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide) : "";
+        if (is_wrapped(a, b))
+            fail(at_, fmt::format("{} stand {:.3f} nm apart: the file is wrapped into its cell (CRYST1)", pair, apart),
+                 fmt::format("write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`, or make the chain whole", (*from_.cell)[0],
+                             (*from_.cell)[1], (*from_.cell)[2]));
         fail(at_, fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
-             is_wrapped(a, b)
-                 ? fmt::format("the file is wrapped into its cell (CRYST1): write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`",
-                               (*from_.cell)[0], (*from_.cell)[1], (*from_.cell)[2])
-                 : "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
+             "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
     }
 
     PdbSites const& from_;

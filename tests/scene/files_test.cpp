@@ -97,7 +97,7 @@ TEST_F(SceneFiles, bad_fasta_files) {
 TEST_F(SceneFiles, slips_in_sequences_are_noted) {
     auto const notes = [&](std::string const& sequence) { return read("chains: [{sequence: " + sequence + ", model: calvados2}]").notes; };
     std::string const threes = "`chains[0].sequence` looks like three-letter codes and is read as ";
-    EXPECT_EQ(notes("MET ASP VAL"), std::vector<std::string>{threes + "9 one-letter codes (M, E, T, ...): write one letter a residue"});
+    EXPECT_EQ(notes("MET ASP VAL"), std::vector<std::string>{threes + "9 one-letter codes (M, E, T, ...): write one letter per residue"});
     EXPECT_EQ(notes("METASPVAL").size(), 1u);
     EXPECT_EQ(notes("met asp val").size(), 2u);
     EXPECT_EQ(notes("MKVF"), std::vector<std::string>{});

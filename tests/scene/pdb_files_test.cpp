@@ -211,7 +211,7 @@ TEST_F(SceneFiles, gaps_of_a_pdb_file) {
     EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 3 of `a.pdb` stand 0.440 nm apart: the chain has a gap" + where + ways);
     pair(2, 0.38);
     EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 2 of `a.pdb` stand 0.038 nm apart, nearer than neighbours can" + where +
-                                  "mend the file (its unit is angstrom), or write `links: as_given`");
+                                  "correct the file (its unit is angstrom), or write `links: as_given`");
     write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, -1) + atom(3, "N", "ALA", 'A', 2, 4.5) +
                        atom(4, "CA", "ALA", 'A', 2, 3.8));
     EXPECT_EQ(
@@ -220,8 +220,8 @@ TEST_F(SceneFiles, gaps_of_a_pdb_file) {
             where + ways);
     write("a.pdb", "CRYST1   30.000   40.000   50.000  90.00  90.00  90.00 P 1           1\n" + atom(1, "CA", "GLY", 'A', 1, 1) +
                        atom(2, "CA", "ALA", 'A', 2, 27.2));
-    EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 2 of `a.pdb` stand 2.620 nm apart: the chain has a gap" + where +
-                                  "the file is wrapped into its cell (CRYST1): write `box: {periodic: [3, 4, 5]}`");
+    EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 2 of `a.pdb` stand 2.620 nm apart: the file is wrapped into its cell (CRYST1)" +
+                                  where + "write `box: {periodic: [3, 4, 5]}`, or make the chain whole");
 }
 
 }  // namespace
