@@ -101,9 +101,10 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--hosts", words.hosts, "hosts that these ranks are on (default 1)")->type_name("H");
     command->add_option("--network", words.network, "what mpirun ... catena bench network --json FILE measured, for --ranks")
         ->type_name("FILE");
-    command->add_option("--latency", words.latency, "of a message between hosts, in the place of the file's (s, ms, us, ns)")
+    command->add_option("--latency", words.latency, "latency of a message between hosts, instead of the file's (s, ms, us, ns)")
         ->type_name("T");
-    command->add_option("--bandwidth", words.bandwidth, "between hosts, in the place of the file's (B/s to GB/s, Gbit/s)")->type_name("B");
+    command->add_option("--bandwidth", words.bandwidth, "bandwidth between hosts, instead of the file's (B/s to GB/s, Mbit/s, Gbit/s)")
+        ->type_name("B");
     command->footer(
         "Examples:\n  catena plan inputs/alpha-synuclein.yaml --explain\n  catena plan --calibrate\n"
         "  mpirun -np 4 catena plan inputs/random-revolute.yaml --backend segments\n"
@@ -130,8 +131,8 @@ void add_commands(CLI::App& app, Words& words) {
     command->add_option("--restart", words.restart, "go on from a checkpoint")->type_name("FILE");
     command->add_flag(
         "--branch", words.branch,
-        "with --restart and --output: go on from there in a folder of its own, with another temperature, friction, seed, step, "
-        "integrator of the same coordinates, or forces; without --steps for dynamics.steps more");
+        "with --restart and --output: start a new run from the checkpoint, with another temperature, friction, seed, step, box, forces "
+        "or integrator (in the same coordinates); without --steps for dynamics.steps further steps");
     command->add_flag("--overwrite", words.overwrite, "replace the results of a run in the folder");
     add_refine(*command, words);
     command->footer(

@@ -21,7 +21,7 @@ double quantity(Json const& json, char const* key) {
 Link link_of(Json const& json) {
     if (!json.contains("bandwidth")) return {quantity(json, "latency"), quantity(json, "seconds_a_byte")};
     double const bandwidth = quantity(json, "bandwidth");
-    if (bandwidth == 0) throw InputError("bandwidth is 0", "--network", "give bytes a second");
+    if (bandwidth == 0) throw InputError("bandwidth is 0", "--network", "give bytes per second");
     return {quantity(json, "latency"), 1 / bandwidth};
 }
 

@@ -173,7 +173,7 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                                       : fmt::format("{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
                                                     error.get<double>(), json["estimated_error_bound"].get<double>()));
     if (int const more = json["refinement"]["steps_unasked"]; more > 0)
-        text.entry("", fmt::format("after {} of refinement, which articulated handles take unasked", counted(more, "step", "steps")));
+        text.entry("", fmt::format("after {} of refinement, which articulated handles take on their own", counted(more, "step", "steps")));
     text.entry("residual",
                fmt::format("{:.2e}, bound {:.2e} (32 depth eps)", json["residual"].is_null() ? NAN : json["residual"].get<double>(),
                            json["residual_bound"].get<double>()));

@@ -55,7 +55,8 @@ double number_with_unit(std::string const& option, std::string const& text, std:
     if (good && known != units.end()) return value * known->worth;
     std::string names;
     for (Unit const& each : units) names += (names.empty() ? "" : ", ") + std::string(each.name);
-    throw InputError(fmt::format("`{}` is no positive number with a unit", text), option, "put one of these behind it: " + names);
+    throw InputError(fmt::format("`{}` is not a positive number with a unit", text), option,
+                     "write a number and one of these units: " + names);
 }
 
 std::string const& known_value(std::string const& option, std::string const& text, std::span<std::string_view const> known) {

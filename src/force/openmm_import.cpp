@@ -87,6 +87,7 @@ ImportedSystem import_openmm_system(OpenMmSpec const& spec, std::string const& s
     }
     for (auto const& notes : {links.notes(), note_rings(chains, joinings, spec.temperature)})
         imported.notes.insert(imported.notes.end(), notes.begin(), notes.end());
+    imported.largest_spread = links.largest_spread();
     imported.periodic = system->usesPeriodicBoundaryConditions();
     OpenMM::Vec3 a, b, c;
     system->getDefaultPeriodicBoxVectors(a, b, c);

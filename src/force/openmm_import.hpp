@@ -24,6 +24,7 @@ struct ImportedSystem {
     bool periodic = false;              // some force uses the box
     Vec3 box = Vec3::zero();            // edges of the System's box
     std::vector<std::string> notes;     // what was left out or is doubtful, a sentence each
+    double largest_spread = 0;          // of the soft springs that links stand for, relative to their length; 0: there are none
 };
 
 /// What the System says of chains that the scene writes down.

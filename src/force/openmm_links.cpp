@@ -75,7 +75,7 @@ void Joinings::refuse_gap(int p, int first, std::string const& at) const {
             fmt::format("particle {} (from 0) is joined to particle {} and not to particle {} before it: the molecule is branched", p,
                         partner, p - 1),
             at,
-            "Catena simulates chains, no trees yet: leave side beads out, or end the chain between particles that are not joined (TER in "
+            "Catena does not simulate trees yet: leave side beads out, or end the chain between particles that are not joined (TER in "
             "the "
             "topology), so that the other bonds stay springs");
     throw InputError(fmt::format("particles {} and {} (from 0) are joined by no harmonic bond and no constraint", p - 1, p), at,

@@ -32,8 +32,8 @@ std::string read_text(std::string const& file, std::string const& where) {
     double const needed = bytes_a_character * static_cast<double>(size);
     auto const present = static_cast<double>(memory_limit());
     if (needed > present)
-        throw InputError(fmt::format("to read {} takes about {:.3g} GB of memory, there are {:.3g} GB", scene::shown_path(file),
-                                     needed * 1e-9, present * 1e-9),
+        throw InputError(fmt::format("reading {} takes about {:.3g} GB of memory, and only {:.3g} GB are available",
+                                     scene::shown_path(file), needed * 1e-9, present * 1e-9),
                          where, "take a machine with more memory");
     std::string text(static_cast<std::size_t>(size), '\0');
     in.seekg(0);

@@ -13,7 +13,10 @@ namespace {
 double constexpr boltzmann = 0.00831446261815324;  // kJ/mol/K
 double constexpr same_length = 1e-6;               // nm: lengths that were written in decimals
 
-std::string links_text(std::int64_t count) { return count == 1 ? "1 link" : fmt::format("{} links", count); }
+/// "1 link of fixed length stands for", "2 links of fixed length stand for".
+std::string links_stand_for(std::int64_t count, char const* kind = "") {
+    return count == 1 ? fmt::format("1 link{} stands for", kind) : fmt::format("{} links{} stand for", count, kind);
+}
 
 }  // namespace
 
@@ -58,16 +61,16 @@ std::vector<std::string> StiffLinks::notes() const {
     std::vector<std::string> notes;
     if (soft_.count > 0)
         notes.push_back(
-            fmt::format("{} of fixed length stand for soft bonds: the thermal spread sqrt(kT/k) at {:.6g} K is up to {:.3g} % of "
+            fmt::format("{} soft bonds: the thermal spread sqrt(kT/k) at {:.6g} K is up to {:.3g} % of "
                         "the length (particles {} and {} from 0: {:.6g} kJ/mol/nm2, {:.6g} nm); Catena keeps no springs between "
                         "neighbours.",
-                        links_text(soft_.count), temperature_, 100 * soft_.worst.spread(temperature_), soft_.a, soft_.b,
-                        soft_.worst.stiffness, soft_.worst.length));
+                        links_stand_for(soft_.count, " of fixed length"), temperature_, 100 * soft_.worst.spread(temperature_), soft_.a,
+                        soft_.b, soft_.worst.stiffness, soft_.worst.length));
     if (several_.count > 0)
         notes.push_back(
-            fmt::format("{} stand for several harmonic bonds of different lengths and are as long as these rest together "
+            fmt::format("{} several harmonic bonds of different lengths, at the length at which these rest together "
                         "(particles {} and {} from 0: {} bonds, {:.6g} nm).",
-                        links_text(several_.count), several_.a, several_.b, several_.worst.springs, several_.worst.length));
+                        links_stand_for(several_.count), several_.a, several_.b, several_.worst.springs, several_.worst.length));
     return notes;
 }
 

@@ -27,7 +27,7 @@ struct Joining {
 /// Collects the links of a System's chains and judges the springs that they replace.
 class StiffLinks {
   public:
-    static double constexpr stiff = 0.05, softest = 0.20;  // largest spreads of what is a link without and with a word
+    static double constexpr stiff = 0.05, softest = 0.20;  // largest spreads of bonds that become links: without a note, and with one
 
     /// Temperature in K. `where`: scene file and key, for messages.
     StiffLinks(double temperature, std::string where) : temperature_(temperature), where_(std::move(where)) {}
@@ -36,6 +36,8 @@ class StiffLinks {
     void add(std::int64_t a, std::int64_t b, Joining const&);
     /// Of links that replace soft springs, and several springs of different lengths; a sentence for each kind.
     std::vector<std::string> notes() const;
+    /// The largest spread of a link that stands for a soft spring; 0 of none.
+    double largest_spread() const { return soft_.count > 0 ? soft_.worst.spread(temperature_) : 0; }
 
   private:
     struct Some {

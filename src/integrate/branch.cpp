@@ -30,8 +30,8 @@ void require_same_coordinates(Checkpoint const& c, Scene const& scene, std::stri
     if (joint == was_joint) return;
     auto const kind = [](bool in_joint) { return std::string(in_joint ? "joint" : "absolute") + " coordinates"; };
     throw InputError(
-        "the state is in " + kind(was_joint) + ", integrator " + name_of(scene.dynamics.integrator) + " works in " + kind(joint), file,
-        was_joint ? "take an integrator of joint coordinates" : "take rattle, g-baoab or implicit-g-baoab");
+        "the state is in " + kind(was_joint) + ", but integrator " + name_of(scene.dynamics.integrator) + " works in " + kind(joint), file,
+        was_joint ? "take an integrator in joint coordinates (rk4, velocity-verlet, ...)" : "take rattle, g-baoab or implicit-g-baoab");
 }
 
 }  // namespace
@@ -58,7 +58,7 @@ void require_own(Checkpoint const& c, Scene const& scene, std::string const& fil
 std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const& scene, std::string const& file) {
     Values const before = values_in(c);
     if (before.empty())
-        throw InputError("the checkpoint does not tell which values its scene had", file, "branch from one that this version wrote");
+        throw InputError("the checkpoint does not hold the values of its scene", file, "branch from a checkpoint that this version wrote");
     std::vector<scene::ChangedValue> changed = scene::changes(before, scene::deciding_values(scene));
     for (scene::ChangedValue const& each : changed)
         if (each.role == scene::Role::fixed)

@@ -12,7 +12,7 @@
 namespace catena {
 
 [[noreturn]] inline void refuse_checkpoint(std::string const& what) {
-    throw InputError("the checkpoint is damaged, " + what, "--restart", "use the checkpoint before, or start anew");
+    throw InputError("the checkpoint is damaged, " + what, "--restart", "use checkpoint.previous.h5, or start anew");
 }
 
 /// The counter of this name; InputError where it is missing or not between these two, both included.

@@ -147,7 +147,7 @@ class Run {
             notes_.push_back("output.every = " + std::to_string(every) + " exceeds the " + std::to_string(last_ - first) +
                              " steps of this run: no frame lies between its first and last states");
         if (scene_.output.coordinates && root_ && sites_.topology().bodies.empty())
-            notes_.push_back("output.coordinates: no chain has bodies that turn, so that there are none to write");
+            notes_.push_back("output.coordinates: no chain has rigid bodies, so there are no coordinates to write");
     }
     double time(std::int64_t n) const { return time_origin_ + static_cast<double>(n) * scene_.dynamics.step; }
     /// Frames that hang on the step alone, not on where a run ends; a branch begins with one.

@@ -74,7 +74,7 @@ std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& 
 char const* const other_positions = "write `relax: true`, or give other positions";
 
 std::string overlap_text(std::string const& pair, double distance) {
-    return fmt::format("beads overlapping in the positions of the start, {} {:.3g} nm apart: ", pair, distance);
+    return fmt::format("the start has overlapping beads, {} {:.3g} nm apart: ", pair, distance);
 }
 
 }  // namespace
@@ -128,8 +128,8 @@ StartForces look_at_start(ChainSystem& system) {
 void refuse_absurd(Scene const& scene, StartForces const& start, bool relaxed) {
     if (!start.is_absurd()) return;
     bool const overlap = start.nearest >= 0 && start.nearest < touching;
-    std::string what = relaxed ? "relaxation left " : "";
-    what += overlap ? overlap_text(start.nearest_pair, start.nearest) : "positions of the start that are far from any thermal state: ";
+    std::string what = relaxed ? "after relaxation " : "";
+    what += overlap ? overlap_text(start.nearest_pair, start.nearest) : "the start positions are far from any thermal state: ";
     what += "potential energy " + (overlap ? start.energy_text() : start.text());
     throw InputError(what, scene.file, relaxed ? "give other positions" : other_positions);
 }

@@ -30,8 +30,11 @@ std::vector<std::pair<std::string, std::string>> lines_of(Scene const& scene, St
     std::vector<std::pair<std::string, std::string>> lines{
         {"largest link change", change_text(report.change.link, unit, report.change.link_at)},
         {"largest displacement", change_text(report.change.position, unit, report.change.moved_at)}};
-    if (report.relaxation) lines.emplace_back("relaxation", report.relaxation->text());
-    if (report.forces) lines.emplace_back("energy", report.forces->text());
+    if (report.relaxation) {
+        lines.emplace_back("relaxation", report.relaxation->text());
+        lines.emplace_back("energy before", report.relaxation->from.text());
+    }
+    if (report.forces) lines.emplace_back(report.relaxation ? "energy after" : "energy", report.forces->text());
     return lines;
 }
 

@@ -126,9 +126,9 @@ std::optional<RunCheck> EnergyWatch::energy() const {
     v.value = fit.change / scale;
     double const noise = standard_errors * fit.error / scale, jump = (later.front() - total_.front()) / scale;
     bool const drifts = std::abs(v.value) > noise;
-    std::string const found =
-        fmt::format("total energy, which nothing changes, went from {} between steps {} and {}, by {:.3g} +- {:.2g} of the kinetic energy",
-                    span(fit.mean - 0.5 * fit.change, fit.mean + 0.5 * fit.change), step_[from], step_.back(), v.value, fit.error / scale);
+    std::string const found = fmt::format(
+        "total energy, which should be constant, drifted from {} between steps {} and {}, by {:.3g} +- {:.2g} of the kinetic energy",
+        span(fit.mean - 0.5 * fit.change, fit.mean + 0.5 * fit.change), step_[from], step_.back(), v.value, fit.error / scale);
     if (!std::isfinite(v.value) || (drifts && std::abs(v.value) > worthless_drift)) {
         v.passed = false;
         v.advice = found + ": the step is too long: choose a smaller dynamics.step";
@@ -136,7 +136,7 @@ std::optional<RunCheck> EnergyWatch::energy() const {
         v.advice = found + ": a smaller dynamics.step keeps it better";
     } else if (std::abs(jump) > said_jump) {
         v.advice = fmt::format(
-            "total energy, which nothing changes, jumped from {} between steps {} and {} and stayed there: the step is too "
+            "total energy, which should be constant, jumped from {} between steps {} and {} and stayed there: the step is too "
             "long for the start: choose a smaller dynamics.step",
             span(total_.front(), later.front()), step_.front(), step_[from]);
     }

@@ -80,7 +80,7 @@ Checkpoint read_checkpoint(std::string const& file) {
     Quiet const quiet;
     std::error_code unseen;
     bool const exists = std::filesystem::exists(file, unseen);
-    if (unseen) throw InputError("the checkpoint cannot be looked at, " + unseen.message(), file, "name the checkpoint.h5 of a run");
+    if (unseen) throw InputError("the checkpoint cannot be accessed, " + unseen.message(), file, "name the checkpoint.h5 of a run");
     if (!exists) throw InputError("no such checkpoint", file, "name the checkpoint.h5 of a run");
     std::string const previous = previous_checkpoint(file);
     bool const has_previous = std::filesystem::exists(previous, unseen);

@@ -85,7 +85,7 @@ bool is_alive(Holder const& holder) {
 [[noreturn]] void refuse_taken(Holder const& holder, std::string const& folder, std::string const& more = "") {
     std::string const who =
         holder.since.empty() ? "" : fmt::format(": process {} on host {}, since {}", holder.process, holder.host, holder.since);
-    throw InputError("another run writes there" + who, folder, "wait for its end, or name another with --output" + more);
+    throw InputError("another run is writing to this folder" + who, folder, "wait for its end, or name another with --output" + more);
 }
 
 [[noreturn]] void refuse_file(std::string const& file, int error) {

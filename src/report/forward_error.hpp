@@ -10,7 +10,7 @@
 namespace catena {
 
 /// Of the largest acceleration. Beyond `largest_forward_error` an answer is not valid; beyond `refined_beyond` articulated handles, which
-/// promise more, are refined unasked.
+/// promise more, are refined on their own.
 inline constexpr double largest_forward_error = 1e-6, refined_beyond = 1e-10;
 /// Bodies a rank up to which the error is estimated: of a solution, and of a run's start. Only scenes of no more bodies in all are refined
 /// unasked: whether they are must not depend on the number of ranks, as the bits do not.
@@ -18,7 +18,7 @@ inline constexpr std::int64_t most_estimated = 2000000, most_estimated_of_run = 
 
 struct ForwardError {
     std::optional<double> estimate;  // none: of beads and linked bodies, which are not refined, and of very many bodies
-    int steps = 0;                   // of refinement that were taken unasked
+    int steps = 0;                   // of refinement beyond those that the scene asks for
     bool is_small() const { return !estimate || *estimate <= largest_forward_error; }
 };
 /// Of what the system was evaluated and refined to last, at which `look` is called. Articulated handles are refined further while that

@@ -68,7 +68,11 @@ bool ChainRequest::links_as_given() const {
 
 calvados2::ChargedTermini ChainRequest::termini() const {
     if (Node const* const here = fields.find("charge_termini")) return read_charged_termini(*here);
-    return scene.forces.openmm ? calvados2::ChainEnds(*scene.forces.openmm).of("") : calvados2::ChargedTermini{};
+    // The entry of all chains comes first: those of chains before this one are not looked through.
+    bool const said = scene.forces.openmm && !scene.forces.openmm->map.empty() && scene.forces.openmm->map.front().first.empty();
+    if (!said) return {};
+    auto const& ends = scene.forces.openmm->map.front().second;
+    return {ends.first != 0, ends.second != 0};
 }
 
 void ChainRequest::set_lengths(BeadArrays& beads) const {

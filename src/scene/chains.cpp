@@ -222,7 +222,8 @@ class ChainReader {
         double const bytes = ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) * static_cast<double>(count_);
         auto const present = static_cast<double>(memory_limit());
         if (bytes > present)
-            fail(request_.node, fmt::format("the chain needs about {:.3g} GB, there are {:.3g} GB of memory", bytes * 1e-9, present * 1e-9),
+            fail(request_.node,
+                 fmt::format("the chain needs about {:.3g} GB of memory, and only {:.3g} GB are available", bytes * 1e-9, present * 1e-9),
                  "make fewer bodies or copies");
     }
 

@@ -135,7 +135,7 @@ void note_three_letters(std::string const& text, std::string const& letters, Nod
     for (std::size_t k = 0; k < threes; ++k) named += meaning_of(letters.substr(3 * k, 3)).kind == ResidueKind::amino_acid;
     if (is_cut_into_threes(text) ? 2 * named < threes : threes < 3 || named < threes) return;
     scene.note(
-        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, {}, {}, ...): write one letter a residue",
+        fmt::format("`{}` looks like three-letter codes and is read as {} one-letter codes ({}, {}, {}, ...): write one letter per residue",
                     source.path(), letters.size(), letters[0], letters[1], letters[2]));
 }
 
@@ -170,7 +170,7 @@ std::string one_letter_codes(std::string const& text, Node const& source, Scene&
     }
     if (letters.empty()) fail(source, "the sequence is empty", "give one-letter codes");
     if (small > 0)
-        scene.note(fmt::format("`{}`: {} of {} letters are small and are read as capitals", source.path(), small, letters.size()));
+        scene.note(fmt::format("`{}`: {} of {} letters are lower case and are read as capitals", source.path(), small, letters.size()));
     note_three_letters(text, letters, source, scene);
     note_nucleotides(letters, source, scene);
     return letters;

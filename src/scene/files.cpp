@@ -74,7 +74,7 @@ std::string read_text_file(std::string const& path, Node const& at) {
     auto const kind = std::filesystem::status(path, unseen).type();
     auto const refuse = [&](std::string const& what) { fail(at, fmt::format("{} `{}`", what, shown_path(path)), "check the path"); };
     if (kind == std::filesystem::file_type::not_found) refuse("no such file:");
-    if (unseen) refuse("the file cannot be looked at, " + unseen.message() + ":");
+    if (unseen) refuse("the file cannot be accessed, " + unseen.message() + ":");
     if (kind == std::filesystem::file_type::directory) refuse("a folder, not a file:");
     if (kind != std::filesystem::file_type::regular) refuse("a device or pipe, not a file:");
     errno = 0;

@@ -38,7 +38,7 @@ void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, 
     for (Draft const& draft : drafts)
         if (!draft.movable || !draft.chain.is_beads() || draft.chain.base == Base::fixed || draft.chain.tip != Tip::free)
             fail(node,
-                 fmt::format("chain `{}` has its place or is no free chain of beads: it cannot fill a region", shown(draft.chain.name)),
+                 fmt::format("`fill` is for free chains of beads without positions, which chain `{}` is not", shown(draft.chain.name)),
                  "leave `fill` out, or let the scene place every chain");
     give_places(drafts, fill, seed);
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);

@@ -26,12 +26,12 @@ void note_forces(Scene& scene) {
             openmm.temperature));
     if (openmm.builder.empty()) return;
     if (openmm.ionic_strength > most_salt)
-        scene.note(
-            fmt::format("forces.openmm.ionic_strength is {:.6g} mol/l, more than any salt dissolves: did you mean {:.6g} (mmol/l are "
-                        "a thousandth)?",
-                        openmm.ionic_strength, openmm.ionic_strength / 1000));
+        scene.note(fmt::format(
+            "forces.openmm.ionic_strength is {:.6g} mol/l, more than the solubility of any salt: did you mean {:.6g} (for {:.6g} "
+            "mmol/l)?",
+            openmm.ionic_strength, openmm.ionic_strength / 1000, openmm.ionic_strength));
     if (openmm.temperature < coldest_water)
-        scene.note(fmt::format("at {:.6g} K water is frozen: its permittivity is extrapolated from {:.6g} K down.", openmm.temperature,
+        scene.note(fmt::format("water is frozen at {:.6g} K: its permittivity is extrapolated below {:.6g} K.", openmm.temperature,
                                coldest_water));
 }
 

@@ -49,8 +49,8 @@ class Neighbours {
                             "is missing there",
                             from_.file, times(skips_), first_skip_));
         if (gaps_ > 0)
-            request_.scene.note(fmt::format("`{}`: {} at which neighbours cannot stand kept as links (first: {}) as `links: as_given` asks",
-                                            from_.file, gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_), first_gap_));
+            request_.scene.note(fmt::format("`{}`: `links: as_given` keeps {} that neighbours cannot have (first: {})", from_.file,
+                                            gaps_ == 1 ? "1 distance" : fmt::format("{} distances", gaps_), first_gap_));
     }
 
   private:
@@ -76,19 +76,20 @@ class Neighbours {
     }
     [[noreturn]] void refuse_order(PdbSite const& a, PdbSite const& b) const {
         fail(at_, fmt::format("residue {} {} follows {} {} in `{}`", b.residue, b.label, a.residue, a.label, from_.file),
-             "sort the residues by their numbers, number them along the chain, or keep one chain a file");
+             "sort the residues by their numbers, number them along the chain, or keep one chain per file");
     }
     [[noreturn]] void refuse(PdbSite const& a, PdbSite const& b, double apart, double peptide) const {
         std::string const pair = fmt::format("residues {} {} and {} {} of `{}`", a.residue, a.label, b.residue, b.label, from_.file);
         if (apart < least_distance)
             fail(at_, fmt::format("{} stand {:.3f} nm apart, nearer than neighbours can", pair, apart),
-                 "mend the file (its unit is angstrom), or write `links: as_given`");
+                 "correct the file (its unit is angstrom), or write `links: as_given`");
         std::string const broken = peptide > 0 ? fmt::format(", the peptide bond between them is {:.3f} nm long", peptide) : "";
+        if (is_wrapped(a, b))
+            fail(at_, fmt::format("{} stand {:.3f} nm apart: the file is wrapped into its cell (CRYST1)", pair, apart),
+                 fmt::format("write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`, or make the chain whole", (*from_.cell)[0],
+                             (*from_.cell)[1], (*from_.cell)[2]));
         fail(at_, fmt::format("{} stand {:.3f} nm apart{}: the chain has a gap", pair, apart, broken),
-             is_wrapped(a, b)
-                 ? fmt::format("the file is wrapped into its cell (CRYST1): write `box: {{periodic: [{:.6g}, {:.6g}, {:.6g}]}}`",
-                               (*from_.cell)[0], (*from_.cell)[1], (*from_.cell)[2])
-                 : "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
+             "fill the gap, make two chains of it, or write `links: as_given` to keep the distance");
     }
 
     PdbSites const& from_;

@@ -72,10 +72,10 @@ void Hdf5Table::refuse_too_large(std::string const& name) const {
         refuse(name, whole, fmt::format("the dataset has {} rows, which the file does not hold", rows_), "write the whole of it");
     auto const present = static_cast<double>(memory_limit());
     if (rows * bytes_a_body > present)
-        refuse(
-            name, whole,
-            fmt::format("{} bodies need about {:.3g} GB, there are {:.3g} GB of memory", rows_, rows * bytes_a_body * 1e-9, present * 1e-9),
-            "make fewer bodies, or use a larger machine");
+        refuse(name, whole,
+               fmt::format("{} bodies need about {:.3g} GB of memory, and only {:.3g} GB are available", rows_, rows * bytes_a_body * 1e-9,
+                           present * 1e-9),
+               "make fewer bodies, or use a larger machine");
 }
 
 bool Hdf5Table::has(std::string const& name) const { return H5Lexists(file_.get(), name.c_str(), H5P_DEFAULT) > 0; }

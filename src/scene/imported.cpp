@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "force/openmm_import.hpp"
 #include "scene/conformation.hpp"
 #include "scene/fields.hpp"
@@ -43,7 +45,9 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     for (std::string const& note : imported.notes) scene.note(note);
     if (!scene.box && imported.periodic) scene.box = imported.box;
     std::vector<Draft> drafts;
-    StartFit fit(scene, *openmm.find("topology"), "give the topology positions that fit the System's bonds");
+    // Frames of a run with soft springs stretch them as far as their thermal motion does.
+    double const most = std::max(largest_link_change, std::min(largest_soft_change, thermal_spreads * imported.largest_spread));
+    StartFit fit(scene, *openmm.find("topology"), "give the topology positions that fit the System's bonds", most);
     for (ImportedChain& chain : imported.chains) drafts.push_back(draft_of(std::move(chain), openmm, warm, fit));
     fit.note();
     return drafts;

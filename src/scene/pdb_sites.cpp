@@ -146,7 +146,7 @@ class Selection {
         }
         if (chains > 1)
             fail(at_, fmt::format("`{}` holds {} chains: {}{}", made.file, chains, list, chains > 4 ? ", ..." : ""),
-                 "keep one chain a file and give each its own entry");
+                 "keep one chain per file, each with its own entry in `chains`");
     }
 
     /// SEQRES lists the residues of the whole chain.
@@ -154,7 +154,7 @@ class Selection {
         if (from_.empty()) return;
         auto const listed = summary.sequence.find(std::string(from_[0]->chain));
         if (listed == summary.sequence.end() || listed->second <= std::ssize(made.sites)) return;
-        made.notes.push_back(fmt::format("`{}`: SEQRES lists {} residues of the chain, {} of them have positions and become beads",
+        made.notes.push_back(fmt::format("`{}`: SEQRES lists {} residues of the chain, but only {} have positions and become beads",
                                          made.file, listed->second, made.sites.size()));
     }
 
@@ -211,7 +211,7 @@ class Selection {
         for (PdbAtom const* const atom : found)
             if (atom->name != found.front()->name)
                 fail(at_, fmt::format("residue {} of `{}` has several atoms and none is its only CA", name_of(residue), made.file),
-                     "keep one atom a residue");
+                     "keep one atom per residue");
         for (auto a = found.begin(); a != found.end(); ++a)
             for (auto b = found.begin(); b != a; ++b)
                 if ((*a)->alternate == (*b)->alternate)

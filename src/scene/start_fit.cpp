@@ -155,7 +155,7 @@ StartFit::Change StartFit::largest_change(Chain const& chain, std::vector<double
 
 void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<double> const& before) const {
     auto const too_much = [&](double from, double to) {
-        return from > to ? from - to > largest_link_change * to : !scene_.relax && to - from > largest_link_change * to;
+        return from > to ? from - to > most_ * to : !scene_.relax && to - from > most_ * to;
     };
     Change named = worst;
     std::size_t links = 0;
@@ -170,7 +170,7 @@ void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<doubl
                                    shown(chain.name), named.from, unit(), named.to, unit());
     if (links > 1)
         what += fmt::format(", and {} would change by more than {:.0f} %",
-                            links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * largest_link_change);
+                            links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * most_);
     what += nearest_text(chain);
     std::string remedy = remedy_;
     if (named.from < named.to) remedy += ", or `relax: true`";

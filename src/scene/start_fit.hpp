@@ -12,16 +12,20 @@
 
 namespace catena::scene {
 
-/// Largest change of a link's length that is taken, relative to the length: six times the thermal spread of the softest bond that counts as
-/// a rigid link (5 % of its length). A residue that is missing between two CA atoms changes it by more.
-inline constexpr double largest_link_change = 0.3;
+/// Largest change of a link's length that is taken, relative to the length: six times the thermal spread of the softest bond that becomes a
+/// rigid link without a note (5 % of its length). A residue that is missing between two CA atoms changes it by more.
+inline constexpr double thermal_spreads = 6, largest_link_change = 0.3;
+/// The same, whatever the spread, where softer bonds become links.
+inline constexpr double largest_soft_change = 0.9;
 /// From here on a change of a link is noted; a bead's displacement from the longest link on.
 inline constexpr double noted_link_change = 0.03;
 
 class StartFit {
   public:
     /// `from` gives the positions; `remedy`: for links whose lengths would change too much. The scene's box and `relax` count.
-    StartFit(Scene& scene, Node const& from, std::string remedy) : scene_(scene), from_(from), remedy_(std::move(remedy)) {}
+    /// `most`: the largest change of a link.
+    StartFit(Scene& scene, Node const& from, std::string remedy, double most = largest_link_change)
+        : scene_(scene), from_(from), remedy_(std::move(remedy)), most_(most) {}
 
     struct Chain {
         std::string name;
@@ -37,7 +41,7 @@ class StartFit {
 
     /// Gives the links `beads.length` by the least change of positions: the least sum of squared displacements, to second order in them.
     /// The scene's `start` learns of the largest change. InputError, which names beads and overlaps, where a link would change by more than
-    /// `largest_link_change` of its length (with `relax: true` links that are too short may) or turn round. Precondition: no two neighbours
+    /// `most` of its length (with `relax: true` links that are too short may) or turn round. Precondition: no two neighbours
     /// coincide.
     void fit(Chain const& chain);
 
@@ -63,6 +67,7 @@ class StartFit {
     Scene& scene_;
     Node const& from_;
     std::string remedy_;
+    double most_;
     std::int64_t cut_links_ = 0, cut_chains_ = 0;
     std::string first_cut_;
     double largest_ = 0, most_moved_ = 0;  // change of a link, relative, and displacement of a bead

@@ -304,7 +304,7 @@ TEST(RunningFolders, AreLeftAloneByOthers) {
     std::string const before = bytes_of(folder / "o/checkpoint.h5");
     {
         RunLock const lock(folder / "o");
-        std::string const held = "another run writes there: process " + std::to_string(::getpid()) + " on host ";
+        std::string const held = "another run is writing to this folder: process " + std::to_string(::getpid()) + " on host ";
         expect_refused(run_with(folder, {"--overwrite"}), 2, held);
         expect_refused(run_with(folder, {"--restart", "o/checkpoint.h5", "--steps", "8"}), 2, held);
         expect_refused(run_with(folder, {}), 2, held);
@@ -324,7 +324,7 @@ TEST(RunningFolders, OnRanksAreLeftAloneToo) {
     RunLock const lock(folder / "o");
     Ended const e = catena_on(2, short_run, folder.path());
     EXPECT_EQ(e.status, 2) << e.err;
-    EXPECT_EQ(count(e.err, "catena: another run writes there"), 1U) << e.err;
+    EXPECT_EQ(count(e.err, "catena: another run is writing to this folder"), 1U) << e.err;
 }
 
 TEST(RunningFolders, OfProcessesThatHaveEndedAreFree) {

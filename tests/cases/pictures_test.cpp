@@ -175,9 +175,9 @@ TEST(Plan, LinksThatCannotBeAreRefused) {
         return catena(words);
     };
     expect_refused(plan({"--latency", "1us"}), 2, "--latency and --bandwidth go together");
-    expect_refused(plan({"--latency", "1 week", "--bandwidth", "1GB/s"}), 2, "`1 week` is no positive number with a unit");
-    expect_refused(plan({"--latency", "-1us", "--bandwidth", "1GB/s"}), 2, "`-1us` is no positive number");
-    expect_refused(plan({"--latency", "1us", "--bandwidth", "12.5"}), 2, "put one of these behind it: B/s");
+    expect_refused(plan({"--latency", "1 week", "--bandwidth", "1GB/s"}), 2, "`1 week` is not a positive number with a unit");
+    expect_refused(plan({"--latency", "-1us", "--bandwidth", "1GB/s"}), 2, "`-1us` is not a positive number");
+    expect_refused(plan({"--latency", "1us", "--bandwidth", "12.5"}), 2, "write a number and one of these units: B/s");
     std::ofstream(folder / "n.json") << R"({"network": {"near": {"latency": -1, "bandwidth": 1e9}}})";
     expect_refused(plan({"--network", folder / "n.json"}), 2, "latency is -1");
     std::ofstream(folder / "n.json") << R"({"network": {"near": {"latency": 1e-6, "bandwidth": 1e9}}})";

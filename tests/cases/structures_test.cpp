@@ -83,7 +83,7 @@ TEST(Structures, TheRecordThatBearsTheChainsName) {
     expect_refused(catena(check, folder_of("05-fasta-library")), 2, "holds 3 records: `first`, `second`, `third`");
     Json const lower = checked("05-fasta-library", "lower");
     EXPECT_EQ(lower.at("bodies"), 10);
-    expect_note(lower, "10 of 10 letters are small");
+    expect_note(lower, "10 of 10 letters are lower case");
 }
 
 /// Eight residues each; the calcium ion's name begins in column 13, that of an alpha carbon in column 14.

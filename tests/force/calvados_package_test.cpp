@@ -156,7 +156,7 @@ TEST_F(PackageFolder, GivesWrittenChainsItsLinksLengths) {
     EXPECT_EQ(scene.chains[0].beads.length[3], 0.40 + 0.002);
     EXPECT_EQ(scene.chains[1].beads.length[3], 0.40 + 0.001 * 31);  // the second protein's bonds begin with number 23
     EXPECT_EQ(scene.chains[2].linked.length[1], 0.40 + 0.010);
-    EXPECT_TRUE(has_note(scene, "1 link of fixed length stand for soft bonds"));
+    EXPECT_TRUE(has_note(scene, "1 link of fixed length stands for soft bonds"));
     EXPECT_EQ(scene_of("links: as_given").chains[2].beads.length[1], 0.4);
 }
 

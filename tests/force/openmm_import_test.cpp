@@ -104,7 +104,7 @@ TEST_F(Import, SoftBondsAreNotedAndSofterOnesRefused) {
     bonds->addBond(4, 5, 0.5, 1000);
     EXPECT_EQ(
         import(wound(beads, 1)).notes,
-        std::vector<std::string>{"1 link of fixed length stand for soft bonds: the thermal spread sqrt(kT/k) at 300 K is up to 9.99 % of "
+        std::vector<std::string>{"1 link of fixed length stands for soft bonds: the thermal spread sqrt(kT/k) at 300 K is up to 9.99 % of "
                                  "the length (particles 4 and 5 from 0: 1000 kJ/mol/nm2, 0.5 nm); Catena keeps no springs between "
                                  "neighbours."});
     bonds->setBondParameters(bonds->getNumBonds() - 1, 4, 5, 0.5, 200);

@@ -97,12 +97,12 @@ TEST_F(SceneFiles, bad_fasta_files) {
 TEST_F(SceneFiles, slips_in_sequences_are_noted) {
     auto const notes = [&](std::string const& sequence) { return read("chains: [{sequence: " + sequence + ", model: calvados2}]").notes; };
     std::string const threes = "`chains[0].sequence` looks like three-letter codes and is read as ";
-    EXPECT_EQ(notes("MET ASP VAL"), std::vector<std::string>{threes + "9 one-letter codes (M, E, T, ...): write one letter a residue"});
+    EXPECT_EQ(notes("MET ASP VAL"), std::vector<std::string>{threes + "9 one-letter codes (M, E, T, ...): write one letter per residue"});
     EXPECT_EQ(notes("METASPVAL").size(), 1u);
     EXPECT_EQ(notes("met asp val").size(), 2u);
     EXPECT_EQ(notes("MKVF"), std::vector<std::string>{});
     EXPECT_EQ(notes("GSK EEL RKA"), std::vector<std::string>{});
-    EXPECT_EQ(notes("MKvf"), std::vector<std::string>{"`chains[0].sequence`: 2 of 4 letters are small and are read as capitals"});
+    EXPECT_EQ(notes("MKvf"), std::vector<std::string>{"`chains[0].sequence`: 2 of 4 letters are lower case and are read as capitals"});
     EXPECT_EQ(notes("ACGTACGTACGTACGTACGT").size(), 1u);
     EXPECT_EQ(notes("GAGAGAGAGAGAGAGAGAGA").size(), 0u);
 }

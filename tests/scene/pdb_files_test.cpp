@@ -24,11 +24,13 @@ TEST_F(SceneFiles, bad_pdb_files) {
     };
     refused("HEADER\n", "no atoms in `a.pdb`" + where + "give ATOM records");
     refused(atom(1, "N", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, 1),
-            "residue GLY 1 of chain A of `a.pdb` has several atoms and none is its only CA" + where + "keep one atom a residue");
-    refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
-            "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where + "keep one chain a file and give each its own entry");
+            "residue GLY 1 of chain A of `a.pdb` has several atoms and none is its only CA" + where + "keep one atom per residue");
+    refused(
+        atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "GLY", 'B', 1, 1),
+        "`a.pdb` holds 2 chains: A (residue 1), B (residue 1)" + where + "keep one chain per file, each with its own entry in `chains`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + "TER\n" + atom(2, "CA", "GLY", 'A', 2, 3.8) + atom(3, "CA", "GLY", 'A', 3, 7.6),
-            "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where + "keep one chain a file and give each its own entry");
+            "`a.pdb` holds 2 chains: A (residue 1), A (residues 2 to 3)" + where +
+                "keep one chain per file, each with its own entry in `chains`");
     refused(atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "XYZ", 'A', 2, 1),
             "`XYZ 2` is no residue of calvados2 (s.yaml: chains[0].pdb, bead 2, line 1): rename or remove it in the file");
     refused(
@@ -44,7 +46,7 @@ TEST_F(SceneFiles, bad_pdb_files) {
         "residue GLY 1 of chain A of `a.pdb` comes again as ALA (line 2)" + where + "give each residue its own number or insertion code");
     refused(atom(1, "CA", "GLY", 'A', 2, 0) + atom(2, "CA", "ALA", 'A', 1, 3.8),
             "residue ALA 1 follows GLY 2 in `a.pdb`" + where +
-                "sort the residues by their numbers, number them along the chain, or keep one chain a file");
+                "sort the residues by their numbers, number them along the chain, or keep one chain per file");
     refused(" \n", "the file is empty" + own);
     refused("<!DOCTYPE html>\n", "the file holds HTML or XML" + own);
     refused(std::string("ATOM\0", 5), "the file is no text" + own);
@@ -232,7 +234,7 @@ TEST_F(SceneFiles, an_alternate_location_without_its_alpha_carbon) {
 TEST_F(SceneFiles, residues_that_seqres_lists_and_the_file_lacks) {
     write("a.pdb", "SEQRES   1 A    4  GLY ALA SER GLY\n" + atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "CA", "ALA", 'A', 2, 3.8));
     EXPECT_EQ(notes_of(read(with_pdb_)),
-              std::vector<std::string>{"`a.pdb`: SEQRES lists 4 residues of the chain, 2 of them have positions and become beads"});
+              std::vector<std::string>{"`a.pdb`: SEQRES lists 4 residues of the chain, but only 2 have positions and become beads"});
 }
 
 TEST_F(SceneFiles, gaps_of_a_pdb_file) {
@@ -250,7 +252,7 @@ TEST_F(SceneFiles, gaps_of_a_pdb_file) {
     EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 3 of `a.pdb` stand 0.440 nm apart: the chain has a gap" + where + ways);
     pair(2, 0.38);
     EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 2 of `a.pdb` stand 0.038 nm apart, nearer than neighbours can" + where +
-                                  "mend the file (its unit is angstrom), or write `links: as_given`");
+                                  "correct the file (its unit is angstrom), or write `links: as_given`");
     write("a.pdb", atom(1, "CA", "GLY", 'A', 1, 0) + atom(2, "C", "GLY", 'A', 1, -1) + atom(3, "N", "ALA", 'A', 2, 4.5) +
                        atom(4, "CA", "ALA", 'A', 2, 3.8));
     EXPECT_EQ(
@@ -259,8 +261,8 @@ TEST_F(SceneFiles, gaps_of_a_pdb_file) {
             where + ways);
     write("a.pdb", "CRYST1   30.000   40.000   50.000  90.00  90.00  90.00 P 1           1\n" + atom(1, "CA", "GLY", 'A', 1, 1) +
                        atom(2, "CA", "ALA", 'A', 2, 27.2));
-    EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 2 of `a.pdb` stand 2.620 nm apart: the chain has a gap" + where +
-                                  "the file is wrapped into its cell (CRYST1): write `box: {periodic: [3, 4, 5]}`");
+    EXPECT_EQ(refusal(scene), "residues GLY 1 and ALA 2 of `a.pdb` stand 2.620 nm apart: the file is wrapped into its cell (CRYST1)" +
+                                  where + "write `box: {periodic: [3, 4, 5]}`, or make the chain whole");
 }
 
 }  // namespace
