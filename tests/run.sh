@@ -11,14 +11,14 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
   fuzz        damaged files for the readers of scenes, tables, PDB and FASTA, 5 seconds each (libFuzzer, where clang has it)
-  asan-ubsan  build with the address and undefined-behaviour sanitizers, the fast tests but for some that are slow under them (1, 2 ranks)
-  no-mpi      build without MPI, the tests but long ones of mathematics that is the same there
-  minimal     build without any optional package, the same tests
+  asan-ubsan  build with the address and undefined-behaviour sanitizers, the tests of readers, writers, commands, dynamics and restarts
+  minimal     build without any optional package, the tests of what differs there
   tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
 
   --quick  format and release alone
   --slow-device-code  the GPU's code is compiled in half the time, and slower: for where nobody will run what is in build/release
-  --long   also the long tests (statistics, drift; an hour or so), an hour of each damaged file's reader, most of those that sanitizers make slow, and all without MPI
+  --long   also the long tests (statistics, drift; an hour or so), an hour of each damaged file's reader, most of those that sanitizers make slow,
+           and a build without MPI alone
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
            job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
 On two cores a first run takes an hour, half of it compilers, whose work ccache keeps.
@@ -150,25 +150,27 @@ say "fuzz"
 check fuzz fuzz "$([ $long = yes ] && echo 3600 || echo 5)" || true
 cat "$logs/fuzz.log"
 # What takes half of the tests' time under sanitizers. Vectors' kernels have none, and shared chains run on 2 ranks.
-# Of the inputs that once went wrong, those of readers meet the sanitizers; the others are runs.
-runs_of_cases=(cases_accuracy cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
-unbuilt=(dca_stage_kernels dca_levels force_ranks_mpi openmm_runs dca_campaign_long "${runs_of_cases[@]}")
+# What the sanitizers and other builds leave to the release build: mathematics and whole runs, which take most of their time. Readers, writers,
+# the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.
+mathematics=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics mixed-precision)
+runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
+      command_sampling_copies cases_accuracy cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
+unbuilt=("${mathematics[@]}" "${runs[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then
-    slow='^(simd|command_same_bits|trajectory).(ranks_[13-6]|two_stages|together)|force_ranks.Steps|^balance.ranks_[136]'
-    slow+='|force_ranks.Halo.Forces|Report.(Quick|TheStability)|AThousandRandom|ChainsOf2000|OnLinks.*/(openmp|serial|segments_full)'
+    slow='^trajectory.(ranks_[13-6]|together)|^gpu'
+    slow+='|Report.(Quick|TheStability)|AThousandRandom|ChainsOf2000|OnLinks.*/(openmp|serial|segments_full)'
     slow+='|RandomChainsAgree.*/(serial_full|openmp_projected|segments_projected)'
-    slow+='|^gpu|^(dca_articulated|kinematics|at_once).ranks_[1346]'  # this build has no GPU; two ranks do what others do
     slow+='|Staggered.(Samples|IsStable|IsOfSecondOrder)|HaveTheirOrder|ErrorsAreInProportion|Sampling.TheTemperatures'  # many steps of the same
     if [ $long = yes ]; then slow='^gpu|ranks_[56]$|stage_kernels.ranks_2'; fi
     ctests asan-ubsan-tests --preset asan-ubsan -L fast -E "$slow"
 fi
-unbuilt=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics mixed-precision
-         "${runs_of_cases[@]}" cases_hardening cases_structures cases_systems)
-same_anywhere='^(simd.ranks|physics_(order|trimer|energy))'
-if [ $long = yes ]; then unbuilt=() same_anywhere='^$'; fi
-for preset in no-mpi minimal; do
-    if build $preset "${unbuilt[@]}"; then ctests $preset-tests --preset $preset -E "$same_anywhere"; fi
+unbuilt+=(dca restart cases_hardening cases_structures cases_systems)
+same_anywhere='^physics_(order|trimer|energy)'
+presets=(minimal)
+if [ $long = yes ]; then unbuilt=() same_anywhere='^$' presets=(no-mpi minimal); fi
+for preset in "${presets[@]}"; do
+    if build "$preset" "${unbuilt[@]}"; then ctests "$preset-tests" --preset "$preset" -E "$same_anywhere"; fi
 done
 
 say "tidy"
