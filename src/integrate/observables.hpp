@@ -69,9 +69,9 @@ class Observables {
     std::int64_t dof_;
     std::vector<std::string> columns_;
     KineticEnergy kinetic_;
-    std::size_t chain_ = 0, site_ = 0;  // of the topology, next
-    Shape shape_;                       // of that chain, so far
-    std::vector<Shape> shapes_;         // of the chains before
+    std::size_t chain_ = 0, site_ = 0;                      // of the topology, next
+    Shape shape_;                                           // of that chain, so far
+    std::vector<Shape> shapes_;                             // of the chains before
     static constexpr std::size_t most_single_chains_ = 10;  // beyond, shapes are averaged over chains
 };
 

@@ -42,7 +42,8 @@ void write_psf(AtomicFile& out, Topology const& topology) {
     }
     std::vector<Bond> const bonds = bonds_of(topology);
     out.write(fmt::format("\n{:8} !NBOND: bonds", bonds.size()));
-    for (std::size_t i = 0; i < bonds.size(); ++i) out.write(fmt::format("{}{:8}{:8}", i % 4 == 0 ? "\n" : "", bonds[i].first, bonds[i].second));
+    for (std::size_t i = 0; i < bonds.size(); ++i)
+        out.write(fmt::format("{}{:8}{:8}", i % 4 == 0 ? "\n" : "", bonds[i].first, bonds[i].second));
     out.write("\n\n");
     for (char const* const none : {"!NTHETA: angles", "!NPHI: dihedrals", "!NIMPHI: impropers", "!NDON: donors", "!NACC: acceptors"})
         out.write(fmt::format("       0 {}\n\n", none));

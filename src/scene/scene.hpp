@@ -192,8 +192,8 @@ struct DynamicsSpec {
     double friction = 0.01;
     std::uint64_t seed = 1;
     double constraint_tolerance = 1e-10;
-    double tolerance = 0;  // of an adaptive step; 0: steps are as long as `step` says
-    bool fixman = false;   // rigid links sample as stiff springs would
+    double tolerance = 0;    // of an adaptive step; 0: steps are as long as `step` says
+    bool fixman = false;     // rigid links sample as stiff springs would
     bool has_steps = false;  // the scene says how many: 0 of them are one frame, not a key that is missing
 
     /// Why a GPU cannot do it; empty where it can.
@@ -241,10 +241,10 @@ struct OutputSpec {
 
 /// How far the reader moved the positions that the user gave: links take their lengths, wrapped chains are made whole, overlaps relaxed.
 struct StartChange {
-    double link = 0;        // largest change of a link's length
-    double position = 0;    // largest displacement of a bead, without whole box edges
-    std::string link_at;    // "chain `a`, beads 19 and 20: 9.31 to 0.38 nm"; empty: no link changed
-    std::string moved_at;   // "chain `a`, bead 20"; empty: no bead moved
+    double link = 0;       // largest change of a link's length
+    double position = 0;   // largest displacement of a bead, without whole box edges
+    std::string link_at;   // "chain `a`, beads 19 and 20: 9.31 to 0.38 nm"; empty: no link changed
+    std::string moved_at;  // "chain `a`, bead 20"; empty: no bead moved
 };
 
 struct Scene {
@@ -256,11 +256,11 @@ struct Scene {
     DynamicsSpec dynamics;
     SolverSpec solver;
     OutputSpec output;
-    bool relax = false;              // overlaps of the start are relaxed before the first step
+    bool relax = false;  // overlaps of the start are relaxed before the first step
     StartChange start;
     std::vector<std::string> notes;  // what the reader assumed, changed or left out: a sentence each, in the order met
     std::string file;                // as the user named it
-    std::string hash;  // of what decides the motion (not of solver, output and dynamics.steps): guards restarts
+    std::string hash;                // of what decides the motion (not of solver, output and dynamics.steps): guards restarts
 
     double boltzmann() const { return si ? 1.380649e-23 : 0.00831446261815324; }
     std::int64_t bodies() const;
