@@ -224,7 +224,9 @@ StartRelaxation relax_alone(Scene const& scene, std::vector<MovingChain>& chains
 
 }  // namespace
 
-std::string StartRelaxation::text() const { return fmt::format("{} steps, beads moved by up to {:.3g} nm", steps, moved); }
+std::string StartRelaxation::text() const {
+    return fmt::format("{} steps, beads moved by up to {:.3g} nm: from {} to {}", steps, moved, from.text(), to.text());
+}
 
 RelaxedScene relax_start(Scene const& scene, Communicator const& communicator) {
     if (!scene.forces.openmm)
