@@ -4,8 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "error.hpp"
+#include "integrate/rigid_start.hpp"
 #include "integrate/stays_open.hpp"
 #include "mpi/first_rank.hpp"
 
@@ -51,7 +54,7 @@ double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
         });
     kept_ = can_keep(n) ? std::optional(Start{n, integrator_.keep()}) : std::nullopt;
     worst_since_ = 0;
-    return now;
+    return larger(now, std::exchange(left_open_, 0));
 }
 
 bool ClosedSteps::mend(std::int64_t n, std::function<void()> const& prepare) {
@@ -84,19 +87,41 @@ void ClosedSteps::take(std::int64_t n, std::function<void()> const& prepare) {
     integrator_.step(n);
     if (error() <= tolerance_) return;
     int const parts = integrator_.parts();
+    double const rounding = rounding_at(before);
     for (int times = 1;; times *= 2) {
         integrator_.put_back(before);
         prepare();
         integrator_.set_parts(parts * times);
         try {
-            most_sweeps_ = std::max(most_sweeps_, integrator_.sweeps() + integrator_.step_closing(n));
+            most_sweeps_ = std::max(most_sweeps_, integrator_.sweeps() + integrator_.step_closing(n, rounding));
             break;
         } catch (StaysOpen const&) {
             if (times == most_times) throw;
         }
     }
     integrator_.set_parts(parts);
+    if (double const open = error(); !(open <= tolerance_)) left_open_ = larger(left_open_, open);
     if (steps_++ == 0) first_ = n;
+}
+
+/// Of joints' errors, which are relative to lengths. What converges slowly is far above it.
+double ClosedSteps::rounding_at(ConstrainedIntegrator::Kept const& kept) const {
+    double constexpr few = 64, most = 1e-7, infinity = std::numeric_limits<double>::infinity();
+    Communicator const& communicator = system_.communicator();
+    std::vector<AbsoluteDynamics*> const groups = system_.absolute();
+    double worst = 0;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        ChainGroup const& group = groups[g]->group();
+        double largest = 0, shortest = infinity;
+        for (double const x : array_named(kept.state[g], "position").values) largest = std::max(largest, std::abs(x));
+        for (std::int64_t k = 0; k < group.size; ++k)
+            if (double const length = group.length.view().at(k, 0); length > 0) shortest = std::min(shortest, length);
+        bool const links = group.beads || group.linked;
+        double const length = links ? -communicator.max(-shortest) : reach_of_joints(group, communicator);
+        largest = communicator.max(largest);
+        if (length > 0) worst = std::max(worst, largest / length);
+    }
+    return std::min(most, few * std::numeric_limits<double>::epsilon() * worst);
 }
 
 nlohmann::json ClosedSteps::summary() const {

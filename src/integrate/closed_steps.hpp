@@ -23,8 +23,9 @@ class ClosedSteps {
     /// After step n. On a GPU, where a look costs as much as a step, nothing; rigid bodies, whose joints take longer to look at, are looked
     /// at after each of the first steps and then now and again.
     void note(std::int64_t n);
-    /// At step n, prepared. Returns the error there; what took steps again has called `prepare` last. Collective. Throws ComputationError
-    /// that names the step where no number of sweeps closes the joints, or where matrices are lost and steps cannot be taken again.
+    /// At step n, prepared. Returns the error there, or what steps before were left with beyond the tolerance; what took steps again has
+    /// called `prepare` last. Collective. Throws ComputationError that names the step where no number of sweeps closes the joints, or where
+    /// matrices are lost and steps cannot be taken again.
     double look(std::int64_t n, std::function<void()> const& prepare);
     /// At step n, which could not be prepared, as all ranks know: steps since the look before that left joints open are taken again.
     /// Returns whether there were any. Collective.
@@ -40,6 +41,7 @@ class ClosedSteps {
     bool can_repeat(std::int64_t n) const { return kept_ && kept_->step < n; }
     void repeat(std::int64_t n, std::function<void()> const& prepare);
     void take(std::int64_t n, std::function<void()> const& prepare);
+    double rounding_at(ConstrainedIntegrator::Kept const&) const;
     bool can_keep(std::int64_t n) const;
 
     struct Start {
@@ -52,7 +54,7 @@ class ClosedSteps {
     ConstrainedIntegrator& integrator_;
     double tolerance_;
     std::optional<Start> kept_;
-    double worst_since_ = 0;
+    double worst_since_ = 0, left_open_ = 0;  // before steps were taken again, on this rank; after that, beyond the tolerance
     std::int64_t steps_ = 0, first_ = 0;
     int most_sweeps_ = 0;
     std::string trouble_;  // of this rank's matrices, as error() found it

@@ -10,7 +10,6 @@
 namespace catena {
 namespace {
 
-constexpr double largest_rounding = 1e-7;
 constexpr int in_vain_at_rounding = 5;
 
 [[noreturn]] void fail(int sweeps, double error, double tolerance) {
@@ -30,7 +29,7 @@ int Closing::close(int done, std::function<double()> const& error, std::function
         in_vain = open > 0.5 * best ? in_vain + 1 : 0;
         best = std::min(best, open);
         if (in_vain > 0 && open <= tolerance) return more;
-        if (in_vain >= in_vain_at_rounding && open < largest_rounding)
+        if (in_vain >= in_vain_at_rounding && open <= rounding)
             return more;  // of coordinates far from the origin: the run's verdict says so
         if (!std::isfinite(open) || (done + more >= most && more >= in_vain_at_rounding)) {
             if (open <= tolerance) return more;

@@ -13,6 +13,7 @@ struct Closing {
     double tolerance = 1e-10;  // sweeps go on where the error exceeds it
     double enough = 1e-12;     // they end below that, or where rounding is all that is left
     int most = 30;             // sweeps of a drift in all, or the few that tell rounding
+    double rounding = 1e-7;    // the most that coordinates' rounding leaves of an error
 
     /// Calls `sweep` while `error()` asks for it, after `done` sweeps. Returns the number of calls. Throws ComputationError where the
     /// joints stay open after `most` sweeps or come apart.

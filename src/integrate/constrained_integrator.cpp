@@ -50,9 +50,9 @@ void ConstrainedIntegrator::step(std::int64_t n) {
     pending_ = 1.0;
 }
 
-int ConstrainedIntegrator::step_closing(std::int64_t n) {
+int ConstrainedIntegrator::step_closing(std::int64_t n, double rounding) {
     ConstrainedStep const step = step_of(n);
-    Closing const closing{scheme_.tolerance, early * scheme_.tolerance, most_sweeps};
+    Closing const closing{scheme_.tolerance, early * scheme_.tolerance, most_sweeps, rounding};
     int most = 0;
     for (AbsoluteDynamics* group : groups_) {
         ClosingParts parts{*group, closing_drifts_of(*group), closing};

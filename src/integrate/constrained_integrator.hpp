@@ -30,7 +30,7 @@ class ConstrainedIntegrator {
     /// From x_n, where configuration, matrices and forces are ready, to x_n+1, where the configuration is. `n` counts steps from 0.
     void step(std::int64_t n);
     /// The same with further sweeps in every drift that leaves joints open (Closing). Returns those of the drift that took most.
-    int step_closing(std::int64_t n);
+    int step_closing(std::int64_t n, double rounding);
     /// The state of now, on this rank, and back to it; configuration is then ready, matrices and forces are not.
     struct Kept {
         std::vector<std::vector<StateArray>> state;

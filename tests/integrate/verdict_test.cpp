@@ -135,6 +135,7 @@ TEST(Closing, RoundingEndsSweeps) { EXPECT_LT((Falling{1e-9, 0.01, 2e-12}.close(
 TEST(Closing, RoundingAboveTheToleranceEndsSweepsHoweverManyThereWere) {
     EXPECT_EQ((Falling{1e-9, 1, 1e-9}.close({1e-10, 1e-12, 30}, 30)), 5);
 }
+TEST(Closing, SlowConvergenceIsNoRounding) { EXPECT_THROW((Falling{9e-8, 0.9, 0}.close({1e-10, 1e-12, 30, 1e-13})), ComputationError); }
 TEST(Closing, JointsThatStayOpenAreAnError) {
     EXPECT_THROW((Falling{1e-2, 1, 0}.close({1e-10, 1e-12, 30})), ComputationError);
     EXPECT_THROW((Falling{std::nan(""), 1, 0}.close({1e-10, 1e-12, 30})), ComputationError);
