@@ -162,12 +162,12 @@ std::string text_of(ChainSystem const& system, Json const& json, Timing const& t
                                              duration_text(spread_of(refinement).median)));
     for (auto const& [term, energy] : json["potential_energy"].items())
         text.entry("potential energy", fmt::format("{} {:.10g} {}", term, energy.get<double>(), energy_unit(scene)));
-    Json const& inverse = json["rnea_residual"];
+    Json const &inverse = json["rnea_residual"], &error = json["estimated_error"];
     text.entry("inverse dynamics",
-               inverse.is_null() ? "residual not computed (several ranks, many bodies, bodies on links or in loops, or a Fixman potential)"
-                                 : fmt::format("residual {:.2e}, which grows with the condition number: the estimated error counts",
-                                               inverse.get<double>()));
-    Json const& error = json["estimated_error"];
+               inverse.is_null()
+                   ? "residual not computed (several ranks, many bodies, bodies on links or in loops, or a Fixman potential)"
+                   : fmt::format("residual {:.2e}, {}", inverse.get<double>(),
+                                 error.is_null() ? "as information" : "which grows with the condition number: the estimated error counts"));
     text.entry("estimated error", error.is_null()
                                       ? "not estimated (beads and linked bodies, or very many bodies)"
                                       : fmt::format("{:.1e} of the largest acceleration, bound {:.0e} (by one step of refinement)",
