@@ -8,9 +8,6 @@ Refusal const beads_cases[] = {
     {"unknown_letter", "chains: [{sequence: GAXS, model: calvados2}]",
      "`X` at position 3 of the sequence is no residue of calvados2 (s.yaml: chains[0].sequence, line 1): use the one-letter codes "
      "ARNDCQEGHILKMFPSTWYV"},
-    {"lower_case", "chains: [{sequence: gas, model: calvados2}]",
-     "`g` at position 1 of the sequence is no residue of calvados2 (s.yaml: chains[0].sequence, line 1): use the one-letter codes "
-     "ARNDCQEGHILKMFPSTWYV"},
     {"no_model", "chains: [{sequence: GAS}]", "key `model` is missing (s.yaml: chains[0], line 1): add `model: calvados2`"},
     {"unknown_model", "chains: [{sequence: GAS, model: calvados3}]",
      "`calvados3` is not a value of `model` (s.yaml: chains[0].model, line 1): did you mean `calvados2`?"},

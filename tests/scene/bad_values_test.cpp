@@ -92,7 +92,8 @@ forces: {openmm: {bilder: calvados2}})y",
      "key `chains` has no value (s.yaml: chains, line 1): give one or leave the key out"},
     {"chain_is_text", "chains: [GGG]",
      "`GGG` is not a map (s.yaml: chains[0], line 1): give a map with keys among `name`, `count`, `sequence`, `fasta`, `record`, `pdb`, "
-     "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, `conformation`, `rigid`, `velocities`"},
+     "`bodies`, `generator`, `model`, `positions`, `links`, `base`, `tip`, `anchor`, `conformation`, `rigid`, `charge_termini`, "
+     "`velocities`"},
     {"nothing_in_chain", "chains: [{name: a}]",
      "the chain says nothing of its bodies (s.yaml: chains[0], line 1): add one of `sequence`, `fasta`, `pdb`, `bodies`, `generator`"},
     {"two_sources", "chains: [{sequence: GGG, model: calvados2, generator: {pendulum: {links: 2}}}]",

@@ -173,10 +173,10 @@ TEST(Places, without_a_box_the_grid_grows) {
 
 TEST(Places, memory_is_asked_for_before_it_is_taken) {
     EXPECT_EQ(refusal_of("chains: [{generator: {random: {bodies: 1e15, joint: link}}}]")
-                  .rfind("the chain needs about 1.5e+08 GB, this machine has ", 0),
+                  .rfind("the chain needs about 1.5e+08 GB of memory, and only ", 0),
               0u);
     EXPECT_EQ(refusal_of("chains: [{count: 1e15, sequence: G, model: calvados2}]")
-                  .rfind("the chain needs about 3.15e+09 GB, this machine has ", 0),
+                  .rfind("the chain needs about 3.15e+09 GB of memory, and only ", 0),
               0u);
 }
 
