@@ -114,9 +114,9 @@ double ClosedSteps::rounding_at(ConstrainedIntegrator::Kept const& kept) const {
         ChainGroup const& group = groups[g]->group();
         double largest = 0, shortest = infinity;
         for (double const x : array_named(kept.state[g], "position").values) largest = std::max(largest, std::abs(x));
-        for (std::int64_t k = 0; k < group.size; ++k)
+        bool const links = group.beads || group.linked;  // bodies on joints have no lengths
+        for (std::int64_t k = 0; links && k < group.size; ++k)
             if (double const length = group.length.view().at(k, 0); length > 0) shortest = std::min(shortest, length);
-        bool const links = group.beads || group.linked;
         double const length = links ? -communicator.max(-shortest) : reach_of_joints(group, communicator);
         largest = communicator.max(largest);
         if (length > 0) worst = std::max(worst, largest / length);

@@ -82,7 +82,7 @@ TEST(Steps, EnergyThatGrowsIsWarnedOfAndInvalid) {
     Ended const ended = catena({"run", scene_of("energy-drift-valid"), "--output", "out"}, folder.path());
     EXPECT_EQ(ended.status, 1) << ended.out;
     EXPECT_NE(ended.err.find("near the longest stable one"), std::string::npos) << ended.err;
-    EXPECT_NE(ended.out.find("INVALID: energy at step 3000"), std::string::npos) << ended.out;
+    EXPECT_NE(ended.out.find("INVALID: energy at step 3000"), std::string::npos) << ended.out << ended.err;
 }
 TEST(Steps, AStepBeyondTheExplicitLimitIsRefused) {
     TemporaryFolder const folder;
