@@ -71,7 +71,7 @@ ctests() {
 # build PRESET TEST-PROGRAMS...: configured and built with warnings as errors, without these programs.
 build() {
     say "$1"
-    check "$1-configure" cmake --preset "$1" -DCATENA_WERROR=ON -DCATENA_TESTS_LEFT_OUT="$(IFS=';'; echo "${*:2}")" \
+    check "$1-configure" cmake --preset "$1" -DCATENA_WERROR=ON -DCATENA_SANITIZE_QUICKLY="$([ $long = yes ] && echo OFF || echo ON)" -DCATENA_TESTS_LEFT_OUT="$(IFS=';'; echo "${*:2}")" \
         -DCATENA_SLOW_DEVICE_CODE=$slow_device_code || return 1
     sed -n '/^-- Catena /,/^$/p' "$logs/$1-configure.log"
     check "$1-build" cmake --build --preset "$1" --parallel "$(build_jobs)"

@@ -14,7 +14,7 @@ endif()
 
 option(CATENA_WERROR "Warnings are errors (tests/run.sh sets it)" OFF)
 set(CATENA_SANITIZE "" CACHE STRING "Sanitizers, as for -fsanitize=: address,undefined or thread; empty: none")
-option(CATENA_SANITIZE_QUICKLY "Half the time to compile: no sanitizers in src/dca, and no checks of undefined behaviour that ends in a signal" OFF)
+option(CATENA_SANITIZE_QUICKLY "A third of the time to compile: no sanitizers in src/dca, no vectors, and no checks of undefined behaviour that ends in a signal" OFF)
 
 # One instruction set for the whole build, the same on every machine that builds it: results are promised bit for bit for
 # an instruction set, and whether a*b+c is one rounding or two (FMA, from x86-64-v3 on) is the part of it that shows.
@@ -84,7 +84,7 @@ endif()
 # avx2.cpp and avx512.cpp of the folder that calls it, or no_levels.cpp, into `target`. One source an instruction set; optimised in every
 # build, so that nothing of it is left over that the linker could give to others.
 set(CATENA_HAVE_SIMD FALSE)
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$" AND NOT (CATENA_SANITIZE AND CATENA_SANITIZE_QUICKLY))
     set(CATENA_HAVE_SIMD TRUE)
 endif()
 function(catena_add_simd_sources target)

@@ -118,7 +118,7 @@ class LeftOut {
 class Selection {
   public:
     Selection(std::vector<Residue> const& residues, std::string const& path, Node const& at)
-        : residues_(residues), path_(path), at_(at), alpha_carbons_(any_alpha_carbon()), protein_(any_protein()) {
+        : residues_(residues), at_(at), alpha_carbons_(any_alpha_carbon()), protein_(any_protein()) {
         made.file = shown_path(path);
     }
 
@@ -265,7 +265,6 @@ class Selection {
     }
 
     std::vector<Residue> const& residues_;
-    std::string const& path_;
     Node const& at_;
     bool alpha_carbons_, protein_;
     std::vector<PdbAtom const*> from_;  // of each site

@@ -28,12 +28,16 @@ class Levels : public ::testing::Test {
         return std::string("{base: ") + base + ", generator: {random: {bodies: " + std::to_string(bodies) + ", joint: " + joint +
                ", seed: 1}}}";
     }
+    /// Ranks that share two cores wait for each other's every message: there, fewer sizes.
+    static std::vector<int> sizes(std::vector<int> const& of_one_rank, std::vector<int> const& of_ranks) {
+        return testing::world().size() == 1 ? of_one_rank : of_ranks;
+    }
     std::unique_ptr<Executor> executor_ = serial_executor();
 };
 
 TEST_F(Levels, EveryKindAndSize) {
     for (char const* const joint : {"link", "planar", "spherical", "universal", "revolute", "prismatic", "helical", "weld", "mixed"})
-        for (int const bodies : {1, 2, 3, 31, 32, 33, 255, 257}) {
+        for (int const bodies : sizes({1, 2, 3, 31, 32, 33, 255, 257}, {3, 32, 257})) {
             SCOPED_TRACE(std::string(joint) + " " + std::to_string(bodies));
             expect_same(scene_of(random(joint, bodies, bodies % 2 ? "free" : "fixed")));
             if (HasFailure()) return;
@@ -41,7 +45,7 @@ TEST_F(Levels, EveryKindAndSize) {
 }
 
 TEST_F(Levels, ElevenLevels) {
-    for (int const bodies : {2047, 2048, 2049}) expect_same(scene_of(random("revolute", bodies, "fixed")));
+    for (int const bodies : sizes({2047, 2048, 2049}, {2049})) expect_same(scene_of(random("revolute", bodies, "fixed")));
 }
 
 TEST_F(Levels, EveryPairOfLevels) {
