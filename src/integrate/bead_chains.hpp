@@ -112,6 +112,17 @@ struct BeadChainsIn {
     CATENA_HD_IN_PLACE double error(std::int64_t k) const {
         return linked(k) ? std::fabs(norm(link(k)) - length.at(k, 0)) / length.at(k, 0) : 0.0;
     }
+    /// Whether error(k) is known to be at most `tolerance` for beads [begin, end), all of which have links to the beads before them.
+    /// Neither branches nor roots, so that compilers make vectors of it.
+    bool closed_along(std::int64_t begin, std::int64_t end, double tolerance) const {
+        double const near = 0.999 * tolerance;  // the squares of relative errors are left out
+        std::int64_t open = 0;
+        for (std::int64_t k = begin; k < end; ++k) {
+            double const off = excess(position.load(k) - position.load(k - 1), length.at(k, 0), half_over_length.at(k, 0));
+            open += std::fabs(off) <= near * length.at(k, 0) ? 0 : 1;
+        }
+        return open == 0;
+    }
     CATENA_HD_IN_PLACE double tip_error(std::int64_t i) const {
         return tip[i].body >= 0 ? std::fabs(norm(tip_link(i)) - tip[i].length) / tip[i].length : 0.0;
     }

@@ -178,6 +178,11 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
         double const at_tips = space_.largest(tips(), [c] CATENA_LAMBDA(std::int64_t i) -> double { return c.tip_error(i); });
         return larger(along, at_tips);
     }
+    double own_error_beyond(double tolerance) override {
+        if constexpr (Space::answers_at_once)
+            if (closed_within(tolerance)) return 0;
+        return own_error();
+    }
 
     std::vector<StateArray> state() const override {
         check();
@@ -287,6 +292,15 @@ class BeadDynamics final : public AbsoluteDynamics, public DeviceBeads, public C
     void check() const {
         solver_->check();
         trouble_.check();
+    }
+    /// Whether own_error() is known to be at most `tolerance`.
+    bool closed_within(double tolerance) {
+        BeadChains const c = chains();
+        for (dca::Piece const& p : group_.pieces)
+            if (!(c.error(p.local) <= tolerance) || !c.closed_along(p.local + 1, p.local + p.count, tolerance)) return false;
+        for (std::int64_t i = 0; i < tips(); ++i)
+            if (!(c.tip_error(i) <= tolerance)) return false;
+        return true;
     }
     BeadStep<Way> parts() { return {chains(), {*this}}; }
     /// Whether the solver, if it is one of this leaf, carried the chains through the step.

@@ -20,20 +20,24 @@ constexpr int most_times = 64;
 
 }  // namespace
 
+ClosedSteps::ClosedSteps(ChainSystem& system, ConstrainedIntegrator& integrator, double tolerance)
+    : system_(system), integrator_(integrator), tolerance_(tolerance) {
+    for (AbsoluteDynamics* const group : system.absolute()) groups_.push_back({&closing_drifts_of(*group), group->group().beads});
+}
+
 void ClosedSteps::note(std::int64_t n) {
     if (uses_gpu(system_.backend())) return;
     bool const looks_at_bodies = n < first_steps || n % every_of_bodies == 0;
-    for (AbsoluteDynamics* const group : system_.absolute())
-        if (looks_at_bodies || group->group().beads) worst_since_ = larger(worst_since_, closing_drifts_of(*group).own_error());
+    for (Group const& group : groups_)
+        if (looks_at_bodies || group.beads) worst_since_ = larger(worst_since_, group.drifts->own_error_beyond(tolerance_));
 }
 
 double ClosedSteps::error() {
     double worst = 0;
     trouble_.clear();
-    for (AbsoluteDynamics* const group : system_.absolute()) {
-        ClosingDrifts& drifts = closing_drifts_of(*group);
-        if (std::string const found = drifts.trouble(); trouble_.empty()) trouble_ = found;
-        worst = larger(worst, drifts.agreed_error());
+    for (Group const& group : groups_) {
+        if (std::string const found = group.drifts->trouble(); trouble_.empty()) trouble_ = found;
+        worst = larger(worst, group.drifts->agreed_error());
     }
     system_.check_forces();
     return system_.communicator().max(trouble_.empty() ? worst : std::numeric_limits<double>::quiet_NaN());

@@ -7,6 +7,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "integrate/chain_system.hpp"
 #include "integrate/constrained_integrator.hpp"
@@ -18,8 +19,7 @@ namespace catena {
 /// further sweeps: the states are those of a run that had looked after every step.
 class ClosedSteps {
   public:
-    ClosedSteps(ChainSystem& system, ConstrainedIntegrator& integrator, double tolerance)
-        : system_(system), integrator_(integrator), tolerance_(tolerance) {}
+    ClosedSteps(ChainSystem& system, ConstrainedIntegrator& integrator, double tolerance);
     /// After step n. On a GPU, where a look costs as much as a step, nothing; rigid bodies, whose joints take longer to look at, are looked
     /// at after each of the first steps and then now and again.
     void note(std::int64_t n);
@@ -44,6 +44,10 @@ class ClosedSteps {
     double rounding_at(ConstrainedIntegrator::Kept const&) const;
     bool can_keep(std::int64_t n) const;
 
+    struct Group {
+        ClosingDrifts* drifts;
+        bool beads;
+    };
     struct Start {
         std::int64_t step;
         ConstrainedIntegrator::Kept state;
@@ -52,6 +56,7 @@ class ClosedSteps {
     static constexpr std::int64_t first_steps = 128, every_of_bodies = 8;
     ChainSystem& system_;
     ConstrainedIntegrator& integrator_;
+    std::vector<Group> groups_;
     double tolerance_;
     std::optional<Start> kept_;
     double worst_since_ = 0, left_open_ = 0;  // before steps were taken again, on this rank; after that, beyond the tolerance

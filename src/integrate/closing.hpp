@@ -28,6 +28,8 @@ class ClosingDrifts {
     virtual int drift_closing(double h, int sweeps, Closing const& closing) = 0;
     /// AbsoluteDynamics::constraint_error() of this rank's joints, after step(). Collective, without an agreement of the ranks.
     virtual double own_error() = 0;
+    /// own_error(), or 0 where it is known to be no more than `tolerance`, which takes less time to find out. Collective, as own_error().
+    virtual double own_error_beyond(double tolerance) = 0;
     /// AbsoluteDynamics::constraint_error() whatever became of matrices: where these are lost on one rank, all ranks come back. Collective.
     virtual double agreed_error() = 0;
     /// What is wrong with matrices on this rank since the state was set last; empty: nothing.

@@ -166,6 +166,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
         set_ends();
         return error_at_ends();
     }
+    double own_error_beyond(double /*tolerance*/) override { return own_error(); }
 
     std::vector<StateArray> state() const override {
         check();
