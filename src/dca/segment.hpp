@@ -3,7 +3,7 @@
 //
 // At joint j the directions are ordered so that the first m(j) are the restricted ones (D of the chapter), the others are
 // free. Projected handles carry K = max m directions, full handles all of them (6; 3 for point beads): the operations are
-// the same, since forces along free directions are known and stand in the biases (formulas: "Projection is exact").
+// the same, since forces along free directions are known and stand in the biases (src/dca/README.md, "Projected handles").
 #pragma once
 
 #include "dca/linear.hpp"

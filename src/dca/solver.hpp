@@ -116,7 +116,7 @@ struct LoadsView {
     HingeLoads hinges{};
 };
 
-/// Of links: what the inverse of their matrix T (formulas, "Link chains") says beyond solutions.
+/// Of links: what the inverse of their matrix T (src/dca/README.md, "Link chains") says beyond solutions.
 struct InverseView {
     View<1> pivot;      // of link k in the tree's order, those of tips among them: their product is det T; 1 where there is no link
     View<1> tip_pivot;  // of the link from last body k to the ground
