@@ -4,7 +4,7 @@
 usage: commands.py --catena PROGRAM [--mpirun WORD,WORD,...] [PAGE ...]
 
 Of every command in code, also within a line, the options must be in the help of its program. Commands of fenced blocks are run too, those
-of a block one after the other in a folder of its own: `check`, `solve` and `run`, whose steps are made few. What needs a GPU, a cluster,
+of a block one after the other in a folder of its own: `check`, `plan`, `solve` and `run`, whose steps are made few. What needs a GPU, a cluster,
 a network or minutes (bench, report, calibration) is only looked at. Fenced YAML that has `chains` is read by `catena check`.
 """
 import argparse
@@ -19,7 +19,7 @@ import markdown
 
 PROGRAM = re.compile(r"^(.*/)?catena$")
 SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench")
-RUN = ("check", "solve", "run")
+RUN = ("check", "plan", "solve", "run")
 PLACEHOLDERS = {"SCENE", "scene.yaml", "DIR", "FILE", "OTHER"}
 FEW_STEPS = 4
 
@@ -124,7 +124,7 @@ class Blocks:
         after = catena_words(words)
         if not after or after[0] not in RUN or PLACEHOLDERS & set(after):
             return False
-        return (words[0] == "mpirun" or PROGRAM.match(words[0])) and not any("cuda" in w or "hdf5" in w for w in after)
+        return (words[0] == "mpirun" or PROGRAM.match(words[0])) and not any(re.search(r"cuda|hdf5|--calibrate|--network", w) for w in after)
 
     def shortened(self, after, runs):
         """Runs of few steps; one that goes on makes as many more."""
