@@ -5,7 +5,8 @@ usage: commands.py --catena PROGRAM [--mpirun WORD,WORD,...] [PAGE ...]
 
 Of every command in code, also within a line, the options must be in the help of its program. Commands of fenced blocks are run too, those
 of a block one after the other in a folder of its own: `check`, `plan`, `solve` and `run`, whose steps are made few. What needs a GPU, a cluster,
-a network or minutes (bench, report, calibration) is only looked at. Fenced YAML that has `chains` is read by `catena check`.
+a network or minutes (bench, report, calibration) is only looked at. Fenced YAML that has `chains` is read by `catena check`, and is the
+`my.yaml` of the blocks that follow it.
 """
 import argparse
 import os
@@ -111,6 +112,7 @@ class Blocks:
     def __init__(self, catena, mpirun):
         self.catena, self.mpirun = catena, mpirun
         self.run_commands = self.checked_scenes = 0
+        self.scene = ""
 
     def folder(self, parent):
         work = tempfile.mkdtemp(dir=parent)
@@ -118,6 +120,8 @@ class Blocks:
             os.symlink(os.path.join(markdown.ROOT, name), os.path.join(work, name))
         with open(os.path.join(work, "asyn.fasta"), "w", encoding="utf-8") as file:
             file.write(">asyn\nMDVFMKGLSKAKEGVVAAAE\n")
+        with open(os.path.join(work, "my.yaml"), "w", encoding="utf-8") as file:
+            file.write(self.scene)
         return work
 
     def can_run(self, words):
@@ -151,12 +155,11 @@ class Blocks:
                 yield f"{' '.join(words)} ended with status {answer.returncode}: {answer.stderr.strip() or answer.stdout.strip()[-300:]}"
 
     def check_scene(self, block, parent):
+        self.scene = "\n".join(block) + "\n"
         work = self.folder(parent)
         self.checked_scenes += 1
-        with open(os.path.join(work, "scene.yaml"), "w", encoding="utf-8") as file:
-            file.write("\n".join(block) + "\n")
-        few = ["--set=chains[0].count=2"] if re.search(r"count: *[1-9]\d\d", "\n".join(block)) else []
-        answer = subprocess.run([self.catena, "check", "scene.yaml", *few], cwd=work, capture_output=True, text=True, timeout=120, check=False)
+        few = ["--set=chains[0].count=2"] if re.search(r"count: *[1-9]\d\d", self.scene) else []
+        answer = subprocess.run([self.catena, "check", "my.yaml", *few], cwd=work, capture_output=True, text=True, timeout=120, check=False)
         if answer.returncode != 0:
             yield f"its scene is refused: {answer.stderr.strip()}"
 

@@ -8,9 +8,10 @@ import sys
 
 import markdown
 
-LARGEST_README = 8192
 LONG_SENTENCE, LONG_SHARE = 40, 0.05
 LONGEST_PARAGRAPH, LONGEST_CELL = 120, 60
+FIRST_PAGE = "README.md"  # shorter in everything: bytes, words of a sentence, words of a paragraph
+FIRST_BYTES, FIRST_SENTENCE, FIRST_PARAGRAPH = 8192, 30, 80
 ROOMS = ("src", "cuda", "mpi", "tests")
 DEEPEST = 3  # below lie inputs that the line of their folder stands for
 
@@ -28,6 +29,17 @@ def check_prose(path, text):
     for cell in markdown.cells(prose):
         if markdown.words(cell) > LONGEST_CELL:
             yield f"{path}: a table's cell has {markdown.words(cell)} words: {cell[:60]}..."
+
+
+def check_first_page(text):
+    if len(text.encode()) > FIRST_BYTES:
+        yield f"{FIRST_PAGE} has {len(text.encode())} bytes, more than {FIRST_BYTES}"
+    for paragraph in markdown.paragraphs(markdown.split(text)[0]):
+        if markdown.words(paragraph) > FIRST_PARAGRAPH:
+            yield f"{FIRST_PAGE}: a paragraph has {markdown.words(paragraph)} words: {paragraph[:60]}..."
+        for sentence in markdown.sentences(paragraph):
+            if markdown.words(sentence) > FIRST_SENTENCE:
+                yield f"{FIRST_PAGE}: a sentence has {markdown.words(sentence)} words: {sentence[:60]}..."
 
 
 def check_links(root, path, text):
@@ -62,10 +74,7 @@ def check_folders(root, texts):
 def main():
     root = sys.argv[1] if len(sys.argv) > 1 else markdown.ROOT
     texts = {path: markdown.read(path, root) for path in markdown.pages(root)}
-    faults = []
-    size = len(texts["README.md"].encode())
-    if size > LARGEST_README:
-        faults.append(f"README.md has {size} bytes, more than {LARGEST_README}")
+    faults = list(check_first_page(texts[FIRST_PAGE]))
     for path, text in texts.items():
         faults += check_prose(path, text)
         faults += check_links(root, path, text)
