@@ -72,11 +72,12 @@ def with_and_without_vectors(file, joint, n):
 
 
 def one_core():
-    header = ["joints (directions per handle)"] + [bodies(n) for n in SIX_SIZES]
+    header = ["joints (directions per handle)"] + [bodies(n) for n in SIX_SIZES] + ["131,072, AVX2"]
     kinds = [("link (1), solver alone", "evaluation", "link"), ("spherical (3), solver alone", "evaluation", "spherical"),
              ("planar (2)", "solve", "planar"), ("spherical (3)", "solve", "spherical"), ("universal (4)", "solve", "universal"),
              ("revolute (5)", "solve", "revolute")]
-    rows = [[name] + [with_and_without_vectors(f"{bench}-simd-{{}}-amd-epyc", joint, n) for n in SIX_SIZES] for name, bench, joint in kinds]
+    rows = [[name] + [with_and_without_vectors(f"{bench}-simd-{{}}-amd-epyc", joint, n) for n in SIX_SIZES]
+            + [short(ns_per_body(f"{bench}-simd-avx2-amd-epyc", joint, 131072))] for name, bench, joint in kinds]
     sizes = ",".join(str(n) for n in SIX_SIZES)
     return header, rows, ["evaluation-simd-{off,avx2,avx512}-amd-epyc", "solve-simd-{off,avx2,avx512}-amd-epyc"], [
         f"catena bench evaluation --backend segments --joints link,spherical --sizes {sizes} --threads 1 --repeat 15 --simd avx512",
