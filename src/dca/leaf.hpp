@@ -2,7 +2,7 @@
 //
 // Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force` per unit of the joint force along
 // it. Then  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d . force_d' / m,
-// which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter, eqs 2.1-2.2) for every kind of joint.
+// which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter, eqs 2.1-2.4, 2.6-2.7) for every kind of joint.
 #pragma once
 
 #include "dca/rotation.hpp"

@@ -146,7 +146,7 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
     }
     return s;
 }
-/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
+/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (src/dca/README.md, "Assembly and disassembly", with
 /// W = D (D^T Z D)^-1 D^T).
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
 template <class Real, int K, class Factors = dca::Factors>

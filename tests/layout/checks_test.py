@@ -29,7 +29,7 @@ def pages(readme, page="# Page\n\nShort.\n"):
     with tempfile.TemporaryDirectory() as root:
         write(root, "README.md", readme)
         write(root, "src/README.md", page)
-        write(root, "src/scene/scene.cpp", "")
+        write(root, "src/scene/scene.cpp", "void load();\n")
         return run(os.path.join(HERE, "pages.py"), root)
 
 
@@ -57,6 +57,9 @@ def of_pages():
     yield expect("code is no prose", pages(good, "# Page\n\n```\n" + "word " * 200 + "\n```\n"), 0, "in order")
     yield expect("a lost link", pages(good, "# Page\n\n[x](lost.md)\n"), 1, "the link lost.md leads nowhere")
     yield expect("a lost heading", pages(good.replace("#page", "#gone")), 1, "names no heading")
+    yield expect("a lost file", pages(good + "\n`scene/lost.cpp` reads.\n"), 1, "no file scene/lost.cpp")
+    yield expect("a lost function", pages(good + "\n`Scene::lost()` reads.\n"), 1, "no function Scene::lost()")
+    yield expect("names that are there", pages(good + "\n`src/scene/scene.cpp` has `load()`.\n"), 0, "in order")
     yield expect("a folder that nobody names", pages(good.replace("| `src/scene` | scenes |\n", "")), 1, "src/scene/: no README")
 
 

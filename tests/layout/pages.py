@@ -1,9 +1,11 @@
 #!/usr/bin/env python3
 """Checks that the repository's pages stay manuals: short sentences and paragraphs, links that resolve, a line for every folder.
 
+What a page names in code must be there: files, functions, and the founding chapter's equations, each once in src/dca and in its page.
 usage: pages.py [ROOT]
 """
 import os
+import re
 import sys
 
 import markdown
@@ -13,6 +15,9 @@ LONGEST_PARAGRAPH, LONGEST_CELL = 120, 60
 FIRST_PAGE = "README.md"  # shorter in everything: bytes, words of a sentence, words of a paragraph
 FIRST_BYTES, FIRST_SENTENCE, FIRST_PARAGRAPH = 8192, 30, 80
 ROOMS = ("src", "cuda", "mpi", "tests")
+CODE = (".hpp", ".cpp", ".cuh", ".cu", ".py")
+WRITTEN = {"my.yaml", "scene.yaml", "summary.json", "timeline.json", "report.json", "network.json", "figures.json"}  # by users and programs
+MATHEMATICS, EQUATIONS = "src/dca/README.md", range(1, 13)
 DEEPEST = 3  # below lie inputs that the line of their folder stands for
 
 
@@ -71,6 +76,44 @@ def check_folders(root, texts):
             yield f"{folder}/: no README has a line that says what belongs there"
 
 
+def sources(root):
+    """All text of the code, and the names of its files."""
+    texts, names = [], set()
+    for folder in markdown.folders(root):
+        for name in os.listdir(os.path.join(root, folder)):
+            names.add(name)
+            if folder.split(os.sep)[0] in ROOMS and name.endswith(CODE):
+                texts.append((os.path.join(folder, name), markdown.read(os.path.join(folder, name), root)))
+    return texts, names
+
+
+def check_names(path, text, words, names):
+    """Files and functions that a page names must be there."""
+    for code in markdown.inline_code(markdown.split(text)[0]):
+        file = re.fullmatch(r"(?:[\w.-]+/)*([\w.-]+\.(?:hpp|cpp|cuh|cu|py|sh|yaml|json))", code)
+        if file and file[1] not in names and file[1] not in WRITTEN:
+            yield f"{path}: there is no file {code}"
+        function = re.fullmatch(r"(?:\w+::)*(\w+)\(\)", code)
+        if function and function[1] not in words:
+            yield f"{path}: there is no function {code}"
+
+
+def numbers_of(text):
+    """Equations of the chapter that a text names, ranges as all of theirs."""
+    for first, last in re.findall(r"\b2\.(\d+)(?:-2\.(\d+))?", text):
+        yield from range(int(first), int(last or first) + 1)
+
+
+def check_equations(texts, page):
+    """Each of the chapter's equations is named once in src/dca, and once in the table of its page."""
+    cited = " ".join(found for path, text in texts if path.startswith("src/dca/") for found in re.findall(r"chapter, eqs? ([\d.,\s-]+)", text))
+    tabled = " ".join(line.split("|")[1] for line in page.split("\n") if re.match(r"\| 2\.\d", line))
+    for where, text in (("src/dca", cited), ("src/dca/README.md", tabled)):
+        found = sorted(numbers_of(text))
+        if found != list(EQUATIONS):
+            yield f"{where}: equations of the chapter named {found}, not each of 1 to {EQUATIONS[-1]} once"
+
+
 def main():
     root = sys.argv[1] if len(sys.argv) > 1 else markdown.ROOT
     texts = {path: markdown.read(path, root) for path in markdown.pages(root)}
@@ -79,6 +122,12 @@ def main():
         faults += check_prose(path, text)
         faults += check_links(root, path, text)
     faults += check_folders(root, texts)
+    code, names = sources(root)
+    words = set(re.findall(r"\w+", " ".join(text for _, text in code)))
+    for path, text in texts.items():
+        faults += check_names(path, text, words, names)
+    if MATHEMATICS in texts:
+        faults += check_equations(code, texts[MATHEMATICS])
     print("\n".join(faults) if faults else f"{len(texts)} pages are in order")
     return 1 if faults else 0
 
