@@ -48,11 +48,11 @@ def split(text):
 
 
 def paragraphs(prose):
-    """Paragraphs and list items as text; headings, tables, pictures and HTML comments are none."""
+    """Paragraphs and list items as text; headings, tables, pictures, HTML comments and indented formulas are none."""
     found, now = [], []
     for line in prose + [""]:
         stripped = line.strip()
-        ends = not stripped or stripped.startswith(("#", "|", "![", "<!--"))
+        ends = not stripped or stripped.startswith(("#", "|", "![", "<!--")) or line.startswith("    ")
         begins = re.match(r"^\s*([-*]|\d+\.)\s+", line)
         if (ends or begins) and now:
             found.append(" ".join(now))
@@ -73,13 +73,13 @@ def cells(prose):
 
 def plain(text):
     """Text as it is read: code as one word, links as their text."""
-    text = re.sub(r"`+[^`]*`+", "code", text)
+    text = re.sub(r"`+[^`]*`+", "Code", text)
     text = re.sub(r"!?\[([^\]]*)\]\([^)]*\)", r"\1", text)
     return re.sub(r"[*_]{1,3}", "", text)
 
 
 def sentences(paragraph):
-    return [s for s in re.split(r"(?<=[.!?:;])\s+(?=[A-Z(\d])", plain(paragraph)) if s]
+    return [s for s in re.split(r"(?<=[.!?])[)\]]?\s+(?=[A-Z(\[<*\d])", plain(paragraph)) if s]
 
 
 def words(text):
