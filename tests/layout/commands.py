@@ -23,6 +23,7 @@ SUBCOMMANDS = ("check", "plan", "solve", "run", "report", "bench")
 RUN = ("check", "plan", "solve", "run")
 PLACEHOLDERS = {"SCENE", "scene.yaml", "DIR", "FILE", "OTHER"}
 FEW_STEPS = 4
+AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 class Help:
@@ -149,7 +150,7 @@ class Blocks:
             command = [self.catena, *after]
             if words[0] == "mpirun" and self.mpirun:
                 command = [*self.mpirun, "-n", "2", *command]
-            answer = subprocess.run(command, cwd=work, capture_output=True, text=True, timeout=250, check=False)
+            answer = subprocess.run(command, cwd=work, env={**os.environ, **AS_ROOT}, capture_output=True, text=True, timeout=250, check=False)
             self.run_commands += 1
             if answer.returncode != 0:
                 yield f"{' '.join(words)} ended with status {answer.returncode}: {answer.stderr.strip() or answer.stdout.strip()[-300:]}"
