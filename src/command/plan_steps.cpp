@@ -12,7 +12,7 @@
 namespace catena::command {
 namespace {
 
-/// Of a drift at 10 fs (README).
+/// Of a drift at 10 fs (src/integrate/README.md).
 constexpr int usual_drift_sweeps = 4;
 
 /// What the numbers stand for, and what is not in them.

@@ -10,7 +10,7 @@
 
 namespace catena::dca {
 
-/// Z of the joint between a ring's two handles (formulas, "Ring root").
+/// Z of the joint between a ring's two handles (src/dca/README.md, "Ends and rings").
 template <class Real, int K>
 CATENA_HD Symmetric<Real, K> ring_matrix(SegmentMatrix<Real, K> const& s) {
     Symmetric<Real, K> z;

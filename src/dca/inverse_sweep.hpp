@@ -1,5 +1,5 @@
-// Entries of the inverse of the links' matrix T (formulas, "Link chains") next to its diagonal, from the roots to the leaves after a matrix
-// sweep. The derivative of log det T is made of them: an entry of T^-1 is what its own entry of T adds to it.
+// Entries of the inverse of the links' matrix T (src/dca/README.md, "Link chains") next to its diagonal, from the roots to the leaves after
+// a matrix sweep. The derivative of log det T is made of them: an entry of T^-1 is what its own entry of T adds to it.
 //
 // A joint's force follows from those at its segment's ends, phi = in phi_first + out phi_next + w r, w the inverse of its pivot. T^-1 is
 // made from the ends inwards in the same way.

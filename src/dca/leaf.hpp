@@ -2,7 +2,7 @@
 //
 // Direction d at a handle is a unit wrench: `torque` about the centre of mass and `force` per unit of the joint force along
 // it. Then  zeta_ij(d, d') = torque_d . J^-1 torque_d' + force_d . force_d' / m,
-// which is D_i^T zeta_ij D_j of the leaf (design, "Leaf"; chapter, eqs 2.1-2.2) for every kind of joint.
+// which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter, eqs 2.1-2.4, 2.6-2.7) for every kind of joint.
 #pragma once
 
 #include "dca/rotation.hpp"
@@ -195,7 +195,7 @@ CATENA_HD Matrix<Real, 3, 3> triple(Vector<Real, 3> const& axis) {
 }
 
 /// A point bead between the links with unit directions u1 (towards it from its inboard neighbour) and u2 (from it to its
-/// outboard neighbour). Projected: T of the link chain (formulas, "Link chains"). A missing link has direction 0.
+/// outboard neighbour). Projected: T of the link chain (src/dca/README.md, "Link chains"). A missing link has direction 0.
 template <class Real>
 CATENA_HD SegmentMatrix<Real, 1> bead_matrix(Real inverse_mass, Vector<Real, 3> const& u1, Vector<Real, 3> const& u2, Vector<Real, 1>) {
     SegmentMatrix<Real, 1> s;

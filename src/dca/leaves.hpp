@@ -99,7 +99,7 @@ struct TurnedHandlePair {
     CATENA_HD Vector<Real, 3> in_force_axes(Vector<Real, 3> const& v) const { return to_force_axes * v; }
 };
 
-/// What the joint on the inboard side yields is part of a body's handle (formulas, "the compliance form"): Z + P B^-1 P^T. The angular
+/// What the joint on the inboard side yields is part of a body's handle (src/dca/README.md, "Joints"): Z + P B^-1 P^T. The angular
 /// directions are the last ones of full handles.
 template <int K, class Place>
 CATENA_HD void add_compliance(ConstView<6> const& compliance, Place k, SegmentMatrix<RealAt<Place>, K>& s) {

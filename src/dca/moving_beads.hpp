@@ -32,7 +32,7 @@ struct MovingBeads {
     template <class Real>
     struct Link {
         Vector<Real, 3> direction;  // 0 where there is none
-        Real swing;                 // formulas, "Link chains": -c
+        Real swing;                 // src/dca/README.md, "Link chains": -c
         static CATENA_HD Link none() { return {Vector<Real, 3>::zero(), Real(0)}; }
     };
     template <class Place>

@@ -3,7 +3,7 @@
 //
 // At joint j the directions are ordered so that the first m(j) are the restricted ones (D of the chapter), the others are
 // free. Projected handles carry K = max m directions, full handles all of them (6; 3 for point beads): the operations are
-// the same, since forces along free directions are known and stand in the biases (formulas: "Projection is exact").
+// the same, since forces along free directions are known and stand in the biases (src/dca/README.md, "Projected handles").
 #pragma once
 
 #include "dca/linear.hpp"
@@ -146,7 +146,7 @@ CATENA_HD Symmetric<Real, K> less_square(Symmetric<Real, K> const& z, Matrix<Rea
     }
     return s;
 }
-/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (chapter, eqs 2.8-2.9, with
+/// Joins `outboard` to `segment` at a joint with `restricted` restricted directions (src/dca/README.md, "Assembly and disassembly", with
 /// W = D (D^T Z D)^-1 D^T).
 /// Precondition: z22 of `segment` + z11 of `outboard` is positive definite on these directions.
 template <class Real, int K, class Factors = dca::Factors>

@@ -106,7 +106,7 @@ struct LoadsView {
     ConstView<3> torque;       // on each body about its centre of mass, B, joint torques and -omega x J omega included
     ConstView<3> force;        // on each body: Axes::joint: B; Axes::world and beads: W
     ConstView<3> omega;        // angular velocity, B: for the centripetal terms at the handles
-    ConstDirectionsView bias;  // subtracted velocity terms of joint k along its directions: the solver makes D^T (A_1^B - A_2^A) = -bias
+    ConstDirectionsView bias;  // subtracted velocity terms of joint k along its directions (chapter, eq 2.5): D^T (A_1^B - A_2^A) = -bias
     ConstDirectionsView tip_bias;  // the same of the joint between last body k and the ground
     ConstView<3> velocity{};       // with positions given instead of directions: of beads, with their halo, W; instead of `bias`
     bool gyroscopic = false;       // `torque` lacks -omega x J omega: the solver adds it
@@ -116,7 +116,7 @@ struct LoadsView {
     HingeLoads hinges{};
 };
 
-/// Of links: what the inverse of their matrix T (formulas, "Link chains") says beyond solutions.
+/// Of links: what the inverse of their matrix T (src/dca/README.md, "Link chains") says beyond solutions.
 struct InverseView {
     View<1> pivot;      // of link k in the tree's order, those of tips among them: their product is det T; 1 where there is no link
     View<1> tip_pivot;  // of the link from last body k to the ground

@@ -92,7 +92,7 @@ struct TreeSweeps {
         constexpr int of_joint = sizeof(Joint) / sizeof(double);
         return n < of_joint ? joints.number(k, n) : offsets.number(k, n - of_joint);
     }
-    /// The forces at a chain's ends, from its bias as it is held. `first`: what fasten() returned.
+    /// The forces at a chain's ends (chapter, eqs 2.10-2.11), from its bias as it is held. `first`: what fasten() returned.
     CATENA_HD void close(Root const& root, Joint const& first, Biases const& held) const {
         if (root.tip == TipTo::nothing)
             return forces.store(root.first, solve_upper(first.factor, solve_lower(first.factor, -held.b1)));

@@ -123,7 +123,7 @@ class AbsoluteDynamics : public BeadHost {
     virtual std::vector<double> time_at_once(int chained, int repeat) = 0;
     /// Of the last evaluate(), ground axes.
     virtual BodyResults results() const = 0;
-    /// Largest local backward residual of the last evaluate() (formulas, "Residuals"), over all ranks. Collective.
+    /// Largest local backward residual of the last evaluate() (src/dca/README.md, "Residuals"), over all ranks. Collective.
     virtual double residual() = 0;
     /// At the current positions. Collective.
     virtual PotentialEnergy potential() = 0;

@@ -55,7 +55,7 @@ Backend choose_backend(Scene const& scene, Communicator const& communicator) {
         throw InputError(why, "solver.backend: " + std::string(name_of(asked)), "use auto, segments, openmp or serial");
     if (uses_gpu(asked)) refuse_cuda(communicator, name_of(asked), cuda::why_not(), without_gpu);
     if (asked != Backend::automatic) return asked;
-    // Threads pay once each has some thousand bodies' work (README, "Numbers").
+    // Threads pay once each has some thousand bodies' work (tests/bench/README.md).
     std::int64_t constexpr worth_threads = 4096;
     return openmp_is_built() && choose_threads(scene, communicator) > 1 && scene.bodies() / communicator.size() >= worth_threads
                ? Backend::openmp

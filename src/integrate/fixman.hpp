@@ -1,5 +1,5 @@
-// The Fixman potential of chains of point beads on links, U_F = 1/2 kT log det T (formulas, "Statistics of constrained chains"): under it
-// rigid links sample what stiff springs in their places would.
+// The Fixman potential of chains of point beads on links, U_F = 1/2 kT log det T (src/dca/README.md, "Statistics of constrained chains").
+// Under it rigid links sample what stiff springs in their places would.
 #pragma once
 
 #include <vector>

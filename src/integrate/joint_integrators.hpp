@@ -66,9 +66,9 @@ std::unique_ptr<JointIntegrator> make_dormand_prince(ChainSystem&, double tolera
 std::unique_ptr<JointIntegrator> make_velocity_verlet(ChainSystem&);
 
 /// Kick, drift, kick with velocity-dependent forces at the kick's middle, whose velocities a first bias sweep finds: second order, one
-/// matrix sweep a step. With springs K and dampers C of implicit joints (JointDynamics) it is the staggered scheme (formulas, "Implicit
-/// joint springs"), B = c h^2 K + h C / 2 (rotor_of_spring()), stable however stiff they are: velocity Verlet of a chain with a rotor of
-/// inertia B in every joint.
+/// matrix sweep per step. With springs K and dampers C of implicit joints (JointDynamics) it is the staggered scheme (src/dca/README.md,
+/// "Implicit joint springs"), B = c h^2 K + h C / 2 (rotor_of_spring()), stable however stiff they are: velocity Verlet of a chain with a
+/// rotor of inertia B in every joint.
 ///
 /// With friction Langevin dynamics: an Ornstein-Uhlenbeck step in the middle of the drift (BAOAB: Leimkuhler & Matthews, J. Chem. Phys.
 /// 138, 174102, 2013), whose velocities have the covariance kt (M + B)^-1 of where the chain is. How fast the chain moves depends on B;

@@ -271,7 +271,7 @@ struct JointLoads {
         return cross(omega(k), as_symmetric(read(inertia, k)) * omega(k));
     }
 
-    /// The velocity-dependent part c of joint k's relative acceleration (formulas, "Joint bias"), with what a drive prescribes; M.
+    /// The velocity-dependent part c of joint k's relative acceleration (src/dca/README.md, "Joint bias"), with what a drive prescribes; M.
     template <class Place>
     CATENA_HD Vec3At<Place> joint_velocity_term(Place k, Vec3At<Place>& linear) const {
         using Real = RealAt<Place>;

@@ -1,4 +1,4 @@
-// The local backward residual of forward dynamics in joint coordinates (formulas, "Residuals").
+// The local backward residual of forward dynamics in joint coordinates (src/dca/README.md, "Residuals").
 #include <algorithm>
 #include <array>
 #include <cmath>

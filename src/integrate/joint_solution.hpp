@@ -20,7 +20,7 @@ struct JointSolution {
     /// Collective.
     BodyResults results(Communicator const&) const;
     /// Largest local backward residual: Newton-Euler of every body and the closing of every joint, each relative to the sizes of its
-    /// own terms (formulas, "Residuals"). Over all ranks; collective.
+    /// own terms (src/dca/README.md, "Residuals"). Over all ranks; collective.
     double residual(Communicator const&, Executor const&) const;
     /// By how much the equations of bodies and joints fail, as loads for the solver: what it answers to them is missing in the solution.
     /// Collective.

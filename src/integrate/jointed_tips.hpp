@@ -139,7 +139,7 @@ struct JointedTips {
         return {transposed_times(m.axes, e.to_last(e.other.omega) - w), transposed_times(m.axes, e.to_last(e.other.velocity) - v)};
     }
     CATENA_HD static bool turns_about_axis(JointType type) { return type == JointType::revolute || slides(type); }
-    /// c of the joint (formulas, "Joint bias") with the rates that the bodies' motion gives it.
+    /// c of the joint (src/dca/README.md, "Joint bias") with the rates that the bodies' motion gives it.
     CATENA_HD Pair velocity_terms(JointedTip const& t, Ends const& e, Place const& m) const {
         Vec3 const w = transposed_times(m.axes, e.last.omega);
         if (t.type != JointType::universal && !turns_about_axis(t.type)) return {Vec3::zero(), Vec3::zero()};

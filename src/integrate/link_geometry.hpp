@@ -21,7 +21,7 @@ struct HeldTip {
 /// along are the directions at the drift's start, which leave more of it. No root, no division: a sweep of few beads waits for them.
 CATENA_HD double excess(Vec3 const& d, double length, double half_over_length) { return half_over_length * (dot(d, d) - length * length); }
 
-/// |v_rel, perpendicular|^2 / length of a link along u whose ends part with velocity v (formulas: -c).
+/// |v_rel, perpendicular|^2 / length of a link along u whose ends part with velocity v (src/dca/README.md, "Link chains": -c).
 CATENA_HD double swing(Vec3 const& v, Vec3 const& u, double length) {
     Vec3 const across = plus_scaled(v, -dot(v, u), u);
     return dot(across, across) / length;

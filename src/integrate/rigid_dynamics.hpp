@@ -123,7 +123,7 @@ class RigidDynamics final : public AbsoluteDynamics, public ClosingDrifts {
     }
     void observe(double h) override { project(h, observed_velocity_.view(), observed_omega_.view()); }
     /// Impulses along the joints at the start enter momenta before the drift, and the free rotor runs again in every sweep
-    /// (formulas, "Rigid bodies under RATTLE").
+    /// (src/dca/README.md, "Rigid bodies under RATTLE").
     void drift(double h, int sweeps) override {
         for (int sweep = 0; sweep < sweeps; ++sweep) {
             fly({h, sweep == 0, false});

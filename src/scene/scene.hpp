@@ -177,8 +177,8 @@ inline bool is_implicit(Integrator i) {
     return i == Integrator::staggered || i == Integrator::implicit_baoab || i == Integrator::implicit_g_baoab;
 }
 /// An implicit integrator's spring K acts within a step h as a rotor of inertia c h^2 K in its joint: c. 1/4 is the least that is stable
-/// where K is constant (formulas, "Implicit joint springs"), 1/2 leaves room for what bending and turning add to K. Under a thermostat the
-/// joint turns by its thermal angle / sqrt(c) in a step, and what is not harmonic within that shifts equilibrium: 2 has a quarter of it.
+/// where K is constant (src/dca/README.md, "Implicit joint springs"); 1/2 leaves room for what bending and turning add to K. Under a
+/// thermostat a joint turns by its thermal angle / sqrt(c) per step; anharmonic terms within that shift equilibrium: 2 has a quarter of it.
 inline double rotor_of_spring(Integrator i) { return i == Integrator::staggered ? 0.5 : 2.0; }
 /// Whether it has a thermostat.
 inline bool is_langevin(Integrator i) { return i == Integrator::baoab || i == Integrator::implicit_baoab || i >= Integrator::g_baoab; }

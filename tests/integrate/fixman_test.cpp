@@ -37,7 +37,7 @@ Links links_of(ChainSpec const& chain) {
     return links;
 }
 
-/// log det T by elimination from one end (formulas, "Link chains").
+/// log det T by elimination from one end (src/dca/README.md, "Link chains").
 Real log_determinant(Links const& links) {
     Real sum = 0, pivot = 0;
     Point before{};

@@ -1,4 +1,4 @@
-// The generator `worm_like` against the discrete worm-like chain (formulas: exact for a freely rotating chain).
+// The generator `worm_like` against the discrete worm-like chain (src/dca/README.md, "Statistics of constrained chains").
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

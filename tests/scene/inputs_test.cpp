@@ -1,4 +1,4 @@
-// The scenes of inputs/ load, and inputs/README.md speaks of every key.
+// The scenes of inputs/ load, and the pages of inputs/ speak of every key.
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -45,10 +45,16 @@ std::vector<std::string> known_keys(std::string const& yaml) {
     return keys;
 }
 
-TEST(Inputs, the_readme_documents_every_key) {
-    std::ifstream file(CATENA_SOURCE_DIR "/inputs/README.md");
-    std::stringstream readme;
-    readme << file.rdbuf();
+/// inputs/README.md and the pages of keys, one after the other.
+std::string pages_of_keys() {
+    std::stringstream pages;
+    pages << std::ifstream(CATENA_SOURCE_DIR "/inputs/README.md").rdbuf();
+    for (auto const& entry : fs::directory_iterator(CATENA_SOURCE_DIR "/inputs/keys")) pages << std::ifstream(entry.path()).rdbuf();
+    return pages.str();
+}
+
+TEST(Inputs, the_pages_document_every_key) {
+    std::string const pages = pages_of_keys();
     std::string const chain = "chains: [{sequence: G, model: calvados2}]\n", odd = "{zzzzzzzzzzzz: 1}";
     std::string const rigid = "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], ";
     std::set<std::string> keys;
@@ -88,7 +94,7 @@ TEST(Inputs, the_readme_documents_every_key) {
         keys.insert(found.begin(), found.end());
     }
     EXPECT_GE(keys.size(), 105u);
-    for (std::string const& key : keys) EXPECT_NE(readme.str().find("`" + key + "`"), std::string::npos) << key;
+    for (std::string const& key : keys) EXPECT_NE(pages.find("`" + key + "`"), std::string::npos) << key;
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ struct LinkedModel {
 };
 template <class S>
 LinkedModel<S> read_linked(ChainSpec const& chain, Loads const& loads);
-/// Matrix T of the link forces (formulas, "Link chains"): diagonal and what stands beside it, entry k of link k.
+/// Matrix T of the link forces (src/dca/README.md, "Link chains"): diagonal and what stands beside it, entry k of link k.
 template <class S>
 void link_compliance(LinkedModel<S> const& model, std::vector<S>& diagonal, std::vector<S>& beside);
 

@@ -45,7 +45,7 @@ struct OracleResult {
     /// included) and that of the joint's given torque, spring and damper. A free body 1: zero. Empty for beads.
     std::vector<SpatialForce<Scalar>> joint_force;
     /// The constraint's part D lambda alone. With P the joint's directions it obeys P^T f = 0, and the rest of joint_force,
-    /// P (P^T P)^-1 tau, lies in the span of P (formulas' D^T T = 0). Driven: all of joint_force.
+    /// P (P^T P)^-1 tau, lies in the span of P (src/dca/README.md, "Joints": D^T T = 0). Driven: all of joint_force.
     std::vector<SpatialForce<Scalar>> constraint_force;
     /// Beads and linked bodies: tension of the inboard link, positive when it pulls its two ends together. Free base: entry 0
     /// is zero.

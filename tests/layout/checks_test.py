@@ -1,0 +1,91 @@
+#!/usr/bin/env python3
+"""The checks of pages find what they are for: each rule is broken once in a small repository of its own.
+
+usage: checks_test.py [--catena PROGRAM]      (with it also commands and scenes of pages)
+"""
+import os
+import subprocess
+import sys
+import tempfile
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+FOLDERS = "| `src` | sources |\n| `src/scene` | scenes |\n"
+LONG = "Every " + "very " * 45 + "long sentence has many words."
+
+
+def write(root, path, text):
+    os.makedirs(os.path.dirname(os.path.join(root, path)) or root, exist_ok=True)
+    with open(os.path.join(root, path), "w", encoding="utf-8") as file:
+        file.write(text)
+
+
+def run(*command):
+    answer = subprocess.run([sys.executable, *command], capture_output=True, text=True, check=False)
+    return answer.returncode, answer.stdout + answer.stderr
+
+
+def pages(readme, page="# Page\n\nShort.\n"):
+    """What pages.py says of a repository with these two pages and a folder src/scene."""
+    with tempfile.TemporaryDirectory() as root:
+        write(root, "README.md", readme)
+        write(root, "src/README.md", page)
+        write(root, "src/scene/scene.cpp", "void load();\n")
+        return run(os.path.join(HERE, "pages.py"), root)
+
+
+def commands(catena, page):
+    with tempfile.TemporaryDirectory() as root:
+        write(root, "page.md", page)
+        return run(os.path.join(HERE, "commands.py"), "--catena", catena, os.path.join(root, "page.md"))
+
+
+def expect(name, answer, status, words):
+    if answer[0] == status and words in answer[1]:
+        return True
+    print(f"FAILED: {name}: status {answer[0]}, not {status} with `{words}`:\n{answer[1]}")
+    return False
+
+
+def of_pages():
+    good = "# Catena\n\nShort. [Sources](src/README.md#page)\n\n" + FOLDERS
+    yield expect("a good page", pages(good), 0, "2 pages are in order")
+    yield expect("a large first page", pages(good + "\n" + "Short. \n\n" * 1200), 1, "more than 8192")
+    yield expect("a long sentence on the first page", pages(good + "\n" + LONG), 1, "a sentence has")
+    yield expect("long sentences elsewhere", pages(good, "# Page\n\n" + LONG), 1, "1 of 1 sentences")
+    yield expect("a long paragraph", pages(good, "# Page\n\n" + "One short sentence. " * 50), 1, "a paragraph has 150 words")
+    yield expect("a long cell", pages(good, "# Page\n\n| " + "word " * 70 + "| |\n"), 1, "a table's cell has 70 words")
+    yield expect("code is no prose", pages(good, "# Page\n\n```\n" + "word " * 200 + "\n```\n"), 0, "in order")
+    yield expect("a lost link", pages(good, "# Page\n\n[x](lost.md)\n"), 1, "the link lost.md leads nowhere")
+    yield expect("a lost heading", pages(good.replace("#page", "#gone")), 1, "names no heading")
+    yield expect("a lost file", pages(good + "\n`scene/lost.cpp` reads.\n"), 1, "no file scene/lost.cpp")
+    yield expect("a lost function", pages(good + "\n`Scene::lost()` reads.\n"), 1, "no function Scene::lost()")
+    yield expect("names that are there", pages(good + "\n`src/scene/scene.cpp` has `load()`.\n"), 0, "in order")
+    yield expect("a folder that nobody names", pages(good.replace("| `src/scene` | scenes |\n", "")), 1, "src/scene/: no README")
+
+
+SCENE = "```yaml\nunits: si\nchains: [{generator: {pendulum: {links: 2}}}]\ndynamics: {integrator: rk4, step: 0.01, steps: 2}\n```\n"
+
+
+def of_commands(catena):
+    good = SCENE + "```\ncatena check my.yaml   # a comment\ncatena run my.yaml \\\n  --output out\n```\n"
+    yield expect("a good page", commands(catena, good), 0, "2 commands ran, 1 scenes were read")
+    yield expect("an unknown option", commands(catena, good + "\n`catena solve inputs/arm.yaml --sise 3`\n"), 1, "does not take --sise")
+    yield expect("an unknown command", commands(catena, good + "\n`catena simulate my.yaml`\n"), 1, "no command simulate")
+    yield expect("a lost scene", commands(catena, good + "\n`catena check inputs/lost.yaml`\n"), 1, "inputs/lost.yaml is not there")
+    yield expect("a lost script", commands(catena, good + "```\njobs/lost.sh\n```\n"), 1, "jobs/lost.sh is not there")
+    yield expect("a script's option", commands(catena, good + "```\ntests/run.sh --fast\n```\n"), 1, "tests/run.sh does not take --fast")
+    yield expect("a wrong scene", commands(catena, good.replace("links: 2", "link: 2")), 1, "its scene is refused")
+    yield expect("a command that fails", commands(catena, good + "```\ncatena run lost.yaml --output x\n```\n"), 1, "ended with status 2")
+    yield expect("nothing to run", commands(catena, "# Page\n"), 1, "nothing to run")
+
+
+def main():
+    results = list(of_pages())
+    if sys.argv[1:2] == ["--catena"]:
+        results += of_commands(os.path.abspath(sys.argv[2]))
+    print(f"{sum(results)} of {len(results)} checks passed")
+    return 0 if all(results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
