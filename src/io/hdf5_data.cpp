@@ -227,6 +227,17 @@ hsize_t Series::frames(Place const& place) const {
     return shape[0];
 }
 
+void Series::look_at_last(Place const& place) const {
+    hsize_t const all = frames(place);
+    if (all == 0 || std::find(row_.begin(), row_.end(), 0) != row_.end()) return;
+    std::vector<hsize_t> start{all - 1}, one(row_.size() + 1, 1);
+    start.resize(row_.size() + 1, 0);
+    Space const in_file(check(H5Dget_space(data_.get()), place.file, place.doing)), in_memory = simple(place, one);
+    check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr), place.file, place.doing);
+    double number = 0;
+    check(H5Dread(data_.get(), type_, in_memory.get(), in_file.get(), H5P_DEFAULT, &number), place.file, place.doing);
+}
+
 void Series::close(Place const& place) { check(data_.close(), place.file, place.doing); }
 
 }  // namespace catena::hdf5

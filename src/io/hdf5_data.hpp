@@ -56,6 +56,8 @@ class Series {
     /// Leaves the first `frames` rows.
     void cut(Place const&, hsize_t frames);
     hsize_t frames(Place const&) const;
+    /// Reads a number of the last row, to where HDF5's index of rows leads.
+    void look_at_last(Place const&) const;
     std::vector<hsize_t> const& row() const { return row_; }
     hid_t get() const { return data_.get(); }
     explicit operator bool() const { return static_cast<bool>(data_); }
