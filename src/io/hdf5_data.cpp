@@ -91,14 +91,7 @@ std::string get_text(Place const& place, std::string const& name) {
     if (H5Aexists(place.id, name.c_str()) <= 0) return "";
     Attribute const attribute(H5Aopen(place.id, name.c_str(), H5P_DEFAULT));
     Type const stored(H5Aget_type(attribute.get()));
-    if (!attribute || !stored || H5Tget_class(stored.get()) != H5T_STRING) return "";
-    if (H5Tis_variable_str(stored.get()) > 0) {
-        char* text = nullptr;
-        if (H5Aread(attribute.get(), stored.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return "";
-        std::string const copy = text;
-        H5free_memory(text);
-        return copy;
-    }
+    if (!attribute || !stored || H5Tget_class(stored.get()) != H5T_STRING || H5Tis_variable_str(stored.get()) > 0) return "";
     std::string text(H5Tget_size(stored.get()), '\0');
     if (H5Aread(attribute.get(), stored.get(), text.data()) < 0) return "";
     return text.substr(0, text.find('\0'));
