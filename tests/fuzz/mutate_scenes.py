@@ -162,6 +162,7 @@ def main():
     parser.add_argument("--only", type=int, default=None)
     parser.add_argument("--keep", default="", help="where the findings' folders are put")
     campaign = Campaign(parser.parse_args())
+    resource.setrlimit(resource.RLIMIT_AS, (4 * 10**9, 4 * 10**9))
     start, number = time.monotonic(), 0
     if campaign.options.only is not None:
         campaign.case(campaign.options.only)

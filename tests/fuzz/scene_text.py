@@ -1,4 +1,5 @@
 """Changes of whole scenes as trees: maps are lists of pairs, so that a key may be there twice; scalars are their text."""
+import copy
 import re
 import sys
 
@@ -13,6 +14,7 @@ VALUES = ["0", "-1", "1", "nan", ".nan", ".inf", "-.inf", "1e308", "-1e308", "1e
           "[[1]]", "{a: 1}", "free", "fixed", "auto", "thermal", "x.yaml", "scene.yaml", "/dev/null", "/dev/zero", "/", ".", "..",
           '"\\e[31mred"', '"\\0"', '"\\n"', '"\\u202e"', "é", "'" + "x" * 5000 + "'", "'%s%n'", "'<b>&\"'", "AAAA", "*a", "!!binary aGk=", "? x"]
 
+LONGEST = 100000  # of what is there many times, in characters
 FACTORS = [0.5, 0.9, 1.1, 2, 2, 10, 0.1, 1e3, 1e-3, 1e10, 1e-10, -1, 57.29577951308232, 4.184, 0.602214076]  # units and slips among them
 
 
@@ -107,11 +109,13 @@ def delete(draw, place, _):
 
 
 def double(draw, place, _):
-    place[0].insert(draw.randrange(len(place[0]) + 1), place[0][place[1]])
+    place[0].insert(draw.randrange(len(place[0]) + 1), copy.deepcopy(place[0][place[1]]))
 
 
 def many_times(draw, place, _):
-    place[0][place[1]:place[1] + 1] = [place[0][place[1]]] * draw.choice([2, 10, 500])
+    times = draw.choice([2, 10, 500])
+    if times * len(write(get(place))) < LONGEST:
+        place[0][place[1]:place[1] + 1] = [copy.deepcopy(place[0][place[1]]) for _ in range(times)]
 
 
 def misspell(draw, place, _):
@@ -141,7 +145,7 @@ def wrap(draw, place, _):
 
 
 def borrow(draw, place, others):
-    put(place, get(draw.choice(others)))
+    put(place, copy.deepcopy(get(draw.choice(others))))
 
 
 WAYS = [set_value, set_value, set_value, *[scale] * 9, delete, delete, double, many_times, misspell, swap, wrap]
@@ -159,7 +163,7 @@ def mutate(draw, path, sources):
         way = draw.choice(WAYS)
         if draw.random() < 0.2 and isinstance(other, Map) and other:
             if draw.random() < 0.5:
-                tree.append(draw.choice(other))
+                tree.append(copy.deepcopy(draw.choice(other)))
             else:
                 borrow(draw, draw.choice(here), places(other))
         else:
