@@ -33,8 +33,8 @@ parameters=$(find build -name calvados2_parameters.inc -print -quit)
 hdf5=/usr/include/hdf5/serial
 openmm=$(find -L build/venv/lib -maxdepth 4 -name OpenMM.libs -print -quit 2>/dev/null || true)
 flags=(-std=c++20 -O1 -g1 -ffp-contract=off -DFMT_SHARED -Isrc -I. "-I$(dirname "$parameters")" -isystem /usr/include/eigen3 -isystem "$hdf5"
-    ${openmm:+-isystem "$openmm/include"} -fsanitize=address,undefined -fno-sanitize-recover=undefined
-    -fno-sanitize=null,alignment,object-size,vptr,nonnull-attribute,returns-nonnull-attribute)
+    ${openmm:+-isystem "$openmm/include"} "-fsanitize=address,undefined" -fno-sanitize-recover=undefined
+    "-fno-sanitize=null,alignment,object-size,vptr,nonnull-attribute,returns-nonnull-attribute")
 
 # is_fresh FILE: whether FILE is newer than this script and all that it was made of.
 is_fresh() {
@@ -78,7 +78,7 @@ target xml -lyaml-cpp "${tree[@]}" src/force/xml_scan.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/scene/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry,freedom}.cpp \
         src/io/{memory_limit,trial}.cpp
-    target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,hdf5_data,seal}.cpp
+    target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,hdf5_data,seal,trial}.cpp
 else
     echo "LEFT OUT: bodies and checkpoint, no serial HDF5 (apt-get install libhdf5-dev)"
 fi

@@ -15,7 +15,8 @@ VALUES = ["0", "-1", "1", "nan", ".nan", ".inf", "-.inf", "1e308", "-1e308", "1e
           '"\\e[31mred"', '"\\0"', '"\\n"', '"\\u202e"', "é", "'" + "x" * 5000 + "'", "'%s%n'", "'<b>&\"'", "AAAA", "*a", "!!binary aGk=", "? x"]
 
 LONGEST = 100000  # of what is there many times, in characters
-FACTORS = [0.5, 0.9, 1.1, 2, 2, 10, 0.1, 1e3, 1e-3, 1e10, 1e-10, -1, 57.29577951308232, 4.184, 0.602214076]  # units and slips among them
+GENTLE = [0.5, 0.9, 0.999, 1.001, 1.1, 2]
+FACTORS = [10, 0.1, 1e3, 1e-3, 1e10, 1e-10, -1, 57.29577951308232, 4.184, 0.602214076]  # units and slips among them
 
 
 class Map(list):
@@ -90,7 +91,7 @@ def put(place, value):
 
 def scaled(draw, text):
     try:
-        return repr(float(text) * draw.choice(FACTORS) if "." in text or "e" in text else int(text) + draw.choice([-1, 1, 2, 10, -10]))
+        return repr(float(text) * draw.choice(draw.choice([GENTLE, FACTORS])) if "." in text or "e" in text else int(text) + draw.choice([-1, 1, 2, 10, -10]))
     except ValueError:
         return draw.choice(VALUES)
 
