@@ -12,7 +12,7 @@ using namespace catena::command;
 int execute(Session const& session, Answer const& answer) { return session.conclude({answer.text, nullptr, true}); }
 
 int execute(Session const& session, CheckRequest const& request) {
-    return session.conclude(check_scene(session.load(request.scene), session.communicator()));
+    return session.conclude(check_scene(session.load(request.scene), session.communicator(), !request.json.empty()));
 }
 
 int execute(Session const& session, PlanRequest const& request) {

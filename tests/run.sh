@@ -10,14 +10,15 @@ Installs what is missing (as jobs/quickstart.sh does, and the test tools), then
   format      clang-format finds nothing to change, bash and shellcheck nothing wrong in the shell scripts
   release     build with warnings as errors, all tests (1, 2, 3 and 6 MPI ranks among them)
   cuda        the GPU's backend compiles with nvcc, where there is one (tests/gpu/run.sh runs it)
-  fuzz        damaged files for the readers of scenes, tables, PDB and FASTA, 5 seconds each (libFuzzer, where clang has it)
+  fuzz        damaged files for the readers of scenes, tables, PDB, FASTA, System XML, HDF5 bodies and checkpoints, 5 seconds each (libFuzzer,
+              where clang has it); a minute of changed scenes from outside the process
   asan-ubsan  build with the address and undefined-behaviour sanitizers, the tests of readers, writers, commands, dynamics and restarts
   minimal     build without any optional package, the tests of what differs there
   tidy        clang-tidy on the library's own sources, for 2 minutes at most (what was left out is named)
 
   --quick  format and release alone
   --slow-device-code  the GPU's code is compiled in half the time, and slower: for where nobody will run what is in build/release
-  --long   also the long tests (statistics, drift; an hour or so), an hour of each damaged file's reader, most of those that sanitizers make slow,
+  --long   also the long tests (statistics, drift; an hour or so), an hour of each damaged file's reader, two of changed scenes, most of those that sanitizers make slow,
            and a build without MPI alone
   --cluster  also what a cluster does to a run (half an hour or so; as root): 50 killed ranks, a Slurm of its own that stops and requeues a
            job, two hosts as network namespaces; installs slurmctld, slurmd, slurm-client and munge
@@ -107,10 +108,11 @@ cluster_tests() {
     need_packages cluster-packages slurmctld slurmd slurm-client munge iproute2 procps || true
     check killed-ranks "$python" tests/cluster/killed_rank.py --times 50 --steps 3000 || true
     check killed-at-writes "$python" tests/cluster/killed_at_write.py --stride 1 || true
-    for script in stopped_run full_disk many_ranks; do check "${script//_/-}" "$python" "tests/cluster/$script.py" || true; done
+    check killed-with-openmm "$python" tests/cluster/killed_rank.py --times 30 --steps 200 --ranks 1,2,3,4 --all 0.3 --openmm 1 --folder /dev/shm || true
+    for script in stopped_run full_disk many_ranks one_folder; do check "${script//_/-}" "$python" "tests/cluster/$script.py" || true; done
     check two-hosts as_root "$python" tests/cluster/two_hosts.py || true
     check slurm as_root tests/cluster/slurm.sh || true
-    for name in killed-ranks killed-at-writes two-hosts slurm; do grep -hE '^(passed|FAILED|NOT RUN)' "$logs/$name.log" || true; done
+    for name in killed-ranks killed-with-openmm killed-at-writes one-folder two-hosts slurm; do grep -hE '^(passed|FAILED|NOT RUN)' "$logs/$name.log" || true; done
 }
 
 finish() {
@@ -148,7 +150,9 @@ fi
 fuzz() { tests/fuzz/run.sh "$1" || [ $? -eq 77 ]; }
 say "fuzz"
 check fuzz fuzz "$([ $long = yes ] && echo 3600 || echo 5)" || true
-cat "$logs/fuzz.log"
+changed_scenes() { "$python" tests/fuzz/mutate_scenes.py "$1" || [ $? -eq 77 ]; }
+check changed-scenes changed_scenes "$([ $long = yes ] && echo 7200 || echo 60)" || true
+cat "$logs/fuzz.log" "$logs/changed-scenes.log"
 # What takes half of the tests' time under sanitizers. Vectors' kernels have none, and shared chains run on 2 ranks.
 # What the sanitizers and other builds leave to the release build: mathematics and whole runs, which take most of their time. Readers, writers,
 # the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.

@@ -105,13 +105,14 @@ Text text_of(Scene const& scene, Found const& found, Memory const& memory, int r
 
 }  // namespace
 
-Outcome check_scene(Scene const& scene, Communicator const& communicator) {
+Outcome check_scene(Scene const& scene, Communicator const& communicator, bool json) {
     choose_backend(scene, communicator);  // throws for those of later versions
     Found const found = find(scene, communicator);
     Memory const memory = memory_of(scene, communicator.size());
     std::optional<StepLimit> const limit = estimate_step_limit(scene);
     Outcome outcome;
     outcome.text = text_of(scene, found, memory, communicator.size(), limit).str();
+    if (!json) return outcome;
     outcome.json = {{"scene", scene.file},
                     {"title", scene.title},
                     {"units", scene.si ? "si" : "md"},

@@ -8,8 +8,9 @@
 
 namespace catena::command {
 
-/// What the scene is: chains, bodies, degrees of freedom, handle kinds, forces, memory.
-Outcome check_scene(Scene const&, Communicator const&);
+/// What the scene is: chains, bodies, degrees of freedom, handle kinds, forces, memory. `json`: whether the outcome's is asked for, whose
+/// list of chains takes a kilobyte a chain.
+Outcome check_scene(Scene const&, Communicator const&, bool json);
 
 /// What will run, how long it takes, what is left out, and why.
 Outcome plan_scene(Scene const&, Communicator const&, PlanRequest const&);

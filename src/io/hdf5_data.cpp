@@ -91,14 +91,7 @@ std::string get_text(Place const& place, std::string const& name) {
     if (H5Aexists(place.id, name.c_str()) <= 0) return "";
     Attribute const attribute(H5Aopen(place.id, name.c_str(), H5P_DEFAULT));
     Type const stored(H5Aget_type(attribute.get()));
-    if (!attribute || !stored || H5Tget_class(stored.get()) != H5T_STRING) return "";
-    if (H5Tis_variable_str(stored.get()) > 0) {
-        char* text = nullptr;
-        if (H5Aread(attribute.get(), stored.get(), static_cast<void*>(&text)) < 0 || text == nullptr) return "";
-        std::string const copy = text;
-        H5free_memory(text);
-        return copy;
-    }
+    if (!attribute || !stored || H5Tget_class(stored.get()) != H5T_STRING || H5Tis_variable_str(stored.get()) > 0) return "";
     std::string text(H5Tget_size(stored.get()), '\0');
     if (H5Aread(attribute.get(), stored.get(), text.data()) < 0) return "";
     return text.substr(0, text.find('\0'));
@@ -225,6 +218,17 @@ hsize_t Series::frames(Place const& place) const {
     std::vector<hsize_t> shape(row_.size() + 1);
     check(H5Sget_simple_extent_dims(space.get(), shape.data(), nullptr), place.file, place.doing);
     return shape[0];
+}
+
+void Series::look_at_last(Place const& place) const {
+    hsize_t const all = frames(place);
+    if (all == 0 || std::find(row_.begin(), row_.end(), 0) != row_.end()) return;
+    std::vector<hsize_t> start{all - 1}, one(row_.size() + 1, 1);
+    start.resize(row_.size() + 1, 0);
+    Space const in_file(check(H5Dget_space(data_.get()), place.file, place.doing)), in_memory = simple(place, one);
+    check(H5Sselect_hyperslab(in_file.get(), H5S_SELECT_SET, start.data(), nullptr, one.data(), nullptr), place.file, place.doing);
+    double number = 0;
+    check(H5Dread(data_.get(), type_, in_memory.get(), in_file.get(), H5P_DEFAULT, &number), place.file, place.doing);
 }
 
 void Series::close(Place const& place) { check(data_.close(), place.file, place.doing); }

@@ -27,7 +27,7 @@ void put_text(Place const&, std::string const& name, std::string_view text);
 void put_texts(Place const&, std::string const& name, std::span<std::string const> texts);
 /// Variable length, UTF-8: MDAnalysis refuses fixed-length units.
 void put_unit(Place const&, std::string const& unit);
-/// Any string attribute; "" when it is absent or no string.
+/// A string attribute; "" when it is absent or no string, or of variable length: HDF5 breaks where such texts are damaged.
 std::string get_text(Place const&, std::string const& name);
 
 Dataset put_array(Place const&, std::string const& name, hid_t type, void const* values, std::span<hsize_t const> shape);
@@ -56,6 +56,8 @@ class Series {
     /// Leaves the first `frames` rows.
     void cut(Place const&, hsize_t frames);
     hsize_t frames(Place const&) const;
+    /// Reads a number of the last row, to where HDF5's index of rows leads.
+    void look_at_last(Place const&) const;
     std::vector<hsize_t> const& row() const { return row_; }
     hid_t get() const { return data_.get(); }
     explicit operator bool() const { return static_cast<bool>(data_); }

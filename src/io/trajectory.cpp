@@ -8,6 +8,7 @@
 #include "io/hdf5_data.hpp"
 #include "io/output.hpp"
 #include "io/trajectory_layout.hpp"
+#include "io/trial.hpp"
 #include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
 
@@ -242,6 +243,8 @@ class H5mdWriter final : public TrajectoryWriter {
     void open(GoOn const& go_on) {
         if (!std::filesystem::exists(name_))
             throw InputError("no trajectory to go on with", name_, std::string("put it back, or ") + GoOn::way_beside);
+        if (std::string const end = trial([&] { look_through(); }, limits_for_file(name_)); !end.empty())
+            throw InputError("the trajectory is damaged, HDF5 breaks on it: " + end, name_, GoOn::way_beside);
         Properties const access = access_of(*writers_, name_);
         file_ = File(H5Fopen(name_.c_str(), H5F_ACC_RDWR, access.get()));
         if (!file_)
@@ -262,6 +265,14 @@ class H5mdWriter final : public TrajectoryWriter {
         at_.frames = static_cast<hsize_t>(kept - steps.begin());
         if (at_.frames > 0) at_.last_step = steps[at_.frames - 1];
         for (Series* series : series_.present()) series->cut(place(), at_.frames);
+    }
+
+    /// In a trial: all that going on will read, and the places of the last frame's numbers.
+    void look_through() {
+        file_ = File(check(H5Fopen(name_.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), name_, writing));
+        series_ = open_trajectory(place(), at_.contents);
+        read_steps();
+        for (Series const* series : series_.present()) series->look_at_last(place());
     }
 
     /// The steps of the frames that are whole.

@@ -73,6 +73,7 @@ class Builder {
         Group const own = make_group(root_, "catena");
         put_attribute(at(own), "format_version", format_version);
         put_text(at(own), "title", topology_.title);
+        put_text(at(own), "length_unit", units_.length);
         describe_chains(at(own));
         if (contents_.bodies > 0) {
             Group const element =
@@ -210,8 +211,8 @@ TrajectorySeries open_trajectory(Place const& root, TrajectoryContents const& co
     if (series.position.row() != std::vector<hsize_t>{contents.sites, 3})
         refuse(root, "has " + (series.position.row().empty() ? "no" : std::to_string(series.position.row()[0])) + " sites but the scene " +
                          std::to_string(contents.sites));
-    if (text_of(position, "unit") != units_of(contents.si).length)
-        refuse(root, "is in " + text_of(position, "unit") + ", unlike the scene");
+    std::string const unit = text_of("catena", "length_unit");  // none in files of earlier versions
+    if (!unit.empty() && unit != units_of(contents.si).length) refuse(root, "is in " + unit + ", unlike the scene");
     require(root, "particles/trajectory/velocity", contents.velocities, "velocities");
     require(root, "particles/trajectory/box/edges", contents.periodic, "box edges");
     require(root, "catena/orientation", contents.bodies > 0, "orientations");

@@ -5,7 +5,7 @@
 //       box                       dimension, boundary; edges when periodic
 //       position, velocity        {step, time, value [frames][sites][3]}, ground axes, unwrapped
 //       mass, id                  [sites], id from 1
-//   /catena                       format_version, title
+//   /catena                       format_version, title, length_unit: texts of fixed length
 //       chains                    first, count, beads, ring, name: [chains]
 //       orientation               {step, time, value [frames][bodies][4]}: w x y z, body axes to ground axes; site [bodies] from 0, the
 //                                 body's or that of its first bead

@@ -112,26 +112,29 @@ class ChainReader {
         std::string const name = request_.name();
         if (printable(name) != name)
             fail(*request_.fields.find("name"), "the name has control characters or bytes that are not UTF-8", "give printable UTF-8");
-        if (generator_) refuse_too_large(generator_->size(), generator_->is_beads());
+        double const before = drafts.empty() ? 0 : drafts.back().bytes;
+        if (generator_) with_copies(before, generator_->size(), generator_->is_beads());
         std::int64_t const next = drafts.empty() ? 0 : drafts.back().particle + static_cast<std::int64_t>(drafts.back().chain.bead_count());
         prepare(count_ == 1 ? name : name + "-1", next);
         std::int64_t const first_particle = request_.particle;
         ChainSpec first = make(0);
         auto const beads = static_cast<std::int64_t>(first.bead_count());
-        refuse_too_large(static_cast<std::int64_t>(first.size()), first.is_beads());
+        double const bytes = with_copies(before, static_cast<std::int64_t>(first.size()), first.is_beads());
         bool const free_to_move = movable(first);
         Regrown const shape = regrown(first);
         std::size_t const wanted = drafts.size() + static_cast<std::size_t>(count_);
         if (wanted > drafts.capacity()) drafts.reserve(std::max(wanted, 2 * drafts.capacity()));
+        std::size_t const at = drafts.size();
+        first.name = count_ == 1 ? name : name + "-1";
+        drafts.push_back({std::move(first), &request_.node, free_to_move, shape, first_particle});
         for (std::int64_t copy = 1; copy < count_; ++copy) {
             std::string const copy_name = fmt::format("{}-{}", name, copy + 1);
             prepare(copy_name, next + copy * beads);
             bool const differs = is_random() || (request_.system && !request_.system->alike(first_particle, request_.particle, beads));
-            drafts.push_back({differs ? make(copy) : first, &request_.node, free_to_move, shape, request_.particle});
+            drafts.push_back({differs ? make(copy) : drafts[at].chain, &request_.node, free_to_move, shape, request_.particle});
             drafts.back().chain.name = copy_name;
         }
-        first.name = count_ == 1 ? name : name + "-1";
-        drafts.insert(drafts.end() - (count_ - 1), Draft{std::move(first), &request_.node, free_to_move, shape, first_particle});
+        drafts.back().bytes = bytes;
     }
 
   private:
@@ -217,14 +220,16 @@ class ChainReader {
         bool const any_shape = conformation ? conformation->text == "self_avoiding" : count_ > 1 && !is_given();
         return any_shape ? Regrown::yes : Regrown::if_asked;
     }
-    /// What cannot fit is refused before it is tried.
-    void refuse_too_large(std::int64_t size, bool beads) const {
-        double const bytes = ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) * static_cast<double>(count_);
+    /// Bytes that the chains take with this entry's. What cannot fit is refused before it is tried.
+    double with_copies(double before, std::int64_t size, bool beads) const {
+        double const bytes = before + ((beads ? 150.0 : 700.0) * static_cast<double>(size) + 3000.0) * static_cast<double>(count_);
         auto const present = static_cast<double>(memory_limit());
         if (bytes > present)
             fail(request_.node,
-                 fmt::format("the chain needs about {:.3g} GB of memory, and only {:.3g} GB are available", bytes * 1e-9, present * 1e-9),
+                 fmt::format("the chain{} about {:.3g} GB of memory, and only {:.3g} GB are available",
+                             before > 0 ? "s up to this one need" : " needs", bytes * 1e-9, present * 1e-9),
                  "make fewer bodies or copies");
+        return bytes;
     }
 
     ChainRequest request_;

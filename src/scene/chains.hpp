@@ -20,6 +20,7 @@ struct Draft {
     bool movable = false;        // the scene does not say where it stands
     Regrown regrown = Regrown::no;
     std::int64_t particle = 0;  // of its first bead in the System that the scene names
+    double bytes = 0;           // of the last of an entry: estimate for all chains up to it
 };
 
 class WrittenSystem;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "error.hpp"
+#include "io/trial.hpp"
 #include "scene/fields.hpp"
 #include "scene/hdf5_table.hpp"
 #include "scene/joint_entry.hpp"
@@ -225,6 +227,10 @@ class Hdf5Bodies {
 
 }  // namespace
 
-BodyArrays read_hdf5_bodies(std::string const& path, Base base) { return Hdf5Bodies(path, base).read(); }
+BodyArrays read_hdf5_bodies(std::string const& path, Base base) {
+    std::string const end = trial([&] { Hdf5Bodies(path, base).read(); }, limits_for_file(path));
+    if (!end.empty()) throw InputError("the file is damaged, HDF5 breaks on it: " + end, shown_path(path), "write the file again");
+    return Hdf5Bodies(path, base).read();
+}
 
 }  // namespace catena::scene

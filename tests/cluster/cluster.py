@@ -45,7 +45,7 @@ def verdict(name, good, text):
 class Runs:
     """A folder with a scene and its runs, removed at the end."""
 
-    def __init__(self, options, scene=SCENE, settings=()):
+    def __init__(self, options, scene=SCENE, settings=(), folder=""):
         self.program = options.catena
         self.launcher = [word for word in options.mpirun.split(",") if word and word != "-q"]  # its own words are looked for
         self.environment = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
@@ -56,9 +56,10 @@ class Runs:
             self.environment["CATENA_HDF5"] = options.hdf5
         self.settings = [word for setting in settings for word in ("--set", setting)]
         self.scene_text = scene
+        self.within = folder or None
 
     def __enter__(self):
-        self.folder = tempfile.mkdtemp(prefix="catena-cluster-")
+        self.folder = tempfile.mkdtemp(prefix="catena-cluster-", dir=self.within)
         self.scene = os.path.join(self.folder, "scene.yaml")
         with open(self.scene, "w", encoding="utf-8") as file:
             file.write(self.scene_text)

@@ -1,5 +1,6 @@
-"""SIGTERM, SIGINT or SIGUSR1 on one rank, on all, or on the launcher: the run ends after a whole step with status 3 and one line; what is
-resumed from its checkpoint, stopped again and resumed, is bit for bit the undisturbed run. Usage: stopped_run.py [--steps N] [--cases M]"""
+"""SIGTERM, SIGINT, SIGUSR1, SIGHUP or SIGXCPU on one rank, on all, or on the launcher: the run ends after a whole step with status 3 and one line; what is
+resumed from its checkpoint, stopped again and resumed, is bit for bit the undisturbed run. Usage: stopped_run.py [--steps N] [--cases M, the first]
+[--only TEXT, those whose name has it]"""
 import os
 import signal
 import sys
@@ -38,7 +39,13 @@ CASES = {"SIGTERM to every rank": (3, to_all(signal.SIGTERM), (STOPPED,)),
          "SIGUSR1 to the last rank": (3, to_rank(signal.SIGUSR1, -1), (STOPPED,)),
          "SIGINT to mpirun": (2, to_launcher(signal.SIGINT), (1, STOPPED)),
          "SIGTERM to mpirun": (2, to_launcher(signal.SIGTERM), (1, STOPPED)),
-         "SIGINT to a single rank": (1, to_rank(signal.SIGINT, 0), (STOPPED,))}
+         "SIGINT to a single rank": (1, to_rank(signal.SIGINT, 0), (STOPPED,)),
+         "SIGTERM to a rank": (3, to_rank(signal.SIGTERM, 1), (STOPPED,)),
+         "SIGHUP to a rank": (3, to_rank(signal.SIGHUP, 1), (STOPPED,)),
+         "SIGXCPU to a rank": (3, to_rank(signal.SIGXCPU, 1), (STOPPED,)),
+         "SIGXCPU to every rank": (2, to_all(signal.SIGXCPU), (STOPPED,)),
+         "SIGHUP to mpirun": (2, to_launcher(signal.SIGHUP), (1, STOPPED)),
+         "SIGXCPU to mpirun": (2, to_launcher(signal.SIGXCPU), (1, STOPPED))}
 
 
 def check(runs, case):
@@ -58,10 +65,10 @@ def check(runs, case):
 
 
 def main():
-    options = arguments(__doc__, steps=20000, cases=len(CASES))
+    options = arguments(__doc__, steps=20000, cases=len(CASES), only="")
     with Runs(options, settings=[f"dynamics.steps={options.steps}", "output.every=101", "output.checkpoint_every=1000"]) as runs:
         runs.complete(1, "whole")
-        good = [check(runs, case) for case in list(CASES)[:options.cases]]
+        good = [check(runs, case) for case in list(CASES)[:options.cases] if options.only in case]
     sys.exit(0 if all(good) else 1)
 
 

@@ -1,17 +1,28 @@
 #!/usr/bin/env bash
 # Feeds readers with damaged files: libFuzzer with the address and undefined-behaviour sanitizers, 1 GB at most for a file of 100 kB, 10 s an
-# input. usage: tests/fuzz/run.sh [SECONDS a target, 60]
-# Prints the inputs that each target took. Exit status 0: no crash, no report, no hang; 1: a finding, whose input stays in build/fuzz; 77: no
-# clang with libFuzzer.
+# input. usage: tests/fuzz/run.sh [SECONDS a target, 60] [--minutes M a target] [--jobs PROCESSES a target] [--pack FOLDER]
+# --pack: puts the targets, their corpora and libraries into FOLDER, for any Linux with glibc 2.36 or later: FOLDER/campaign.sh runs them.
+# Prints the inputs that each target took. Exit status 0: no crash, no report, no hang; 1: a finding, whose input stays in build/fuzz/work;
+# 77: no clang with libFuzzer.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-seconds=${1:-60}
-work=build/fuzz
-mkdir -p "$work"
+seconds=60 jobs=1 pack=
+while [ $# -gt 0 ]; do
+    case $1 in
+        --minutes) seconds=$((60 * $2)); shift ;;
+        --jobs) jobs=$2; shift ;;
+        --pack) pack=$2; shift ;;
+        *[!0-9]* | '') echo "unknown option: $1 (see the head of tests/fuzz/run.sh)" >&2; exit 2 ;;
+        *) seconds=$1 ;;
+    esac
+    shift
+done
+made=build/fuzz
+mkdir -p "$made"
 
 compiler=$(command -v clang++ || command -v clang++-14 || true)
-echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$work/probe.cpp"
-if [ -z "$compiler" ] || ! "$compiler" -fsanitize=fuzzer,address "$work/probe.cpp" -o "$work/probe" 2>/dev/null; then
+echo 'extern "C" int LLVMFuzzerTestOneInput(const unsigned char*, unsigned long) { return 0; }' >"$made/probe.cpp"
+if [ -z "$compiler" ] || ! "$compiler" -fsanitize=fuzzer,address "$made/probe.cpp" -o "$made/probe" 2>/dev/null; then
     echo "SKIPPED: no clang with libFuzzer (apt-get install clang libclang-rt-14-dev)"
     exit 77
 fi
@@ -19,39 +30,76 @@ fi
 # The table of residues that the build embeds.
 parameters=$(find build -name calvados2_parameters.inc -print -quit)
 [ -n "$parameters" ] || { echo "SKIPPED: configure a build first"; exit 77; }
+hdf5=/usr/include/hdf5/serial
+openmm=$(find -L build/venv/lib -maxdepth 4 -name OpenMM.libs -print -quit 2>/dev/null || true)
+flags=(-std=c++20 -O1 -g1 -ffp-contract=off -DFMT_SHARED -Isrc -I. "-I$(dirname "$parameters")" -isystem /usr/include/eigen3 -isystem "$hdf5"
+    ${openmm:+-isystem "$openmm/include"} "-fsanitize=address,undefined" -fno-sanitize-recover=undefined
+    "-fno-sanitize=null,alignment,object-size,vptr,nonnull-attribute,returns-nonnull-attribute")
 
-# object SOURCE: compiles it where it is newer than what was made of it.
-object() {
-    local made=$work/${1//\//_}.o
-    if [ "$1" -nt "$made" ]; then
-        "$compiler" -std=c++20 -O1 -g1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined -ffp-contract=off -DFMT_SHARED \
-            -Isrc -I. -I"$(dirname "$parameters")" -c "$1" -o "$made" >&2
-    fi
-    echo "$made"
+# is_fresh FILE: whether FILE is newer than this script and all that it was made of.
+is_fresh() {
+    local source sources
+    [ -f "$1" ] && [ -f "$1.d" ] && [ "$1" -nt tests/fuzz/run.sh ] || return 1
+    read -r -a sources < <(sed 's/^[^:]*://; s/\\$//' "$1.d" | tr '\n' ' ')
+    for source in "${sources[@]}"; do [ ! "$source" -nt "$1" ] && [ -e "$source" ] || return 1; done
 }
 
-# target NAME SOURCE...: the reader with what it needs.
-target() {
-    local name=$1 objects=() source
+# compile FILE ARGUMENTS...: makes FILE, where it is not fresh.
+compile() {
+    local file=$1
     shift
-    for source in "$@"; do objects+=("$(object "$source")"); done
-    "$compiler" -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=undefined -DFMT_SHARED "-DFUZZ_${name^^}" -Isrc -I. \
-        tests/fuzz/readers.cpp "${objects[@]}" -lfmt -lyaml-cpp -o "$work/$name"
-    mkdir -p "$work/found-$name"
-    if "$work/$name" -max_total_time="$seconds" -rss_limit_mb=1024 -timeout=10 -max_len=100000 -print_final_stats=1 \
-        -artifact_prefix="$work/$name-" "$work/found-$name" "tests/fuzz/corpus/$name" >"$work/$name.log" 2>&1; then
-        printf '%-8s %10d inputs in %d s, no finding\n' "$name" "$(sed -n 's/^stat::number_of_executed_units: //p' "$work/$name.log")" "$seconds"
-    else
-        printf '%-8s FAILED: %s\n' "$name" "$(grep -m 1 -E 'ERROR|runtime error|SUMMARY' "$work/$name.log")"
-        status=1
-    fi
+    is_fresh "$file" || "$compiler" "${flags[@]}" -fsanitize=fuzzer-no-link -MD -MF "$file.d" "$@" -o "$file"
 }
 
-status=0
+# target NAME LIBRARIES SOURCE...: the reader with what it needs.
+target() {
+    local name=$1 libraries=$2 objects=() source
+    shift 2
+    for source in tests/fuzz/entry.cpp "tests/fuzz/$name.cpp" "$@"; do
+        objects+=("$made/${source//\//_}.o")
+        compile "${objects[-1]}" -include-pch "$made/precompiled.pch" -c "$source"
+    done
+    # shellcheck disable=SC2086
+    "$compiler" "${flags[@]}" -fsanitize=fuzzer "${objects[@]}" $libraries -lfmt -o "$made/targets/$name"
+    rm -rf "$made/targets/corpus/$name"
+    cp -r "tests/fuzz/corpus/$name" "$made/targets/corpus/"
+}
+
+mkdir -p "$made/targets/corpus"
+compile "$made/precompiled.pch" -x c++-header tests/fuzz/precompiled.hpp
 tree=(src/scene/node.cpp src/scene/printable.cpp)
 files=("${tree[@]}" src/scene/files.cpp src/scene/fields.cpp)
-target scene "${tree[@]}"
-target table "${files[@]}"
-target pdb "${files[@]}" src/scene/pdb_file.cpp src/scene/pdb_sites.cpp src/scene/residue_names.cpp
-target fasta "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/force/calvados2.cpp
-exit $status
+read_hdf5=(src/io/hdf5_handle.cpp src/io/output_file.cpp)
+target scene -lyaml-cpp "${tree[@]}"
+target table -lyaml-cpp "${files[@]}"
+target pdb -lyaml-cpp "${files[@]}" src/scene/pdb_file.cpp src/scene/pdb_sites.cpp src/scene/residue_names.cpp
+target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/force/calvados2.cpp
+target xml -lyaml-cpp "${tree[@]}" src/force/xml_scan.cpp
+if [ -d "$hdf5" ]; then
+    target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/scene/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry,freedom}.cpp \
+        src/io/{memory_limit,trial}.cpp
+    target checkpoint -lhdf5_serial "${read_hdf5[@]}" src/io/{checkpoint,checkpoint_file,hdf5_data,seal,trial}.cpp
+else
+    echo "LEFT OUT: bodies and checkpoint, no serial HDF5 (apt-get install libhdf5-dev)"
+fi
+if [ -n "$openmm" ]; then
+    target system "-lyaml-cpp -L$openmm/lib -lOpenMM -Wl,-rpath,$PWD/$openmm/lib" "${tree[@]}" src/force/{xml_scan,openmm_xml}.cpp src/io/memory_limit.cpp
+else
+    echo "LEFT OUT: system, no OpenMM in build/venv"
+fi
+
+# pack FOLDER: the system's C library stays the system's.
+pack() {
+    local name
+    mkdir -p "$1/lib"
+    cp -r "$made/targets/." tests/fuzz/campaign.sh "$1/"
+    for name in "$made"/targets/*; do
+        [ -f "$name" ] || continue
+        strip -g "$1/$(basename "$name")"
+        ldd "$name" | sed -n 's/.*=> \(\/[^ ]*\) .*/\1/p' | grep -vE '/lib(c|m|dl|pthread|rt|resolv|nss_[a-z]*)\.so|/ld-linux' | xargs -I{} cp -L -n {} "$1/lib/"
+    done
+    du -sh "$1"
+}
+
+if [ -n "$pack" ]; then pack "$pack"; exit; fi
+exec tests/fuzz/campaign.sh --targets "$made/targets" --work "$made/work" --seconds "$seconds" --jobs "$jobs"

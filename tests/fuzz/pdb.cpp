@@ -1,0 +1,6 @@
+#include "scene/pdb_sites.hpp"
+#include "tests/fuzz/target.hpp"
+
+void catena::fuzz::read(std::string_view bytes) {
+    for (bool const single : {false, true}) scene::read_pdb(MemoryFile(bytes).path(), scene::Node(), single);
+}
