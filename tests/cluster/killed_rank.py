@@ -40,6 +40,8 @@ def kill(runs, name, ranks, seconds, draw, whole_job):
             pass  # ended with the one before
     killed = time.monotonic()
     said = started.communicate()[0]
+    if started.returncode == 0:
+        return None  # it had come to its end
     return Kill(started.returncode, time.monotonic() - killed, said, ranks, whole_job or ranks == 1)
 
 
