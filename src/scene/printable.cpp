@@ -35,10 +35,16 @@ std::size_t character_at(std::string_view text) {
     return 0;
 }
 
+/// U+2028 to U+202E and U+2066 to U+2069: ends of lines, and marks that turn around the text that follows.
+bool rearranges_lines(std::string_view character) {
+    bool const marks = character.starts_with("\xE2\x80") && character[2] >= '\xA8' && character[2] <= '\xAE';
+    return marks || (character.starts_with("\xE2\x81") && character[2] >= '\xA6' && character[2] <= '\xA9');
+}
+
 bool is_control(std::string_view character) {
     auto const first = static_cast<unsigned char>(character[0]);
     if (character.size() == 1) return (first < 0x20 && first != '\n' && first != '\t') || first == 0x7F;
-    return first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0;
+    return (first == 0xC2 && static_cast<unsigned char>(character[1]) < 0xA0) || rearranges_lines(character);
 }
 
 }  // namespace

@@ -84,6 +84,14 @@ TEST(Restarts, RefuseATrajectoryInOtherUnits) {
     expect_refused(run_with(folder, {"--restart", "o/checkpoint.h5", "--steps", "4"}), 2, "is in Am, unlike the scene");
 }
 
+// U+202E turns around what a terminal shows after it: a message could then name another file or value than it means.
+TEST(Messages, HaveNoMarksThatTurnLinesAround) {
+    TemporaryFolder const folder;
+    write(folder / "s.yaml", "chains: \"a\xE2\x80\xAE!b\xE2\x81\xA6\xE2\x80\xA9\xE2\x82\xAC\"\n");
+    Ended const e = catena({"check", "s.yaml"}, folder.path());
+    expect_refused(e, 2, "`a?!b??\xE2\x82\xAC` in quotes is not a list");  // a sign of a currency stays
+}
+
 // 900,000 chains need at least 2.7 GB, each entry of 300,000 fits into 2 GB.
 TEST(Memory, IsJudgedForAllChainsTogether) {
     TemporaryFolder const folder;

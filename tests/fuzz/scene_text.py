@@ -152,11 +152,18 @@ def borrow(draw, place, others):
 WAYS = [set_value, set_value, set_value, *[scale] * 9, delete, delete, double, many_times, misspell, swap, wrap]
 
 
-def mutate(draw, path, sources):
-    """Changes the scene at `path`, in a few places; keys and blocks also come from other scenes."""
-    tree, other = load(path), load(draw.choice(sources))
-    if not isinstance(tree, Map) or not tree:
-        tree = Map([["title", "x"]])
+def is_number(value):
+    return isinstance(value, str) and re.fullmatch(r"[-+]?[0-9.]+([eE][-+]?[0-9]+)?", value) is not None
+
+
+def change_numbers(draw, tree):
+    """Numbers become others, which many scenes survive."""
+    numbers = [place for place in places(tree) if is_number(get(place))]
+    for place in draw.sample(numbers, min(len(numbers), draw.choice([1, 1, 2, 4]))):
+        put(place, scaled(draw, get(place)))
+
+
+def change_blocks(draw, tree, other):
     for _ in range(draw.choice([1, 1, 1, 2, 3, 6])):
         here = places(tree)
         if not here:
@@ -169,6 +176,17 @@ def mutate(draw, path, sources):
                 borrow(draw, draw.choice(here), places(other))
         else:
             way(draw, draw.choice(here), here)
+
+
+def mutate(draw, path, sources):
+    """Changes the scene at `path`, in a few places; keys and blocks also come from other scenes."""
+    tree, other = load(path), load(draw.choice(sources))
+    if not isinstance(tree, Map) or not tree:
+        tree = Map([["title", "x"]])
+    if draw.random() < 0.5:
+        change_numbers(draw, tree)
+    else:
+        change_blocks(draw, tree, other)
     text = document(tree)
     text = re.sub(r"(count|beads|bodies|steps): \d{6,}", r"\1: 99999", text)
     with open(path, "w", encoding="utf-8", errors="replace") as file:
