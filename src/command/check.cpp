@@ -5,7 +5,6 @@
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
 #include "integrate/start_report.hpp"
-#include "integrate/step_limit.hpp"
 
 namespace catena::command {
 namespace {
@@ -57,17 +56,6 @@ Json handles_json(Scene const& scene) {
     if (d.beads > 0) handles["beads"] = d.beads;
     if (d.bodies > 0) handles["bodies"] = d.bodies;
     return handles;
-}
-
-/// The reader's, what a run would write too seldom, and a step that is near its limit.
-std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> const& limit) {
-    std::vector<std::string> notes = scene.notes;
-    std::int64_t const every = scene.output.every, steps = scene.dynamics.steps;
-    if (scene.dynamics.given && steps > 0 && every > steps)
-        notes.push_back(
-            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and the last state alone", every, steps));
-    if (std::string const note = note_of_step(scene, limit); !note.empty()) notes.push_back(note);
-    return notes;
 }
 
 Text text_of(Scene const& scene, Found const& found, Memory const& memory, int ranks, std::optional<StepLimit> const& limit) {

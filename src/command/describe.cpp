@@ -145,4 +145,14 @@ std::string block_text(bool beads, int directions, Handles handles) {
     return size + fmt::format(", projected on the restricted directions of {} joints", scene::name_of(kind));
 }
 
+std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> const& limit) {
+    std::vector<std::string> notes = scene.notes;
+    std::int64_t const every = scene.output.every, steps = scene.dynamics.steps;
+    if (scene.dynamics.given && steps > 0 && every > steps)
+        notes.push_back(
+            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and the last state alone", every, steps));
+    if (std::string const note = note_of_step(scene, limit); !note.empty()) notes.push_back(note);
+    return notes;
+}
+
 }  // namespace catena::command

@@ -1,11 +1,13 @@
 // Parts of a scene in words, shared by the commands.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "command/outcome.hpp"
 #include "command/text.hpp"
+#include "integrate/step_limit.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::command {
@@ -38,6 +40,10 @@ struct Directions {
 Directions directions_of(Scene const&);
 /// "5x5, projected on the restricted directions of revolute joints"
 std::string block_text(bool beads, int directions, Handles);
+
+/// What `check` and `plan` say of a scene beside its numbers: the reader's notes, what a run would write too seldom, and a step that is
+/// near its limit. InputError for a step beyond it.
+std::vector<std::string> notes_on(Scene const&, std::optional<StepLimit> const&);
 
 /// solver.gpu_levels with cuda-levels ("all" for auto), else null.
 Json gpu_levels_json(Scene const&);

@@ -231,6 +231,11 @@ Outcome plan_chosen(Scene const& scene, Axes axes, Communicator const& communica
     }
     if (request.explain) add_savings(text, json, scene, system);
     if (communicator.rank() == 0) add_predictions(text, json, predictions);
+    json["notes"] = Json::array();
+    for (std::string const& note : notes_on(scene, estimate_step_limit(scene))) {
+        json["notes"].push_back(note);
+        text.note(note);
+    }
     if (request.measure) {
         plan::PhaseSeconds const measured = measure(scene, axes, communicator);
         if (communicator.rank() == 0) add_measured(text, json, predictions, measured);

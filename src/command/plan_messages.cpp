@@ -81,9 +81,11 @@ class Groups {
 std::string network_text(PlanRequest const& request, Network const& network) {
     std::string text = request.network;
     if (!request.latency) return text;
-    return text + fmt::format("{}{} and {:.3g} GB/s between hosts{}", text.empty() ? "" : ", with ", duration_text(network.far->latency),
-                              1e-9 / network.far->seconds_a_byte,
-                              text.empty() ? "; the same within a host, and gathers as the model says: nothing was measured" : "");
+    Link const &near = *network.near, &far = *network.far;
+    bool const same = near.latency == far.latency && near.seconds_a_byte == far.seconds_a_byte;
+    return text + fmt::format("{}{} and {:.3g} GB/s between hosts{}{}", text.empty() ? "" : ", with ", duration_text(far.latency),
+                              1e-9 / far.seconds_a_byte, same ? "; the same within a host" : "",
+                              text.empty() ? ", and gathers as the model says: nothing was measured" : "");
 }
 
 double seconds_of(Traffic const& t, Network const& network, GatherWay const& way, std::int64_t hosts) {

@@ -45,10 +45,11 @@ Network network_of(PlanRequest const& request) {
     Network network;
     if (!request.network.empty()) network = read_network(request.network);
     if (request.latency) network.far = Link{*request.latency, *request.seconds_a_byte};
-    if (!network.near && request.network.empty()) network.near = network.far;
+    if (!network.near) network.near = network.far;  // a file of one rank measured no link at all
     if (request.ranks > 1 && !network.near)
         throw InputError("measured on one rank", "--network " + request.network,
-                         "measure it on two at least: mpirun -np 2 catena bench network");
+                         "add --latency and --bandwidth (1.5us, 12.5GB/s), or measure on two ranks at least: mpirun -np 2 catena bench "
+                         "network");
     if (request.hosts > 1 && !network.far)
         throw InputError("the network was measured on one host, it knows no link between hosts", "--network " + request.network,
                          "add --latency and --bandwidth of that link (1.5us, 12.5GB/s), measure over two hosts, or leave --hosts out");

@@ -12,6 +12,7 @@
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
 #include "integrate/start_relaxation.hpp"
+#include "integrate/start_report.hpp"
 #include "integrate/start_velocities.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/choice.hpp"
@@ -216,12 +217,17 @@ std::string complaint_of(Scene const& scene, ForwardError const& error, double r
 Outcome solve_chosen(Scene const& given, Communicator const& communicator, SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
     std::optional<RelaxedScene> relaxed = relaxed_where_asked(given, communicator);
+    if (!relaxed) refuse_coinciding(given, communicator);
     Scene const scene = with_start_velocities(relaxed ? std::move(relaxed->scene) : given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);
     int const refinements = scene.solver.refine;
     if (refinements > 0 && system.joint().empty())
         throw InputError("chains of beads and of linked bodies are not refined", "solver.refine", "leave it out");
     system.close_tips();  // as a run does: velocities then fit them
+    if (system.openmm()) {
+        system.evaluate(false);
+        look_at_start(system);  // accelerations under forces of overlapping beads are right, but nobody's
+    }
     Timing const timing = time_evaluations(system, request.repeat);
     std::vector<double> const refinement = refine(system, refinements);
     Outcome outcome;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "dca/host_space.hpp"
+#include "dca/lost_matrix.hpp"
 #include "error.hpp"
 
 namespace catena {
@@ -43,8 +44,7 @@ void refuse_indefinite(ChainGroup const& group, int rank, std::int64_t joint) {
     bool const may = open && group.handles != Handles::articulated && group.implicit_joint.empty();
     std::string const what = group.handles == Handles::articulated ? "an articulated inertia" : "the matrix of a joint";
     throw ComputationError(what + " is not positive definite (chain " + group.name[chain] +
-                           (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) +
-                           "): masses, inertias or positions there are extreme or, after too long a dynamics.step, not finite" +
+                           (tip ? ", the tip's joint" : ", body " + std::to_string(body + 1)) + "): " + dca::cause_of_lost_matrix +
                            (may ? "; `handles: articulated` keeps more digits" : ""));
 }
 

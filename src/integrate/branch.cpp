@@ -71,10 +71,10 @@ std::vector<scene::ChangedValue> branch_changes(Checkpoint const& c, Scene const
 
 std::string note_of_branch(std::string const& file, std::int64_t step, std::vector<scene::ChangedValue> const& changes) {
     std::string text = "branched at step " + std::to_string(step) + " from " + file + ": ";
-    if (changes.empty()) return text + "with the values of its scene";
+    if (changes.empty()) text += "with the values of its scene";
     for (std::size_t i = 0; i < changes.size(); ++i)
         text += (i > 0 ? ", " : "") + changes[i].key + " " + changes[i].before + " -> " + changes[i].now;
-    return text;
+    return text + "; the verdict covers the branch alone";
 }
 
 json json_of_branch(std::string const& file, std::int64_t step, std::vector<scene::ChangedValue> const& changes) {

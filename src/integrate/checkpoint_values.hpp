@@ -23,6 +23,14 @@ inline int counter_of(Checkpoint const& c, std::string const& name, int least, i
     return static_cast<int>(found->second);
 }
 
+/// The step of this name, `otherwise` where it is missing; InputError where it is not one of the run so far.
+inline std::int64_t step_of(Checkpoint const& c, std::string const& name, std::int64_t otherwise) {
+    auto const found = c.integers.find(name);
+    if (found == c.integers.end()) return otherwise;
+    if (found->second < 0 || found->second > c.step) refuse_checkpoint(name + " is " + std::to_string(found->second));
+    return found->second;
+}
+
 /// The array of this name, none where it is missing; InputError where it is not of so many finite numbers from 0 on.
 inline std::vector<double> few_numbers_of(Checkpoint const& c, std::string const& name, std::size_t count) {
     auto const found = c.arrays.find(name);

@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "integrate/rigid_start.hpp"
 #include "integrate/stays_open.hpp"
+#include "integrate/step_failure.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -54,7 +55,7 @@ double ClosedSteps::look(std::int64_t n, std::function<void()> const& prepare) {
     }
     if (std::isnan(now))
         on_every_rank(system_.communicator(), [&] {
-            if (!trouble_.empty()) throw ComputationError("at step " + std::to_string(n) + ": " + trouble_);
+            if (!trouble_.empty()) throw ComputationError(failure_in_step(n, trouble_, system_.scene(), n > 0));
         });
     kept_ = can_keep(n) ? std::optional(Start{n, integrator_.keep()}) : std::nullopt;
     worst_since_ = 0;
@@ -77,11 +78,11 @@ void ClosedSteps::repeat(std::int64_t n, std::function<void()> const& prepare) {
             prepare();
             if (m < n) take(m, prepare);
         } catch (SharedError const& error) {
-            throw SharedError("at step " + std::to_string(m) + ": " + error.what());
+            throw SharedError(failure_in_step(m, error.what(), system_.scene(), true));
         } catch (StaysOpen const& error) {
-            throw SharedError("at step " + std::to_string(m) + ": " + error.what());
+            throw SharedError(failure_in_step(m, error.what(), system_.scene(), true));
         } catch (ComputationError const& error) {
-            throw ComputationError("at step " + std::to_string(m) + ": " + error.what());
+            throw ComputationError(failure_in_step(m, error.what(), system_.scene(), true));
         }
     }
 }

@@ -17,13 +17,14 @@
 #include "integrate/force_summary.hpp"
 #include "integrate/pace.hpp"
 #include "integrate/run_folder.hpp"
+#include "integrate/run_verdict.hpp"
 #include "integrate/share.hpp"
 #include "integrate/sites.hpp"
 #include "integrate/start_report.hpp"
 #include "integrate/start_velocities.hpp"
+#include "integrate/step_failure.hpp"
 #include "integrate/step_messages.hpp"
 #include "integrate/stepper.hpp"
-#include "integrate/verdict.hpp"
 #include "mpi/first_rank.hpp"
 
 namespace catena {
@@ -75,9 +76,10 @@ class Run {
         std::int64_t const first = options_.restart.empty() ? 0 : restore();
         first_ = first;
         if (last_ < first)
-            throw InputError(
-                "the checkpoint stands at step " + std::to_string(first) + " and the run ends at step " + std::to_string(last_),
-                options_.restart, "ask for more with --steps");
+            throw InputError("the checkpoint stands at step " + std::to_string(first) + ", the run would end before, at step " +
+                                 std::to_string(last_) + (options_.steps ? " (--steps)" : " (dynamics.steps)"),
+                             options_.restart,
+                             "ask for more than " + std::to_string(first) + " with --steps, which counts from the scene's start");
         note_outputs(first);
         Progress progress(options_.quiet || !root_, first, last_, scene_.dynamics.step, scene_.si);
         double const start = seconds_now();
@@ -103,6 +105,8 @@ class Run {
             bool const ends = n == last_ || stopped_by_ != 0;
             // What is saved has been looked at: steps that left joints open cannot be taken again after a restart.
             double const error = looks || saves_by_time || ends || n == first ? look(n) : 0;
+            // Another look is the clock's: what it found counts where the run is worthless.
+            if (looks || error > scene_.dynamics.constraint_tolerance) verdict_.note_error(n, error);
             if (looks) adapt(n, error);
             if (writes) output(n, error);
             if (!ends) at_start_.reset();
@@ -112,11 +116,11 @@ class Run {
                     output(n, error);  // after the checkpoint: a restart from there is the undisturbed run, without this frame
                 end_frame();
                 reached_ = n;
-                error_at_end_ = error;
+                verdict_.note_end(n, error);
                 break;
             }
             Traffic const prepared = chains_traffic();
-            at_step(n, [&] { stepper_->step(n, timeline); });
+            at_step(n, true, [&] { stepper_->step(n, timeline); });
             of_step += chains_traffic() - prepared;
             stepper_->note_error(n);
             if (n > first && !renews && !mended) count_messages(of_step);  // others may evaluate once more
@@ -253,7 +257,7 @@ class Run {
             Frame const part = sites_.part(bodies, scene_.output.velocities && !together, system_.executor());
             if (!together) folder_->put(std::span(&part, 1));
             observables_->add(bodies.motion, part.positions);
-            for (Vec3 const& x : bodies.motion.position) largest_coordinate_ = std::max(largest_coordinate_, norm(x));
+            for (Vec3 const& x : bodies.motion.position) verdict_.note_coordinate(norm(x));
         });
         if (together) put_own(*frame.now.bodies);
         if (root_) judge(frame);
@@ -268,18 +272,7 @@ class Run {
             potential = 0;
             for (EnergyTerm const& term : frame.now.terms) *potential += term.value;
         }
-        energies_.add(frame.step, observables_->kinetic(), potential);
-    }
-    /// On rank 0.
-    std::vector<RunCheck> verdicts() const {
-        double const tolerance = scene_.dynamics.constraint_tolerance;
-        bool const worse_at_end = error_at_end_ > worst_error_;
-        std::vector<RunCheck> all{
-            joints_verdict(std::max(worst_error_, error_at_end_), tolerance, worse_at_end ? reached_ : worst_error_at_, "dynamics.step")};
-        for (auto const& verdict : {energies_.energy(), energies_.temperature(),
-                                    coordinates_verdict(largest_coordinate_, shortest_link(scene_), tolerance, reached_)})
-            if (verdict) all.push_back(*verdict);
-        return all;
+        verdict_.add_frame(frame.step, observables_->kinetic(), potential);
     }
 
     void put_own(ChainSystem::OwnBodies const& own) {
@@ -305,10 +298,6 @@ class Run {
     /// Another sweep where one is due. At steps that the scene chooses alone, not where a run happens to end: a restart is to be the
     /// undisturbed run.
     void adapt(std::int64_t n, double error) {
-        if (error > worst_error_) {
-            worst_error_ = error;
-            worst_error_at_ = n;
-        }
         if (n == first_ && !options_.restart.empty()) return;  // the run before did
         if (stepper_->adapt(watch_, error, scene_.dynamics.constraint_tolerance))
             notes_.push_back("one more projection sweep from step " + std::to_string(n) + " on");
@@ -325,15 +314,15 @@ class Run {
                                               stepper_->parts(), stepper_->solved());
     }
 
-    /// What fails within a step says at which.
+    /// What fails within a step says at which; `has_started`: not at the scene's start.
     template <class Action>
-    void at_step(std::int64_t n, Action const& action) {
+    void at_step(std::int64_t n, bool has_started, Action const& action) {
         try {
             action();
         } catch (SharedError const& error) {
-            throw SharedError("at step " + std::to_string(n) + ": " + error.what());
+            throw SharedError(failure_in_step(n, error.what(), scene_, has_started));
         } catch (ComputationError const& error) {
-            throw ComputationError("at step " + std::to_string(n) + ": " + error.what());
+            throw ComputationError(failure_in_step(n, error.what(), scene_, has_started));
         }
     }
 
@@ -341,7 +330,7 @@ class Run {
     /// failure, the run ends. Returns whether there was nothing to mend.
     bool prepare(std::int64_t n, StepTimeline* timeline) {
         try {
-            at_step(n, [&] { stepper_->prepare(timeline); });
+            at_step(n, n > 0, [&] { stepper_->prepare(timeline); });
             return true;
         } catch (SharedError const&) {
             if (!stepper_->mend(n)) throw;
@@ -361,11 +350,12 @@ class Run {
         if (time_origin_ != 0) c.arrays[array_of_origin] = {time_origin_};
         c.integers[number_of_records] = folder_->records_before(n) - (is_kept(n) ? 1 : 0);
         c.integers[whether_frame] = is_frame(n) || is_kept(n) ? 1 : 0;
+        if (branched_at_) c.integers[step_of_branch] = *branched_at_;
         if (root_) c.notes.insert(values_of_scene_.begin(), values_of_scene_.end());
         c.notes["integrator"] = name_of(scene_.dynamics.integrator);
         c.notes["tree_table"] = std::to_string(dca::tree_table_version);
         if (system_.openmm()) c.notes[note_of_platform] = platform();
-        c.arrays["largest_constraint_error"] = {worst_error_};
+        verdict_.save(c);
         c.arrays[array_of_watch] = watch_.state();
         if (!shares_.empty()) c.arrays[array_of_shares] = {shares_.begin(), shares_.end()};
         stepper_->save(c);
@@ -375,7 +365,7 @@ class Run {
         saved_at_ = seconds_now();
     }
 
-    static constexpr char const *number_of_records = "records_before", *whether_frame = "frame_at_step",
+    static constexpr char const *number_of_records = "records_before", *whether_frame = "frame_at_step", *step_of_branch = "branched_at",
                                 *note_of_platform = "openmm_platform", *array_of_watch = "sweep_watch", *array_of_shares = "rank_shares";
     std::string platform() const {
         std::string const& precision = scene_.forces.openmm->precision;
@@ -422,8 +412,9 @@ class Run {
         time_origin_ = number_in(c, array_of_origin, 0);
         if (auto const found = c.integers.find(number_of_records); found != c.integers.end()) records_before_ = found->second;
         if (auto const found = c.integers.find(whether_frame); found != c.integers.end()) was_frame_ = found->second != 0;
+        if (c.integers.contains(step_of_branch)) count_from_branch(step_of(c, step_of_branch, 0));
         stepper_->restore(c);
-        for (double const error : few_numbers_of(c, "largest_constraint_error", 1)) worst_error_ = error;
+        if (std::string const note = verdict_.restore(c); !note.empty()) notes_.push_back(note);
         if (std::vector<double> const watch = few_numbers_of(c, array_of_watch, 2); !watch.empty()) watch_.set_state(watch);
         return c.step;
     }
@@ -435,13 +426,20 @@ class Run {
         if (number_in(c, array_of_step, h) != h) time_origin_ = c.time - static_cast<double>(c.step) * h;
         c.arrays[array_of_origin] = {time_origin_};
         stepper_->branch(c);
-        if (!options_.steps) last_ = c.step + scene_.dynamics.steps;
+        verdict_.branch();
+        count_from_branch(c.step);
         if (root_) notes_.push_back(note_of_branch(options_.restart, c.step, changes_));
         return c.step;
     }
 
+    /// Without --steps a branch, and a restart of it, ends as many steps after its beginning as the scene says.
+    void count_from_branch(std::int64_t step) {
+        branched_at_ = step;
+        if (!options_.steps) last_ = step + scene_.dynamics.steps;
+    }
+
     json finish(std::int64_t first) {
-        std::vector<RunCheck> const found = root_ ? verdicts() : std::vector<RunCheck>();
+        std::vector<RunCheck> const found = root_ ? verdict_.checks() : std::vector<RunCheck>();
         bool const valid = communicator_.sum(all_passed(found) ? 0 : 1) == 0;
         for (RunCheck const& verdict : found)
             if (verdict.passed && !verdict.advice.empty()) notes_.push_back(verdict.advice);
@@ -505,8 +503,7 @@ class Run {
         s["solver"].update(stepper_->describe());
         bool const tips = std::any_of(system_.groups().begin(), system_.groups().end(), [](auto const& g) { return g->has_tips(); });
         if (!system_.absolute().empty() || tips)  // other joint coordinates cannot come apart
-            s["constraints"] = {{"largest_error", std::max(worst_error_, error_at_end_)},
-                                {"tolerance", scene_.dynamics.constraint_tolerance}};
+            s["constraints"] = {{"largest_error", verdict_.largest_error()}, {"tolerance", scene_.dynamics.constraint_tolerance}};
         if (system_.openmm()) s["forces"] = forces;
         s["seconds_per_phase"] = system_.seconds();
         s["notes"] = notes_;
@@ -560,12 +557,12 @@ class Run {
     std::vector<std::string> notes_;
     StartReport start_;
     SweepWatch watch_;
-    EnergyWatch energies_{scene_};
-    double worst_error_ = 0, error_at_end_ = 0, largest_coordinate_ = 0, seconds_ = 0;
-    std::int64_t worst_error_at_ = 0;
+    RunVerdict verdict_{scene_};
+    double seconds_ = 0;
     double first_step_after_ = 0;  // seconds; 0: there was none
     Pace pace_;
     std::int64_t first_ = 0, reached_ = 0, rounds_ = 0, counted_steps_ = 0, frames_beside_ = 0;
+    std::optional<std::int64_t> branched_at_;  // of a branch, or a restart of one
     int stopped_by_ = 0;
     std::map<std::string, std::string> values_of_scene_;  // for checkpoints, on rank 0
     double time_origin_ = 0, saved_at_ = 0;               // of time: at step 0; when the last checkpoint was written

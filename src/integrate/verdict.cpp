@@ -24,6 +24,8 @@ constexpr double standard_errors = 5;
 constexpr double forgotten_after = 5;
 constexpr std::size_t enough_frames = 8;
 
+char const* const causes_of_heat = ": the step is too long or the start overlaps: choose a smaller dynamics.step, or look at the start";
+
 double mean_of(std::vector<double> const& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -39,22 +41,11 @@ bool conserves_energy_of(ChainSpec const& chain) {
     return std::none_of(b.drag.begin(), b.drag.end(), [](auto const& d) { return d[0] > 0 || d[1] > 0; });
 }
 
-/// Whether loads from outside keep chains moving, however cold the thermostat is.
-bool is_pushed(Scene const& scene) {
-    if (norm(scene.forces.gravity) > 0) return true;
-    return std::any_of(scene.chains.begin(), scene.chains.end(), [](ChainSpec const& chain) {
-        BodyArrays const& b = chain.bodies;
-        return any(b.torque) || !b.driven.empty() ||
-               std::any_of(b.wrench.begin(), b.wrench.end(), [](auto const& w) { return norm(w.first) + norm(w.second) > 0; });
-    });
-}
-
 /// Whether kinetic energy is to tell the thermostat's temperature. Bodies in SI units that start at given velocities move far beyond
 /// theirs.
 bool is_thermal(Scene const& scene) {
     DynamicsSpec const& d = scene.dynamics;
-    if (!is_langevin(d.integrator) || is_implicit(d.integrator) || d.temperature <= 0 || d.friction <= 0) return false;
-    if (is_pushed(scene)) return false;
+    if (!is_langevin(d.integrator) || d.temperature <= 0 || d.friction <= 0) return false;
     auto const any_chain = [&](auto const& is) { return std::any_of(scene.chains.begin(), scene.chains.end(), is); };
     return !scene.si || any_chain([](ChainSpec const& chain) { return chain.velocities == StartVelocities::thermal; });
 }
@@ -96,19 +87,18 @@ double standard_error(std::vector<double> const& values) {
     return worst;
 }
 
-Fit fit_line(std::vector<double> const& values) {
-    double const n = static_cast<double>(values.size()), middle = 0.5 * (n - 1), mean = mean_of(values);
+Fit fit_line(std::vector<double> const& at, std::vector<double> const& values) {
+    double const middle = mean_of(at), mean = mean_of(values), length = at.back() - at.front();
     double along = 0, across = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
-        double const t = static_cast<double>(i) - middle;
-        along += t * t;
-        across += t * (values[i] - mean);
+        along += (at[i] - middle) * (at[i] - middle);
+        across += (at[i] - middle) * (values[i] - mean);
     }
     double const slope = across / along;
     std::vector<double> residual;
-    for (std::size_t i = 0; i < values.size(); ++i) residual.push_back(values[i] - mean - slope * (static_cast<double>(i) - middle));
+    for (std::size_t i = 0; i < values.size(); ++i) residual.push_back(values[i] - mean - slope * (at[i] - middle));
     // Correlated residuals count as the fewer independent ones that blocks tell of: the slope's error over that of a mean is 12^(1/2) / n.
-    return {slope * (n - 1), std::sqrt(12.0) * standard_error(residual), mean};
+    return {slope * length, std::sqrt(12.0) * standard_error(residual), mean};
 }
 
 bool EnergyWatch::conserves_energy(Scene const& scene) {
@@ -117,36 +107,32 @@ bool EnergyWatch::conserves_energy(Scene const& scene) {
     return std::all_of(scene.chains.begin(), scene.chains.end(), conserves_energy_of);
 }
 
-EnergyWatch::EnergyWatch(Scene const& scene) : scene_(scene), freedom_(static_cast<double>(degrees_of_freedom(scene))) {}
-
-void EnergyWatch::add(std::int64_t step, double kinetic, std::optional<double> potential) {
-    step_.push_back(step);
-    kinetic_.push_back(kinetic);
-    has_potential_ = has_potential_ && potential.has_value();
-    if (has_potential_) total_.push_back(kinetic + *potential);
-}
+EnergyWatch::EnergyWatch(Scene const& scene)
+    : scene_(scene),
+      freedom_(static_cast<double>(degrees_of_freedom(scene))),
+      heating_(is_thermal(scene) ? heating_of(scene, !has_energies(scene)) : Heating()) {}
 
 std::string EnergyWatch::span(double from, double to) const {
     return fmt::format("{:.5g} to {:.5g} {}", from, to, scene_.si ? "J" : "kJ/mol");
 }
 
 std::optional<RunCheck> EnergyWatch::energy() const {
-    if (!conserves_energy(scene_) || !has_potential_ || total_.size() < 2) return std::nullopt;
-    std::size_t const n = total_.size(), from = std::max<std::size_t>(1, n / 4);
-    std::vector<double> const later(total_.begin() + static_cast<std::ptrdiff_t>(from), total_.end());
+    std::size_t const n = series_.size(), from = std::max<std::size_t>(1, n / 4);
+    if (!conserves_energy(scene_) || !series_.has_potential() || n < 2) return std::nullopt;
+    std::vector<double> at, later;
+    for (std::size_t i = from; i < n; ++i) at.push_back(series_.middle(i)), later.push_back(series_.total(i));
     Fit fit{later.back() - later.front(), 0, mean_of(later)};
-    if (later.size() >= 4) fit = fit_line(later);
-    double largest = 0;
-    for (double const total : total_) largest = std::max(largest, std::abs(total));
-    double const kinetic = *std::max_element(kinetic_.begin(), kinetic_.end()), scale = std::max(kinetic, 1e-6 * largest);
-    RunCheck v{"energy", true, 0, worthless_drift, step_.back(), ""};
+    if (later.size() >= 4) fit = fit_line(at, later);
+    double const scale = std::max(series_.largest_kinetic(), 1e-6 * series_.largest_total());
+    std::int64_t const from_step = series_.first_step(from), last = series_.last_step();
+    RunCheck v{"energy", true, 0, worthless_drift, last, ""};
     if (scale == 0) return v;
     v.value = fit.change / scale;
-    double const noise = standard_errors * fit.error / scale, jump = (later.front() - total_.front()) / scale;
+    double const noise = standard_errors * fit.error / scale, jump = (later.front() - series_.first_total()) / scale;
     bool const drifts = std::abs(v.value) > noise;
     std::string const found = fmt::format(
         "total energy, which should be constant, drifted from {} between steps {} and {}, by {:.3g} +- {:.2g} of the kinetic energy",
-        span(fit.mean - 0.5 * fit.change, fit.mean + 0.5 * fit.change), step_[from], step_.back(), v.value, fit.error / scale);
+        span(fit.mean - 0.5 * fit.change, fit.mean + 0.5 * fit.change), from_step, last, v.value, fit.error / scale);
     if (!std::isfinite(v.value) || (drifts && std::abs(v.value) > worthless_drift)) {
         v.passed = false;
         v.advice = found + ": the step is too long: choose a smaller dynamics.step";
@@ -156,42 +142,70 @@ std::optional<RunCheck> EnergyWatch::energy() const {
         v.advice = fmt::format(
             "total energy, which should be constant, jumped from {} between steps {} and {} and stayed there: the step is too "
             "long for the start: choose a smaller dynamics.step",
-            span(total_.front(), later.front()), step_.front(), step_[from]);
+            span(series_.first_total(), later.front()), series_.first_step(0), from_step);
     }
     return v;
 }
 
-std::optional<RunCheck> EnergyWatch::temperature() const {
+EnergyWatch::Warmth EnergyWatch::warmth() const {
     DynamicsSpec const& d = scene_.dynamics;
-    if (!is_thermal(scene_) || freedom_ <= 0) return std::nullopt;
-    std::size_t const n = kinetic_.size(), from = std::max<std::size_t>(1, n / 2);
-    if (n < 2) return std::nullopt;
-    std::vector<double> ratio;
-    for (std::size_t i = from; i < n; ++i) ratio.push_back(2 * kinetic_[i] / (scene_.boltzmann() * freedom_ * d.temperature));
-    double const mean = mean_of(ratio), canonical = std::sqrt(2 / freedom_);
-    RunCheck v{"temperature", true, mean * d.temperature, worthless_heat * (1 + standard_errors * canonical) * d.temperature,
-               step_.back(),  ""};
-    std::string const found = fmt::format("temperature {:.4g} K over steps {} to {}, the thermostat's is {:.4g} K", v.value, step_[from],
-                                          step_.back(), d.temperature);
-    std::string const causes = ": the step is too long or the start overlaps: choose a smaller dynamics.step, or look at the start";
-    double const before = static_cast<double>(step_[from] - step_.front()) * d.step;
-    bool const forgotten = before * d.friction >= forgotten_after;
-    if (!(v.value <= v.limit)) {
-        // Velocities that the scene gives may be far from thermal until friction has taken them.
-        v.passed = std::isfinite(v.value) && !forgotten && starts_at_given_velocities(scene_);
-        v.advice = found + (v.passed ? ": the start's velocities are not forgotten yet: run longer" : causes);
+    std::size_t const n = series_.size(), from = std::max<std::size_t>(1, n / 2);
+    double const thermal = 0.5 * scene_.boltzmann() * freedom_ * d.temperature;
+    Warmth w;
+    for (std::size_t i = from; i < n; ++i) w.ratio.push_back(series_.kinetic(i) / thermal);
+    w.mean = mean_of(w.ratio);
+    w.from = series_.first_step(from);
+    w.lasted = static_cast<double>(series_.last_step() - w.from) * d.step;
+    w.forgotten = static_cast<double>(w.from - series_.first_step(0)) * d.step * d.friction >= forgotten_after;
+    double const independent = std::min(static_cast<double>(w.ratio.size()), std::max(1.0, w.lasted * d.friction));
+    double const own = w.ratio.size() < 2 ? 0 : standard_error(w.ratio);
+    w.error = std::max(own, std::sqrt(2 / freedom_) / std::sqrt(independent));
+    if (!heating_.is_pushed || w.lasted <= 0) return w;
+    w.added = heating_.excess / d.temperature;
+    // What the window lost of its energy friction took: so much kinetic energy was beyond the thermostat's.
+    double const time = (series_.middle(n - 1) - series_.middle(from)) * d.step;
+    if (!series_.has_potential()) return w;
+    w.error = std::hypot(w.error, 2 * std::sqrt(2 / freedom_) / (d.friction * time));
+    w.released = (series_.total(from) - series_.total(n - 1)) / (2 * d.friction * time * thermal);
+    return w;
+}
+
+std::string EnergyWatch::found(Warmth const& w) const {
+    return fmt::format("temperature {:.4g} K over steps {} to {}, the thermostat's is {:.4g} K", w.mean * scene_.dynamics.temperature,
+                       w.from, series_.last_step(), scene_.dynamics.temperature);
+}
+
+std::optional<RunCheck> EnergyWatch::temperature() const {
+    if (!is_thermal(scene_) || freedom_ <= 0 || series_.size() < 2) return std::nullopt;
+    Warmth const w = warmth();
+    double const of_thermostat = scene_.dynamics.temperature, canonical = std::sqrt(2 / freedom_);
+    double const most = worthless_heat * (1 + standard_errors * canonical + std::max(0.0, w.released) + w.added);
+    RunCheck v{"temperature", true, w.mean * of_thermostat, most * of_thermostat, series_.last_step(), ""};
+    if (heating_.is_pushed && !heating_.unknown.empty()) {
+        v.advice = "temperature is not checked: " + heating_.unknown;
         return v;
     }
-    double const lasted = static_cast<double>(step_.back() - step_[from]) * d.step;
-    if (ratio.size() < enough_frames || !forgotten) return v;
-    double const independent = std::min(static_cast<double>(ratio.size()), std::max(1.0, lasted * d.friction));
-    double const error = std::max(standard_error(ratio), canonical / std::sqrt(independent));
-    double const away = std::abs(mean - 1);
-    if (away <= said_heat || away <= standard_errors * error) return v;
-    v.passed = mean < 1 + worthless_heat_in_equilibrium;
-    v.advice = fmt::format("{} ({:.0f} standard errors away)", found, away / error);
-    v.advice += v.passed ? ": the step is long for these forces: a smaller dynamics.step brings it nearer" : causes;
+    if (heating_.is_pushed && w.ratio.size() < enough_frames) return std::nullopt;
+    if (!(v.value <= v.limit)) {
+        // Velocities that the scene gives may be far from thermal until friction has taken them.
+        v.passed = std::isfinite(v.value) && !w.forgotten && (begins_midway_ || starts_at_given_velocities(scene_));
+        v.advice = found(w) + (v.passed ? ": the start's velocities are not forgotten yet: run longer" : causes_of_heat);
+        return v;
+    }
+    // What implicit springs' rotors hold of kinetic energy is not in the frames: it is not too much, all the same.
+    if (w.ratio.size() >= enough_frames && w.forgotten && !is_implicit(scene_.dynamics.integrator)) judge(w, v);
     return v;
+}
+
+void EnergyWatch::judge(Warmth const& w, RunCheck& v) const {
+    double const cold = 1 + w.released, warm = cold + w.added, away = std::max(cold - w.mean, w.mean - warm);
+    if (away > said_heat * std::max(1.0, warm) && away > standard_errors * w.error) {
+        v.passed = w.mean < warm + worthless_heat_in_equilibrium * std::max(1.0, warm);
+        v.advice = fmt::format("{} ({:.0f} standard errors away)", found(w), away / w.error);
+        v.advice += v.passed ? ": the step is long for these forces: a smaller dynamics.step brings it nearer" : causes_of_heat;
+    } else if (w.added > said_heat) {
+        v.advice = fmt::format("{}: loads may add up to {:.3g} K, so that less heat than that is not noticed", found(w), heating_.excess);
+    }
 }
 
 RunCheck joints_verdict(double largest, double tolerance, std::int64_t step, std::string const& of_step) {

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "integrate/energy_series.hpp"
+#include "integrate/heating.hpp"
 #include "scene/scene.hpp"
 
 namespace catena {
@@ -28,8 +30,8 @@ struct Fit {
     double error = 0;   // of the change, one standard error
     double mean = 0;
 };
-/// Values at equal distances. Precondition: at least 4.
-Fit fit_line(std::vector<double> const& values);
+/// Values at ascending places of about equal distances. Precondition: at least 4.
+Fit fit_line(std::vector<double> const& at, std::vector<double> const& values);
 /// The standard error of the mean of correlated values: the largest that blocks of 1, 2, 4, ... values give (Flyvbjerg & Petersen, J. Chem.
 /// Phys. 91, 461, 1989). Precondition: at least 2.
 double standard_error(std::vector<double> const& values);
@@ -39,22 +41,41 @@ class EnergyWatch {
   public:
     explicit EnergyWatch(Scene const&);
     /// A frame's; `potential`: where it was found.
-    void add(std::int64_t step, double kinetic, std::optional<double> potential);
+    void add(std::int64_t step, double kinetic, std::optional<double> potential) { series_.add(step, kinetic, potential); }
+    /// What a checkpoint keeps of the frames so far, and the same taken back: a restart judges the whole run. Returns false where no run of
+    /// so many steps can have kept that.
+    std::vector<double> state() const { return series_.state(); }
+    bool set_state(std::vector<double> const& state, std::int64_t steps) { return series_.set_state(state, steps); }
+    /// The frames begin at another run's state, which may be far from the thermostat's temperature.
+    void begins_midway() { begins_midway_ = true; }
     /// Of what conserves its energy: drift over the last three quarters of the frames against kinetic energy, and a jump before.
     std::optional<RunCheck> energy() const;
-    /// Of what a thermostat holds: the second half of the frames.
+    /// Of what a thermostat holds: the second half of the frames. Under gravity, less what potential energy gave; under torques and
+    /// wrenches, beyond what these can add at most.
     std::optional<RunCheck> temperature() const;
 
     /// Nothing puts energy in or takes it out: no thermostat, damper, drag, drive or load from outside.
     static bool conserves_energy(Scene const&);
 
   private:
+    /// The second half of the frames. Energies are divided by the thermostat's kinetic energy.
+    struct Warmth {
+        std::vector<double> ratio;       // kinetic energy of each entry
+        double mean = 0, error = 0;      // of the ratios; one standard error
+        double released = 0, added = 0;  // kinetic energy that a fall of potential energy and work keep up; the second at most
+        double lasted = 0;               // time
+        std::int64_t from = 0;           // step
+        bool forgotten = false;          // the start is
+    };
+    Warmth warmth() const;
+    std::string found(Warmth const&) const;
+    void judge(Warmth const&, RunCheck&) const;
     std::string span(double from, double to) const;
     Scene const& scene_;
     double freedom_;  // degrees
-    std::vector<std::int64_t> step_;
-    std::vector<double> kinetic_, total_;  // total_: empty from where a frame has no potential energy
-    bool has_potential_ = true;
+    Heating heating_;
+    EnergySeries series_;
+    bool begins_midway_ = false;
 };
 
 /// Joints: the largest error and where it was.

@@ -40,7 +40,7 @@ void fill_region(std::vector<Draft>& drafts, Vec3 const& box, Vec3 const& fill, 
             fail(node,
                  fmt::format("`fill` is for free chains of beads without positions, which chain `{}` is not", shown(draft.chain.name)),
                  "leave `fill` out, or let the scene place every chain");
-    give_places(drafts, fill, seed);
+    give_places(drafts, fill, seed, "the region to fill");
     for (Draft& draft : drafts) bring_in(draft.chain.beads.position, box, fill);
 }
 

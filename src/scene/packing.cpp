@@ -31,19 +31,19 @@ double volume_of(Crowd const& crowd) {
     return volume;
 }
 
-void refuse_impossible(Crowd const& crowd, Node const& node) {
+void refuse_impossible(Crowd const& crowd, Node const& node, char const* name) {
     Vec3 const& box = crowd.box;
     if (crowd.at.size() > most_points)
-        fail(node, fmt::format("{} beads to pack", crowd.at.size()), fmt::format("pack {} or fewer, or enlarge the box", most_points));
+        fail(node, fmt::format("{} beads to pack", crowd.at.size()), fmt::format("pack {} or fewer", most_points));
     double const edge = std::min({box[0], box[1], box[2]});
     if (edge < narrowest * crowd.excluded * (1 - 1e-9))
-        fail(node, fmt::format("the box {} is too narrow to pack chains whose beads keep {:.4g} nm apart", text_of(box), crowd.excluded),
+        fail(node, fmt::format("{} {} is too narrow to pack chains whose beads keep {:.4g} nm apart", name, text_of(box), crowd.excluded),
              fmt::format("give edges of {:.4g} nm or more", narrowest * crowd.excluded));
     double const filled = volume_of(crowd) / (box[0] * box[1] * box[2]);
     if (filled > densest)
         fail(node,
-             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of the box {}, random packings of spheres fill {:.2g}",
-                         crowd.movable(), crowd.excluded, filled, text_of(box), densest),
+             fmt::format("{} beads that keep {:.4g} nm apart would fill {:.3g} of {} {}, random packings of spheres fill {:.2g}",
+                         crowd.movable(), crowd.excluded, filled, name, text_of(box), densest),
              fmt::format("make each edge {:.3g} times as long or longer, or lower `count`", std::cbrt(filled / densest) + 5e-4));
 }
 
@@ -71,19 +71,19 @@ Crowd crowd_of(std::vector<Draft> const& drafts, Vec3 const& box) {
 
 }  // namespace
 
-void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed) {
+void pack(std::vector<Draft>& drafts, Vec3 const& box, std::uint64_t seed, char const* name) {
     Crowd crowd = crowd_of(drafts, box);
     auto const first = std::find_if(drafts.begin(), drafts.end(), [](Draft const& d) { return d.regrown == Regrown::yes; });
-    refuse_impossible(crowd, *first->node);
+    refuse_impossible(crowd, *first->node, name);
     std::uint64_t constexpr packing = std::uint64_t{1} << 63;  // apart from the streams of single chains
     grow(crowd, seed_of_stream(seed, packing));
     Relaxed const relaxed = relax(crowd, most_steps);
     if (relaxed.overlaps > 0)
         fail(*first->node,
-             fmt::format("packing {} chains into the box {} left {} pairs of beads nearer than {:.4g} nm, the nearest at {:.3g} nm, after "
+             fmt::format("packing {} chains into {} {} left {} pairs of beads nearer than {:.4g} nm, the nearest at {:.3g} nm, after "
                          "{} steps",
-                         crowd.chains(), text_of(box), relaxed.overlaps, crowd.excluded, relaxed.nearest, relaxed.steps),
-             "enlarge the box or lower `count`");
+                         crowd.chains(), name, text_of(box), relaxed.overlaps, crowd.excluded, relaxed.nearest, relaxed.steps),
+             fmt::format("enlarge {} or lower `count`", name));
     std::size_t next = 0;
     for (Draft& draft : drafts)
         if (draft.regrown == Regrown::yes)

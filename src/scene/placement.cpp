@@ -58,19 +58,26 @@ Sphere sphere_of(Draft const& draft) {
     return sphere;
 }
 
-[[noreturn]] void refuse(Draft const& draft, Vec3 const& box, std::size_t room, double width, std::size_t wanted) {
+/// A box, or a region that is filled as one.
+struct Room {
+    std::optional<Vec3> const& edges;
+    char const* name;
+};
+
+[[noreturn]] void refuse(Draft const& draft, Room const& in, std::size_t room, double width, std::size_t wanted) {
+    Vec3 const& edges = *in.edges;
     bool const residues = draft.regrown == Regrown::if_asked;
     fail(*draft.node,
-         fmt::format("the box {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within a sphere {:.4g} wide, not for {}",
-                     box[0], box[1], box[2], room, width, wanted),
-         residues
-             ? "enlarge the box, lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"
-             : "enlarge the box or lower `count`; only free chains of residues without `positions` are packed more densely");
+         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within a sphere {:.4g} wide, not for {}",
+                     in.name, edges[0], edges[1], edges[2], room, width, wanted),
+         std::string("enlarge ") + in.name +
+             (residues ? ", lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"
+                       : " or lower `count`; only free chains of residues without `positions` are packed more densely"));
 }
 
 /// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box has no room for chains that can be grown
 /// into it instead.
-bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed, std::optional<Vec3> const& box) {
+bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed, Room const& box) {
     std::vector<Sphere> spheres;
     double width = 0;
     for (Draft const* const draft : moving) {
@@ -78,10 +85,10 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
         width = std::max(width, 2 * spheres.back().radius + spheres.back().gap);
     }
     if (width == 0) width = 1;  // lone beads: any distance will do
-    std::vector<Vec3> const cells = PlaceGrid(placed, width, box).find(moving.size());
+    std::vector<Vec3> const cells = PlaceGrid(placed, width, box.edges).find(moving.size());
     if (cells.size() < moving.size()) {
         if (std::any_of(moving.begin(), moving.end(), is_regrown)) return false;
-        refuse(*moving.front(), *box, cells.size(), width, moving.size());
+        refuse(*moving.front(), box, cells.size(), width, moving.size());
     }
     for (std::size_t i = 0; i < moving.size(); ++i) {
         refuse_far(*moving[i], {cells[i], spheres[i].radius, 0});
@@ -92,7 +99,8 @@ bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> c
 
 }  // namespace
 
-void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed) {
+void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed, char const* name) {
+    Room const room{box, name};
     std::vector<Draft*> moving;
     std::vector<Sphere> placed;
     for (Draft& draft : drafts) {
@@ -101,11 +109,11 @@ void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std
         else
             placed.push_back(sphere_of(draft));
     }
-    if (moving.empty() || place_side_by_side(moving, placed, box)) return;
+    if (moving.empty() || place_side_by_side(moving, placed, room)) return;
     // Chains that keep their shape take their places first, the others grow around them.
     moving.erase(std::remove_if(moving.begin(), moving.end(), is_regrown), moving.end());
-    if (!moving.empty()) place_side_by_side(moving, placed, box);
-    pack(drafts, *box, seed);
+    if (!moving.empty()) place_side_by_side(moving, placed, room);
+    pack(drafts, *box, seed, name);
 }
 
 }  // namespace catena::scene

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 #include "force/calvados2.hpp"
@@ -49,7 +50,7 @@ Residues residues_named(PdbSites const& from, Node const& source, Scene& scene) 
     return residues;
 }
 
-/// How the file numbers its residues; empty where it does not.
+/// How the file numbers its residues; empty where it does not number all of them.
 std::vector<std::string> labels_of(PdbSites const& from) {
     std::vector<std::string> labels;
     for (PdbSite const& site : from.sites) {
@@ -73,7 +74,12 @@ void note_numbering(ChainRequest const& request, std::vector<std::string> const&
 void set_rigid(ChainRequest& request, Node const& rigid, std::size_t residues, PdbSites const& from) {
     std::vector<std::string> const labels = labels_of(from);
     request.rigid = read_domains(rigid, residues, labels);
-    note_numbering(request, labels, from.file);
+    if (!labels.empty()) return note_numbering(request, labels, from.file);
+    auto const bare = std::find_if(from.sites.begin(), from.sites.end(), [](PdbSite const& site) { return !site.number; });
+    if (bare == from.sites.end()) return;
+    request.scene.note(fmt::format("`rigid` means beads, numbered from 1: `{}` has no residue number that can be read for bead {}, {}{}",
+                                   from.file, bare - from.sites.begin() + 1, shown(bare->residue),
+                                   bare->label.empty() ? "" : " `" + bare->label + "`"));
 }
 
 void set_residues(BeadArrays& beads, Residues const& residues, calvados2::ChargedTermini termini) {

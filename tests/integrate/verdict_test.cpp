@@ -7,8 +7,11 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
+#include "dca/lost_matrix.hpp"
 #include "error.hpp"
 #include "integrate/closing.hpp"
+#include "integrate/run_verdict.hpp"
+#include "integrate/step_failure.hpp"
 
 namespace catena::test {
 namespace {
@@ -100,6 +103,92 @@ TEST(Verdict, AShortRunFromAColdStartIsValid) {
     RunCheck const v = warm(scene, 0.01, 20, 1).temperature().value();
     EXPECT_TRUE(v.passed);
     EXPECT_EQ(v.advice, "");
+}
+
+TEST(Verdict, ALongRunKeepsMeansOfItsFrames) {
+    Scene const scene = chain_under("rattle");
+    EnergyWatch watch(scene);
+    int const frames = 50000;
+    for (int i = 0; i < frames; ++i) watch.add(10 * i, 500, 1e-3 * i - 200.0);
+    RunCheck const v = watch.energy().value();
+    EXPECT_NEAR(v.value, 0.75 * 1e-3 * frames / 500, 2e-3);
+    EXPECT_EQ(v.step, 10 * (frames - 1));
+    EXPECT_LE(watch.state().size(), 5 * (EnergySeries::most + 1));
+    EnergyWatch restarted(scene);
+    EXPECT_TRUE(restarted.set_state(watch.state(), v.step));
+    EXPECT_EQ(restarted.energy().value().advice, v.advice);
+    EXPECT_FALSE(restarted.set_state(watch.state(), v.step - 1)) << "frames beyond the checkpoint's step";
+    // The checkpoint's frame comes again.
+    restarted.add(v.step, 1e9, 0.0);
+    EXPECT_EQ(restarted.state(), watch.state());
+}
+TEST(Verdict, NonFiniteEnergiesStayInvalid) {
+    Scene const scene = chain_under("rattle");
+    EnergyWatch watch(scene);
+    for (int i = 0; i < 10; ++i) watch.add(i, 500, i == 5 ? std::nan("") : 0.0);
+    EXPECT_FALSE(watch.energy().value().passed);
+    EnergyWatch restarted(scene);
+    EXPECT_TRUE(restarted.set_state(watch.state(), 9));
+    EXPECT_FALSE(restarted.energy().value().passed);
+}
+TEST(Verdict, TheWorstJointKeepsItsStepOverARestart) {
+    Scene const scene = chain_under("rattle");
+    RunVerdict first(scene), second(scene), earlier(scene);
+    first.note_error(12, 1e-6);
+    first.note_error(20, 1e-7);
+    Checkpoint c;
+    c.step = 20;
+    first.save(c);
+    EXPECT_EQ(second.restore(c), "");
+    second.note_error(25, 1e-8);
+    second.note_end(30, 0);
+    EXPECT_EQ(second.checks().at(0).step, 12);
+    EXPECT_FALSE(second.checks().at(0).passed);
+    c.arrays.erase("verdict_frames");
+    c.integers.clear();
+    EXPECT_NE(earlier.restore(c).find("from 20 on alone"), std::string::npos);
+    EXPECT_EQ(earlier.checks().at(0).step, 20);
+}
+
+/// The mean of frames `above` the thermostat's temperature, of a chain with loads.
+RunCheck temperature_of(Scene const& scene, double times) { return warm(scene, times, 1000, 100).temperature().value(); }
+TEST(Verdict, PrescribedMotionsSayThatTheTemperatureIsNotChecked) {
+    Scene const scene = parse_scene(
+        "chains: [{name: c, base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: revolute, axis: [0, 0, 1], motion: {rate: "
+        "1}}},"
+        "{mass: 1, inertia: [1, 1, 1], joint: {type: spherical, translation: [1, 0, 0]}}]}]\n"
+        "dynamics: {integrator: baoab, step: 0.01, steps: 1000, temperature: 300, friction: 1}\n",
+        "scene.yaml");
+    RunCheck const v = temperature_of(scene, 1e3);
+    EXPECT_TRUE(v.passed);
+    EXPECT_NE(v.advice.find("not checked: motions are prescribed"), std::string::npos) << v.advice;
+}
+TEST(Verdict, ATorqueAddsNoMoreThanFrictionLetsIt) {
+    // tau^2 / (I friction^2 dof kB) = 1 / (1 * 1 * 1 * 0.00831446) = 120.27 K of a lone rotor.
+    Scene const scene = parse_scene(
+        "chains: [{name: c, base: fixed, bodies: [{mass: 1, inertia: [2, 3, 1], joint: {type: revolute, axis: [0, 0, 1], torque: 1}}]}]\n"
+        "dynamics: {integrator: baoab, step: 0.01, steps: 1000, temperature: 300, friction: 1}\n",
+        "scene.yaml");
+    EXPECT_NEAR(heating_of(scene, false).excess, 120.27, 0.01);
+    EnergyWatch mild(scene), hot(scene);
+    for (int i = 0; i < 1000; ++i) {
+        double const thermal = 0.5 * scene.boltzmann() * 300;
+        mild.add(100 * i, 1.4 * thermal, 0.0), hot.add(100 * i, 2.2 * thermal, 0.0);
+    }
+    EXPECT_TRUE(mild.temperature().value().passed);
+    EXPECT_NE(mild.temperature().value().advice.find("120 K"), std::string::npos);
+    EXPECT_FALSE(hot.temperature().value().passed);
+}
+
+TEST(Failure, WithinAStepNamesTheStepBeforeTheMasses) {
+    Scene const scene = chain_under("rattle");
+    std::string const lost = std::string("a matrix is lost (body 2): ") + dca::cause_of_lost_matrix;
+    EXPECT_EQ(failure_in_step(0, lost, scene, false), "at step 0: " + lost);
+    EXPECT_EQ(
+        failure_in_step(7, lost, scene, true),
+        "at step 7: a matrix is lost (body 2): dynamics.step = 0.01 is too long for forces and speeds there: choose a smaller one; else " +
+            std::string(dca::cause_of_lost_matrix));
+    EXPECT_EQ(failure_in_step(7, "no disk", scene, true), "at step 7: no disk");
 }
 
 TEST(Verdict, CoordinatesBeyondWhatResolvesLinksAreInvalid) {
