@@ -32,8 +32,10 @@ Descent::Ended Descent::run(Limits const& limits, Tell const& tell) {
         double const before = ended.energy;
         ended.energy = forces_.energy();
         tell(ended.evaluations, ended.energy);
-        double const fall = largest_force_ > limits.large_force ? limits.last_fall : limits.fall;
-        if (std::isfinite(ended.energy) && before - ended.energy < fall) {
+        bool const pushed = largest_force_ > limits.large_force;
+        double const fall = before - ended.energy;
+        // Where overlaps push, the energy rises at times before it falls.
+        if (std::isfinite(ended.energy) && (pushed ? std::abs(fall) < limits.last_fall : fall < limits.fall)) {
             ended.at_rest = true;
             break;
         }

