@@ -2,8 +2,10 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/terminal.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
+#include "integrate/start_relaxation.hpp"
 #include "integrate/start_report.hpp"
 
 namespace catena::command {
@@ -16,7 +18,7 @@ struct Found {
 };
 
 Found find(Scene const& scene, Communicator const& communicator) {
-    std::optional<RelaxedScene> relaxed = relaxed_where_asked(scene, communicator);
+    std::optional<RelaxedScene> relaxed = relaxed_where_asked(scene, communicator, relaxation_says(is_quiet()));
     Found found;
     found.start.change = scene.start;
     if (relaxed) found.start.relaxation = relaxed->relaxation;

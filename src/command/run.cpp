@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -56,6 +58,14 @@ std::string shares_text(nlohmann::json const& parallel) {
            (parallel.at("shares_from") == "checkpoint" ? "the checkpoint's shares" : "the ranks' speeds, as measured at the start");
 }
 
+/// Before or after relaxation.
+std::string relaxed_text(nlohmann::json const& forces) {
+    double const potential = number(forces, "potential_energy");
+    std::string const energy = std::isfinite(potential) ? fmt::format("{:.6g} kJ/mol", potential) : "no finite energy";
+    if (!forces.contains("nearest_distance")) return energy;
+    return energy + fmt::format(" (nearest beads {:.3g} nm apart)", number(forces, "nearest_distance"));
+}
+
 /// What was changed of the start that the user gave, and its energy.
 void add_start(Text& text, nlohmann::json const& start, char const* unit) {
     if (double const change = number(start, "largest_link_change"); change > 0)
@@ -64,11 +74,9 @@ void add_start(Text& text, nlohmann::json const& start, char const* unit) {
                                         start.at("bead").get<std::string>()));
     if (auto const relaxed = start.find("relaxation"); relaxed != start.end()) {
         auto const &from = relaxed->at("from"), &to = relaxed->at("to");
-        text.entry("relaxation", fmt::format("{} steps, beads moved by up to {:.3g} nm: {:.6g} to {:.6g} kJ/mol, nearest beads {:.3g} to "
-                                             "{:.3g} nm apart",
-                                             relaxed->at("steps").get<std::int64_t>(), number(*relaxed, "largest_displacement"),
-                                             number(from, "potential_energy"), number(to, "potential_energy"),
-                                             number(from, "nearest_distance"), number(to, "nearest_distance")));
+        text.entry("relaxation",
+                   fmt::format("{} evaluations, beads moved by up to {:.3g} nm: {} to {}", relaxed->at("steps").get<std::int64_t>(),
+                               number(*relaxed, "largest_displacement"), relaxed_text(from), relaxed_text(to)));
     }
     if (start.contains("potential_energy"))
         text.entry("energy at the start",

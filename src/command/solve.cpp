@@ -8,6 +8,7 @@
 
 #include "command/commands.hpp"
 #include "command/describe.hpp"
+#include "command/terminal.hpp"
 #include "dca/oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/observables.hpp"
@@ -216,7 +217,7 @@ std::string complaint_of(Scene const& scene, ForwardError const& error, double r
 
 Outcome solve_chosen(Scene const& given, Communicator const& communicator, SolveRequest const& request, std::string const& reason) {
     bool const thermal = starts_thermal(given);
-    std::optional<RelaxedScene> relaxed = relaxed_where_asked(given, communicator);
+    std::optional<RelaxedScene> relaxed = relaxed_where_asked(given, communicator, relaxation_says(is_quiet()));
     if (!relaxed) refuse_coinciding(given, communicator);
     Scene const scene = with_start_velocities(relaxed ? std::move(relaxed->scene) : given, communicator);
     ChainSystem system(scene, Axes::joint, communicator);

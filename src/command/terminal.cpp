@@ -51,4 +51,6 @@ void start_log(std::string const& level) {
     spdlog::set_default_logger(logger);
 }
 
+bool is_quiet() { return spdlog::get_level() >= spdlog::level::err; }
+
 }  // namespace catena::command

@@ -14,5 +14,7 @@ void print(std::string const& text);
 void say_error(std::string const& line);
 /// The log on standard error: "catena: warning: ...". `level`: as spdlog names it.
 void start_log(std::string const& level);
+/// Whether errors alone are logged.
+bool is_quiet();
 
 }  // namespace catena::command

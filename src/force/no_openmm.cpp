@@ -1,5 +1,6 @@
 // A build without OpenMM: every way to it says so.
 #include "error.hpp"
+#include "force/openmm_contacts.hpp"
 #include "force/openmm_force.hpp"
 #include "force/openmm_import.hpp"
 #include "force/openmm_own.hpp"
@@ -13,6 +14,10 @@ char const* const remedy = "install OpenMM (pip install openmm, or Debian's libo
 }  // namespace
 
 std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, ChainsOnDevice const&) {
+    throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
+}
+
+std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const&, BeadSystem const& beads, Communicator const&, double) {
     throw built_without("OpenMM", beads.scene_file + ": forces.openmm", remedy);
 }
 

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <exception>
 #include <new>
+#include <optional>
 #include <utility>
 
 #include "clock.hpp"
 #include "error.hpp"
 #include "force/force_layers.hpp"
 #include "force/openmm_box.hpp"
+#include "force/openmm_contacts.hpp"
 #include "force/openmm_path.hpp"
 #include "force/openmm_rank.hpp"
 #include "force/openmm_subset.hpp"
@@ -347,16 +349,15 @@ auto accepted(std::string const& where, Action const& action) {
     }
 }
 
-}  // namespace
-
-std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
-                                               ChainsOnDevice const& chains) {
+std::unique_ptr<OpenMmForce> make_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                        ChainsOnDevice const& chains, std::optional<double> reach) {
     std::string const where = beads.scene_file + ": forces.openmm";
     OpenMmModel model;
     OpenMmPlatform platform;
     on_all(communicator, [&] {
         model = model_of(spec, beads, communicator, where);
         refuse_box_beyond_cutoffs(*model.system, beads.scene_file + ": box");
+        if (reach) shorten_pair_forces(*model.system, *reach);
         platform = accepted(where, [&] { return choose_platform(spec, beads, communicator, chains.device); });
     });
     std::string const why_no_device = first_words(communicator, cannot_stay_on_device(spec, platform, communicator, chains));
@@ -369,6 +370,18 @@ std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSyste
         });
     });
     return force;
+}
+
+}  // namespace
+
+std::unique_ptr<OpenMmForce> make_openmm_force(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                               ChainsOnDevice const& chains) {
+    return make_force(spec, beads, communicator, chains, std::nullopt);
+}
+
+std::unique_ptr<OpenMmForce> make_openmm_contacts(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                                  double reach) {
+    return make_force(spec, beads, communicator, {no_gpu_asked_for, -1}, reach);
 }
 
 }  // namespace catena

@@ -23,6 +23,9 @@ double constexpr thermal_force = 400;     // kT/nm: five times what a stiff bond
 double constexpr largest_force = 10'000;  // kT/nm: within a thousandth of a nanometre it does ten times kT
 double constexpr touching = 0.45;         // nm: the smallest diameter of a residue's bead
 double constexpr coinciding = 0.15;       // nm: forces may not be finite below
+double constexpr as_near = 1.05;          // of the smallest distance
+double constexpr least_distance = 1e-6;   // nm: cells have a width
+double constexpr straight_within = 1e-6;  // sine of the angle between two links
 double constexpr looked_at = 0.7;         // nm: further apart no two beads overlap
 
 /// Pairs that a link, a joint or a body holds together.
@@ -71,6 +74,40 @@ std::optional<scene::NearPair> nearest_of(Scene const& scene, BeadSystem const& 
     return scene::nearest_pair(positions, scene.box, within, [&](std::size_t a, std::size_t b) { return !joined(a, b); });
 }
 
+/// Of the pairs that are as near as the nearest, to a few hundredths of their distance, the one on whose beads the largest forces act.
+std::optional<scene::NearPair> worst_of(Scene const& scene, BeadSystem const& beads, std::vector<Vec3> const& positions,
+                                        std::vector<Vec3> const& forces) {
+    std::optional<scene::NearPair> worst = nearest_of(scene, beads, positions, looked_at);
+    if (!worst) return worst;
+    Joined const joined(beads);
+    double felt = -1;
+    double const within = std::max(as_near * worst->distance, least_distance);
+    scene::for_each_near_pair(positions, scene.box, within, [&](std::size_t a, std::size_t b, Vec3 const& apart) {
+        if (joined(a, b)) return;
+        double const both = norm(forces[a]) + norm(forces[b]);
+        // Not `<=`: what is not finite is felt most.
+        if (!(both <= felt)) worst = scene::NearPair{a, b, norm(apart)}, felt = both;
+    });
+    return worst;
+}
+
+/// The middle bead of the first three neighbours in a chain that lie on a line, as far as positions resolve it.
+std::optional<std::size_t> middle_of_straight(BeadSystem const& beads, std::vector<Vec3> const& positions) {
+    for (std::size_t c = 0; c + 1 < beads.chain_offset.size(); ++c)
+        for (std::int64_t k = beads.chain_offset[c] + 1; k + 1 < beads.chain_offset[c + 1]; ++k) {
+            auto const b = static_cast<std::size_t>(k);
+            Vec3 const in = positions[b] - positions[b - 1], out = positions[b + 1] - positions[b];
+            if (norm(cross(in, out)) <= straight_within * norm(in) * norm(out)) return b;
+        }
+    return std::nullopt;
+}
+
+[[noreturn]] void refuse_straight(Scene const& scene, BeadSystem const& beads, std::size_t middle) {
+    throw InputError(fmt::format("forces at the start are not finite: {} and its neighbours lie on a line, where torsions are undefined",
+                                 name_of(beads, middle)),
+                     scene.file, "write `relax: true`, which bends the chain, or give other positions");
+}
+
 char const* const other_positions = "write `relax: true`, or give other positions";
 
 std::string overlap_text(std::string const& pair, double distance) {
@@ -108,7 +145,7 @@ StartForces start_forces_of(Scene const& scene, BeadSystem const& beads, std::ve
             if (!std::isfinite(force)) break;
         }
     if (!forces.empty()) found.force_at = name_of(beads, worst);
-    if (auto const near = nearest_of(scene, beads, positions, looked_at))
+    if (auto const near = worst_of(scene, beads, positions, forces))
         found.nearest = near->distance, found.nearest_pair = name_of(beads, *near);
     return found;
 }
@@ -120,29 +157,33 @@ StartForces look_at_start(ChainSystem& system) {
     StartForces found;
     on_first_rank(system.communicator(), [&] {
         found = start_forces_of(system.scene(), system.beads(), bead_positions_of(system.scene()), forces, energy);
-        refuse_absurd(system.scene(), found, false);
+        refuse_absurd(system.scene(), found);
     });
     return found;
 }
 
-void refuse_absurd(Scene const& scene, StartForces const& start, bool relaxed) {
+void refuse_absurd(Scene const& scene, StartForces const& start, std::string const& relaxation) {
     if (!start.is_absurd()) return;
     bool const overlap = start.nearest >= 0 && start.nearest < touching;
-    std::string what = relaxed ? "after relaxation " : "";
+    std::string what = relaxation.empty() ? "" : fmt::format("after relaxation ({}) ", relaxation);
     what += overlap ? overlap_text(start.nearest_pair, start.nearest) : "the start positions are far from any thermal state: ";
     what += "potential energy " + (overlap ? start.energy_text() : start.text());
-    throw InputError(what, scene.file, relaxed ? "give other positions" : other_positions);
+    throw InputError(what, scene.file, relaxation.empty() ? other_positions : "give other positions");
 }
 
 void refuse_coinciding(Scene const& scene, Communicator const& communicator) {
     if (!scene.forces.openmm) return;
     on_first_rank(communicator, [&] {
         std::vector<Vec3> const positions = bead_positions_of(scene);
-        auto const near = nearest_of(scene, bead_system_of(scene), positions, coinciding);
-        if (!near) return;
+        BeadSystem const beads = bead_system_of(scene);
+        bool const near = nearest_of(scene, beads, positions, coinciding).has_value();
+        bool const torsions = !scene.forces.openmm->system.empty();  // perhaps
+        std::optional<std::size_t> const straight = torsions ? middle_of_straight(beads, positions) : std::nullopt;
+        if (!near && !straight) return;
         LoneForces forces(scene);
         LoneForces::Evaluation const found = forces.at(positions);
-        refuse_absurd(scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy), false);
+        if (!near && !forces.are_finite()) refuse_straight(scene, beads, *straight);
+        refuse_absurd(scene, start_forces_of(scene, forces.beads(), positions, found.forces, found.energy));
     });
 }
 

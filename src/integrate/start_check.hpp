@@ -17,7 +17,7 @@ struct StartForces {
     double temperature = 0;    // K
     double largest_force = 0;  // kJ/mol/nm
     std::string force_at;      // "bead 21 of chain `p`"
-    double nearest = -1;       // distance of the nearest beads that no link or body joins; -1: they are further apart than 0.7 nm
+    double nearest = -1;       // of beads that no link or body joins, those that feel most of the nearest; -1: further apart than 0.7 nm
     std::string nearest_pair;  // "beads 21 and 40 of chain `p`"
 
     /// More potential energy than thermal motion has, ten times over, and a force that no thermal motion meets; or a force that throws a
@@ -37,11 +37,12 @@ StartForces start_forces_of(Scene const&, BeadSystem const& beads, std::vector<V
 /// InputError, which names the nearest beads, where the start is absurd. Collective.
 StartForces look_at_start(ChainSystem&);
 
-/// InputError where forces at the start are absurd: `relaxed`, as relaxation left them.
-void refuse_absurd(Scene const&, StartForces const&, bool relaxed);
+/// InputError where forces at the start are absurd. `relaxation`: what relaxation did before, in words; empty: there was none.
+void refuse_absurd(Scene const&, StartForces const&, std::string const& relaxation = "");
 
-/// InputError where beads so near that OpenMM's forces may not be finite make the start absurd, found by rank 0 before anything is computed
-/// with others. Nothing without OpenMM's forces. Collective.
+/// InputError where beads so near that OpenMM's forces may not be finite make the start absurd, and where a System's forces are not finite
+/// on beads that lie on a line, as torsions are: found by rank 0 before anything is computed with others. Nothing without OpenMM's forces.
+/// Collective.
 void refuse_coinciding(Scene const&, Communicator const&);
 
 }  // namespace catena

@@ -31,8 +31,7 @@ std::vector<std::pair<std::string, std::string>> lines_of(Scene const& scene, St
         {"largest link change", change_text(report.change.link, unit, report.change.link_at)},
         {"largest displacement", change_text(report.change.position, unit, report.change.moved_at)}};
     if (report.relaxation) {
-        lines.emplace_back("relaxation",
-                           fmt::format("{} steps, beads moved by up to {:.3g} nm", report.relaxation->steps, report.relaxation->moved));
+        lines.emplace_back("relaxation", report.relaxation->way_text());
         lines.emplace_back("energy before", report.relaxation->from.text());
     }
     if (report.forces) lines.emplace_back(report.relaxation ? "energy after" : "energy", report.forces->text());

@@ -123,7 +123,9 @@ std::string ChainRequest::name() const {
 
 void ChainRequest::place(BeadArrays& beads, std::vector<Vec3> const& positions, Node const& from) const {
     beads.position = positions;
-    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`");
+    double const spread = system ? system->largest_spread(particle, static_cast<std::int64_t>(beads.size())) : 0;
+    StartFit fit(scene, from, "give positions of this model, or write `links: as_given`", largest_change_of(spread),
+                 system ? largest_relaxed_change : 0);
     StartFit::Chain const chain{name(), beads, base, rigid};
     fit.make_whole(chain, links_as_given());
     refuse_coincident(beads, from);

@@ -85,16 +85,13 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
     return made.velocities;
 }
 
-/// Links of rigid bodies are as long as the positions say, also where a side of the box cuts one.
-void note_cut_link(ChainRequest const& request, LinkedArrays const& linked) {
-    if (!request.scene.box) return;
-    Vec3 const& edge = *request.scene.box;
-    auto const longest = std::max_element(linked.length.begin(), linked.length.end());
-    if (*longest <= 0.5 * std::min({edge[0], edge[1], edge[2]})) return;
+/// Bodies on links that the sides of the box cut.
+void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
+    if (made.cut_links == 0) return;
     request.scene.note(
-        fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of the periodic box: give positions "
-                    "that are not wrapped into it, bodies on links are not made whole",
-                    shown(request.name()), longest - linked.length.begin() + 1, *longest));
+        fmt::format("{} of chain `{}` {} cut by the sides of the periodic box, the first that of body {}: made whole by nearest images",
+                    made.cut_links == 1 ? "1 link" : fmt::format("{} links", made.cut_links), shown(request.name()),
+                    made.cut_links == 1 ? "is" : "are", made.first_cut));
 }
 
 class ChainReader {
@@ -169,9 +166,9 @@ class ChainReader {
             velocities = explicit_beads(request_, source_, chain.beads);
         } else if (kind == BodyList::linked) {
             request_.allow("bodies on links", {"anchor"});
-            ExplicitLinked made = read_linked(source_, request_.base, request_.anchor());
+            ExplicitLinked made = read_linked(source_, request_.base, request_.anchor(), request_.scene.box);
+            note_cut_links(request_, made);
             chain.linked = std::move(made.linked);
-            note_cut_link(request_, chain.linked);
             velocities = made.velocities;
         } else {
             request_.allow("rigid bodies", {});

@@ -6,6 +6,9 @@
 #include <charconv>
 #include <cmath>
 
+#include "scene/start_fit.hpp"
+#include "scene/system_links.hpp"
+
 namespace catena::scene {
 
 namespace {
@@ -26,9 +29,12 @@ double nearest_distance(Vec3 const& a, Vec3 const& b, std::optional<Vec3> const&
 
 class Neighbours {
   public:
-    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at) : from_(from), request_(request), at_(at) {}
+    Neighbours(PdbSites const& from, ChainRequest const& request, Node const& at) : from_(from), request_(request), at_(at) {
+        if (request.system) most_ = largest_change_of(request.system->largest_spread(request.particle, std::ssize(from.sites)));
+    }
 
-    void check(PdbSite const& a, PdbSite const& b) {
+    /// Neighbours in the chain, `b` its bead k from 0.
+    void check(PdbSite const& a, PdbSite const& b, std::size_t k) {
         std::int64_t const step = a.number && b.number ? *b.number - *a.number : 1;
         bool const wrapped = a.number && *a.number == 9999 && b.number && (*b.number == 0 || *b.number == 1);
         bool const falls = step < 0 && !wrapped, skips = falls || (step > 1 && !follows_in_hex(a.label, b.label));
@@ -38,7 +44,7 @@ class Neighbours {
         bool const near = apart <= (skips && !seen ? largest_where_numbers_skip : largest_distance);
         // Fusions bear the numbers of their parts: there the peptide bond says that they are neighbours.
         if (falls && !(seen && near)) refuse_order(a, b);
-        if (near && bonded && apart >= least_distance) return count(a, b, skips);
+        if ((near && bonded && apart >= least_distance) || fits_system(k, apart)) return count(a, b, skips);
         if (!request_.links_as_given()) refuse(a, b, apart, near && !bonded ? peptide : 0);
         if (gaps_++ == 0) first_gap_ = fmt::format("{} and {}, {:.3f} nm", a.label, b.label, apart);
     }
@@ -62,6 +68,13 @@ class Neighbours {
                    std::from_chars(text.data(), text.data() + text.size(), value, 16).ptr == text.data() + text.size();
         };
         return !a.empty() && !b.empty() && read(a, from) && read(b, to) && to == from + 1;
+    }
+    /// Where a System is at hand, its bond between the two knows more than residues do.
+    bool fits_system(std::size_t k, double apart) const {
+        if (!request_.system) return false;
+        double const length = request_.system->length(request_.particle + static_cast<std::int64_t>(k));
+        if (apart > length) return apart - length <= (request_.scene.relax ? largest_relaxed_change : most_) * length;
+        return apart <= length && (request_.scene.relax || length - apart <= most_ * length);  // false where nothing joins them: NaN
     }
     static std::string times(int n) { return n == 1 ? "once" : fmt::format("{} times", n); }
 
@@ -95,6 +108,7 @@ class Neighbours {
     PdbSites const& from_;
     ChainRequest const& request_;
     Node const& at_;
+    double most_ = 0;  // largest change of a link of the System's, relative
     int skips_ = 0, gaps_ = 0;
     std::string first_skip_, first_gap_;
 };
@@ -103,7 +117,7 @@ class Neighbours {
 
 void refuse_gaps(PdbSites const& from, ChainRequest const& request, Node const& at) {
     Neighbours neighbours(from, request, at);
-    for (std::size_t k = 1; k < from.sites.size(); ++k) neighbours.check(from.sites[k - 1], from.sites[k]);
+    for (std::size_t k = 1; k < from.sites.size(); ++k) neighbours.check(from.sites[k - 1], from.sites[k], k);
     neighbours.note();
 }
 

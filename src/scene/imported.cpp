@@ -46,8 +46,8 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     if (!scene.box && imported.periodic) scene.box = imported.box;
     std::vector<Draft> drafts;
     // Frames of a run with soft springs stretch them as far as their thermal motion does.
-    double const most = std::max(largest_link_change, std::min(largest_soft_change, thermal_spreads * imported.largest_spread));
-    StartFit fit(scene, *openmm.find("topology"), "give the topology positions that fit the System's bonds", most);
+    StartFit fit(scene, *openmm.find("topology"), "give the topology positions that fit the System's bonds",
+                 largest_change_of(imported.largest_spread), largest_relaxed_change);
     for (ImportedChain& chain : imported.chains) drafts.push_back(draft_of(std::move(chain), openmm, warm, fit));
     fit.note();
     return drafts;

@@ -4,8 +4,10 @@
 
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "scene/carried_beads.hpp"
+#include "scene/cells.hpp"
 #include "scene/physics.hpp"
 
 namespace catena::scene {
@@ -17,7 +19,10 @@ double constexpr length_tolerance = 1e-9;
 
 class LinkedReader {
   public:
-    LinkedReader(Base base, Vec3 const& anchor) : base_(base) { made_.linked.anchor = anchor; }
+    LinkedReader(Base base, Vec3 const& anchor, std::optional<Vec3> const& box) : base_(base) {
+        made_.linked.anchor = anchor;
+        if (box) images_.emplace(*box);
+    }
 
     void add(Node const& item) {
         bool const bead = !item.find("inertia");
@@ -90,7 +95,23 @@ class LinkedReader {
                 fail(*length, "a link length for body 1 of a free base, which has no link", "leave it out or write `base: fixed`");
             if (Node const* const translation = joint.find("translation")) start_link(*translation, k);
         }
+        linked_.position[k] = linked_.position[k] + shift_;
+        if (!none) make_whole(length, k);
         linked_.length.push_back(none ? 0 : measured(body.node(), length, k));
+    }
+
+    Vec3 start_of_link(std::size_t k) const { return k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]); }
+
+    /// Moves the body by whole edges of the box where the link's nearest image fits its length better; without one, where it is shorter.
+    void make_whole(Node const* given, std::size_t k) {
+        if (!images_) return;
+        Vec3 const link = at(k, linked_.inboard[k]) - start_of_link(k), image = images_->shortest(link);
+        double const length = given ? positive(*given) : 0;
+        if (!(std::abs(norm(image) - length) < (1 - length_tolerance) * std::abs(norm(link) - length))) return;
+        Vec3 by = image - link;  // whole edges, but for rounding
+        for (int i = 0; i < 3; ++i) by[i] = images_->edge()[i] * std::rint(by[i] / images_->edge()[i]);
+        shift_ = shift_ + by, linked_.position[k] = linked_.position[k] + by;
+        if (made_.cut_links++ == 0) made_.first_cut = static_cast<std::int64_t>(k) + 1;
     }
 
     void start_link(Node const& translation, std::size_t k) {
@@ -102,7 +123,7 @@ class LinkedReader {
     }
 
     double measured(Node const& body, Node const* given, std::size_t k) const {
-        Vec3 const from = k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]), to = at(k, linked_.inboard[k]);
+        Vec3 const from = start_of_link(k), to = at(k, linked_.inboard[k]);
         double const distance = norm(to - from);
         // Positions carry half a unit in their last place: a link shorter than some of these has no direction.
         if (!(distance > 16 * std::numeric_limits<double>::epsilon() * (norm(from) + norm(to))))
@@ -119,12 +140,14 @@ class LinkedReader {
     ExplicitLinked made_;
     LinkedArrays& linked_ = made_.linked;
     CarriedList carried_;
+    std::optional<Images> images_;  // of the periodic box
+    Vec3 shift_ = Vec3::zero();     // of bodies from here on
 };
 
 }  // namespace
 
-ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor) {
-    LinkedReader reader(base, anchor);
+ExplicitLinked read_linked(Node const& bodies, Base base, Vec3 const& anchor, std::optional<Vec3> const& box) {
+    LinkedReader reader(base, anchor, box);
     for (Node const& item : bodies.items) reader.add(item);
     return reader.take();
 }

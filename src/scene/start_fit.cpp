@@ -16,8 +16,8 @@ namespace {
 
 /// Below this, relative to the link, a change is rounding.
 double constexpr rounding = 1e-9;
-/// Of the longest link that no side can have cut: the image of a cut link is not longer.
-double constexpr most_usual = 1.5;
+/// Of a distance: pairs that are further apart by less are as near.
+double constexpr as_near = 0.01;
 /// Links: beads that are no neighbours overlap below.
 double constexpr overlap = 0.66;
 
@@ -155,7 +155,7 @@ StartFit::Change StartFit::largest_change(Chain const& chain, std::vector<double
 
 void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<double> const& before) const {
     auto const too_much = [&](double from, double to) {
-        return from > to ? from - to > most_ * to : !scene_.relax && to - from > most_ * to;
+        return from > to ? from - to > (scene_.relax ? relaxed_ : most_) * to : !scene_.relax && to - from > most_ * to;
     };
     Change named = worst;
     std::size_t links = 0;
@@ -169,11 +169,13 @@ void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<doubl
     std::string what = fmt::format("{} of chain `{}` are {:.4g} {} apart, their link is {:.4g} {} long", ends_of(named.link),
                                    shown(chain.name), named.from, unit(), named.to, unit());
     if (links > 1)
-        what += fmt::format(", and {} would change by more than {:.0f} %",
-                            links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * most_);
+        what +=
+            fmt::format(", and {} would change by more than {:.0f} %",
+                        links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * (scene_.relax ? relaxed_ : most_));
     what += nearest_text(chain);
     std::string remedy = remedy_;
-    if (named.from < named.to) remedy += ", or `relax: true`";
+    bool const mended = named.from < named.to || named.from - named.to <= relaxed_ * named.to;
+    if (mended && !scene_.relax) remedy += ", or `relax: true`";
     if (named.from > named.to && !scene_.box) remedy += " (of a chain wrapped into a box: give `box`)";
     fail_at(from_, "bead", static_cast<std::int64_t>(named.link) + 1, what, remedy);
 }
@@ -187,13 +189,20 @@ std::string StartFit::nearest_text(Chain const& chain) const {
     std::size_t nearest = 0;
     for (std::size_t k = 2; k < position.size(); ++k)
         if (double const apart = norm(position[k] - position[k - 2]); apart < bound) bound = apart, nearest = k;
-    std::optional<NearPair> near;
     if (nearest > 0 && bound <= rounding * within)
-        near = NearPair{nearest - 2, nearest, bound};
-    else
-        near = nearest_pair(position, scene_.box, bound * (1 + rounding), [](std::size_t i, std::size_t j) { return j > i + 1; });
+        return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", nearest - 1, nearest + 1, bound, unit());
+    auto const counts = [](std::size_t i, std::size_t j) { return j > i + 1; };
+    std::optional<NearPair> const near = nearest_pair(position, scene_.box, bound * (1 + rounding), counts);
     if (!near) return "";
-    return fmt::format("; beads {} and {} overlap: {:.3g} {} apart", near->first + 1, near->second + 1, near->distance, unit());
+    // Where many are as near, as in a hairpin, those in their midst feel more than those at the ends.
+    std::vector<NearPair> pairs;
+    for_each_near_pair(position, scene_.box, std::max(near->distance * (1 + as_near), rounding * within),
+                       [&](std::size_t i, std::size_t j, Vec3 const& apart) {
+                           if (counts(i, j)) pairs.push_back({i, j, norm(apart)});
+                       });
+    NearPair const& worst = pairs[pairs.size() / 2];
+    std::string const others = pairs.size() < 2 ? "" : fmt::format(", and {} more pairs as near", pairs.size() - 1);
+    return fmt::format("; beads {} and {} overlap: {:.3g} {} apart{}", worst.first + 1, worst.second + 1, worst.distance, unit(), others);
 }
 
 void StartFit::record(Chain const& chain, Change const& worst, std::vector<Vec3> const& given) {

@@ -1,6 +1,7 @@
 // Start positions that a file gives are made to fit the chain's links: whole across the periodic box, each link as long as it is to be.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -17,15 +18,23 @@ namespace catena::scene {
 inline constexpr double thermal_spreads = 6, largest_link_change = 0.3;
 /// The same, whatever the spread, where softer bonds become links.
 inline constexpr double largest_soft_change = 0.9;
+/// The same with `relax: true`, where a System's bonds say who is joined: centres of mass of neighbouring residues are up to 0.9 nm apart.
+inline constexpr double largest_relaxed_change = 1.5;
+/// Of links that stand for springs with this thermal spread, relative to their length.
+inline double largest_change_of(double spread) {
+    return std::max(largest_link_change, std::min(largest_soft_change, thermal_spreads * spread));
+}
+/// Of the longest link that no side of the box can have cut: the image of a cut link is not longer.
+inline constexpr double most_usual = 1.5;
 /// From here on a change of a link is noted; a bead's displacement from the longest link on.
 inline constexpr double noted_link_change = 0.03;
 
 class StartFit {
   public:
     /// `from` gives the positions; `remedy`: for links whose lengths would change too much. The scene's box and `relax` count.
-    /// `most`: the largest change of a link.
-    StartFit(Scene& scene, Node const& from, std::string remedy, double most = largest_link_change)
-        : scene_(scene), from_(from), remedy_(std::move(remedy)), most_(most) {}
+    /// `most`: the largest change of a link; `relaxed`: that of a link that is too long where the scene has `relax: true` (0: the same).
+    StartFit(Scene& scene, Node const& from, std::string remedy, double most = largest_link_change, double relaxed = 0)
+        : scene_(scene), from_(from), remedy_(std::move(remedy)), most_(most), relaxed_(std::max(most, relaxed)) {}
 
     struct Chain {
         std::string name;
@@ -67,7 +76,7 @@ class StartFit {
     Scene& scene_;
     Node const& from_;
     std::string remedy_;
-    double most_;
+    double most_, relaxed_;
     std::int64_t cut_links_ = 0, cut_chains_ = 0;
     std::string first_cut_;
     double largest_ = 0, most_moved_ = 0;  // change of a link, relative, and displacement of a bead

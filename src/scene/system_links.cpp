@@ -1,5 +1,6 @@
 #include "scene/system_links.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace catena::scene {
@@ -20,7 +21,8 @@ std::vector<std::int64_t> linked_beads(ChainSpec const& chain) {
 
 }  // namespace
 
-WrittenSystem::WrittenSystem(Scene& scene) : links_(read_system_links(*scene.forces.openmm, scene.file)) {
+WrittenSystem::WrittenSystem(Scene& scene)
+    : links_(read_system_links(*scene.forces.openmm, scene.file)), temperature_(scene.forces.openmm->temperature) {
     for (std::string const& note : links_.notes) scene.note(note);
     for (auto const& [chain, particles] : scene.forces.openmm->map) first_.emplace(chain, particles.first);
 }
@@ -33,6 +35,14 @@ std::int64_t WrittenSystem::first_particle(std::string const& chain, std::int64_
 double WrittenSystem::length(std::int64_t particle) const {
     bool const known = particle >= 0 && particle < std::ssize(links_.to_previous);
     return known ? links_.to_previous[static_cast<std::size_t>(particle)].length : Joining{}.length;
+}
+
+double WrittenSystem::largest_spread(std::int64_t first, std::int64_t beads) const {
+    double largest = 0;
+    for (std::int64_t p = first + 1; p < std::min(first + beads, std::ssize(links_.to_previous)); ++p)
+        if (Joining const& joining = links_.to_previous[static_cast<std::size_t>(p)]; joining.holds())
+            largest = std::max(largest, joining.spread(temperature_));
+    return largest;
 }
 
 bool WrittenSystem::alike(std::int64_t a, std::int64_t b, std::int64_t beads) const {

@@ -20,6 +20,9 @@ class WrittenSystem {
     std::int64_t first_particle(std::string const& chain, std::int64_t next) const;
     /// nm, of the link that bonds and constraints make between a particle and the one before; NaN where none does.
     double length(std::int64_t particle) const;
+    /// Largest thermal spread of the springs between neighbours in a chain of so many beads that begins with particle `first`, relative to
+    /// their length.
+    double largest_spread(std::int64_t first, std::int64_t beads) const;
     /// Whether links in chains of so many beads that begin with particles a and b are of the same lengths.
     bool alike(std::int64_t a, std::int64_t b, std::int64_t beads) const;
     /// Notes springs of the System that links of these chains replace although they are soft, and refuses the softest.
@@ -27,6 +30,7 @@ class WrittenSystem {
 
   private:
     SystemLinks links_;
+    double temperature_;
     std::unordered_map<std::string, std::int64_t> first_;  // of the map, by the chain's name
 };
 

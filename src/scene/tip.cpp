@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
+#include "scene/cells.hpp"
 #include "scene/freedom.hpp"
 #include "scene/joint_entry.hpp"
 #include "scene/pose.hpp"
@@ -52,9 +55,48 @@ Vec3 end_of_link(ChainSpec const& chain) {
     return chain.is_beads() ? chain.beads.position.front() : point_of(chain.linked, 0, chain.linked.inboard.front());
 }
 
+/// Links between ends, the longest.
+double longest_link(ChainSpec const& chain) {
+    std::vector<double> const& lengths = chain.is_beads() ? chain.beads.length : chain.linked.length;
+    return lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
+}
+
+/// The whole edges of the periodic box by which `link` is cut: to its nearest image, which fits `length` better; without a length (0) it is
+/// shorter, and not longer than 1.5 of the chain's longest link.
+Vec3 cut_by(Vec3 const& link, double length, double longest, std::optional<Vec3> const& box) {
+    if (!box) return Vec3::zero();
+    Images const images(*box);
+    Vec3 const image = images.shortest(link);
+    bool const nearer = std::abs(norm(image) - length) < (1 - closure_tolerance) * std::abs(norm(link) - length);
+    if (!nearer || (length == 0 && norm(image) > most_usual * longest)) return Vec3::zero();
+    Vec3 edges = Vec3::zero();
+    for (int i = 0; i < 3; ++i) edges[i] = (*box)[i] * std::rint((link[i] - image[i]) / (*box)[i]);
+    return edges;
+}
+
+/// The tip's anchor stands where its link is not cut. A ring that ends at an image of its first body has no first body there.
+void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node, ChainRequest const& request) {
+    TipJoint& tip = chain.tip_joint;
+    Vec3 const link = end_of_link(chain) - start;
+    Vec3 const by = cut_by(link, tip.length, longest_link(chain), request.scene.box);
+    if (dot(by, by) == 0) return;
+    if (tip.ring)
+        fail(node,
+             fmt::format("the ring winds through the periodic box: its last body is {:.4g} from the first and {:.4g} from an image of it",
+                         norm(link), norm(link - by)),
+             "give positions of a ring that closes on itself, or leave `ring` out");
+    *tip.anchor = *tip.anchor - by;
+    request.scene.note(
+        fmt::format("the link to the anchor at the tip of chain `{}` is cut by the sides of the periodic box: the anchor is "
+                    "taken at its nearest image, [{:.6g}, {:.6g}, {:.6g}]",
+                    shown(request.name()), (*tip.anchor)[0], (*tip.anchor)[1], (*tip.anchor)[2]));
+}
+
 void close_link(ChainSpec& chain, Node const& node, ChainRequest const& request) {
     TipJoint& tip = chain.tip_joint;
-    Vec3 const start = start_of_link(chain, node.find("translation")), end = end_of_link(chain);
+    Vec3 const start = start_of_link(chain, node.find("translation"));
+    make_tip_whole(chain, start, node, request);
+    Vec3 const end = end_of_link(chain);
     double const distance = norm(end - start);
     char const* const target = tip.ring ? "first body" : "anchor";
     // Positions carry half a unit in their last place.

@@ -5,7 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "error.hpp"
 #include "scene/freedom.hpp"
+#include "tests/io/temporary_folder.hpp"
 #include "tests/scene/refusal.hpp"
 
 namespace catena::test {
@@ -28,13 +30,61 @@ void expect_closed_links(ChainSpec const& chain) {
     }
 }
 
-TEST(Linked, a_link_across_half_the_box_is_noted) {
+/// Right: the bodies are 1 apart across the side of the box, as rods that the side cuts.
+TEST(Linked, bodies_that_the_box_cuts_are_made_whole) {
     std::string const chain =
-        "chains: [{bodies: [{mass: 1, inertia: [1, 1, 1], position: [9.5, 5, 5]}, {mass: 1, position: [0.5, 5, 5], joint: {type: link}}]}]";
+        "chains: [{bodies: [{mass: 1, inertia: [1, 1, 1], position: [9.5, 5, 5]}, {mass: 1, position: [0.5, 5, 5], joint: {type: link}}, "
+        "{mass: 1, inertia: [1, 1, 1], position: [0.5, 9.75, 5], joint: {type: link}}]}]";
     EXPECT_TRUE(parse_scene(chain, "s.yaml").notes.empty());
     Scene const scene = parse_scene("box: {periodic: [10, 10, 10]}\n" + chain, "s.yaml");
     ASSERT_EQ(scene.notes.size(), 1U);
-    EXPECT_NE(scene.notes[0].find("the link to body 2 is 9 long, beyond half an edge of the periodic box"), std::string::npos);
+    EXPECT_NE(scene.notes[0].find("1 link of chain `chain-1` is cut by the sides of the periodic box, the first that of body 2"),
+              std::string::npos)
+        << scene.notes[0];
+    LinkedArrays const& l = scene.chains.at(0).linked;
+    EXPECT_EQ(l.length, (std::vector<double>{0, 1, 4.75}));
+    EXPECT_EQ(l.position[1][0], 10.5);
+    EXPECT_EQ(l.position[2][0], 10.5);
+    EXPECT_EQ(l.position[2][1], 9.75);
+    expect_closed_links(scene.chains.at(0));
+}
+
+TEST(Linked, a_given_length_says_which_image_is_meant) {
+    auto const chain = [](std::string const& length) {
+        return parse_scene(
+            "box: {periodic: [10, 10, 10]}\nchains: [{bodies: [{mass: 1, inertia: [1, 1, 1], position: [9.5, 5, 5]}, {mass: 1, "
+            "position: [0.5, 5, 5], joint: {type: link, length: " +
+                length + "}}]}]",
+            "s.yaml");
+    };
+    EXPECT_EQ(chain("1").chains[0].linked.position[1][0], 10.5);
+    EXPECT_EQ(chain("9").chains[0].linked.position[1][0], 0.5);
+    EXPECT_TRUE(chain("9").notes.empty());
+    EXPECT_THROW(chain("3"), InputError);
+}
+
+/// Of a fixed ground any image is as good: the nearest one to the chain's end.
+TEST(Tip, takes_the_nearest_image_of_its_anchor) {
+    std::string const text =
+        "box: {periodic: [10, 10, 10]}\nchains: [{bodies: [{mass: 1, position: [8.5, 5, 5]}, {mass: 1, position: [9.5, 5, 5], joint: "
+        "{type: link}}], tip: {joint: {type: link, anchor: [0.5, 5, 5]}}}]";
+    Scene const scene = parse_scene(text, "s.yaml");
+    EXPECT_EQ(scene.chains[0].tip_joint.length, 1);
+    EXPECT_EQ((*scene.chains[0].tip_joint.anchor)[0], 10.5);
+    ASSERT_EQ(scene.notes.size(), 1U);
+    EXPECT_NE(scene.notes[0].find("the anchor is taken at its nearest image, [10.5, 5, 5]"), std::string::npos) << scene.notes[0];
+}
+
+TEST(Tip, of_a_ring_that_winds_through_the_box_is_refused) {
+    std::string bodies;
+    for (int k = 0; k < 10; ++k)
+        bodies += std::string(k ? ", " : "") + "{mass: 1, position: [" + std::to_string(k + 0.5) + ", 5, 5]" +
+                  (k ? ", joint: {type: link}" : "") + "}";
+    std::string const chain = "chains: [{tip: ring, bodies: [" + bodies + "]}]";
+    std::string const message = message_of([&] { parse_scene("box: {periodic: [10, 10, 10]}\n" + chain, "s.yaml"); });
+    EXPECT_NE(message.find("the ring winds through the periodic box: its last body is 9 from the first and 1 from an image of it"),
+              std::string::npos)
+        << message;
 }
 
 TEST(Linked, everything_that_a_body_can_say) {
