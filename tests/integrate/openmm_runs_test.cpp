@@ -160,7 +160,12 @@ TEST_P(VerletRuns, FramesEvaluateAnewForEnergiesAlone) {
     };
     nlohmann::json const with = run_with("with", "energy"), without = run_with("without", "radius_of_gyration");
     if (world.rank() == 0) {
-        EXPECT_EQ(arrays("with"), arrays("without"));
+        auto const state = [](std::string const& name) {
+            auto all = arrays(name);
+            all.erase("verdict_frames");  // energies of frames, which only one of the runs has
+            return all;
+        };
+        EXPECT_EQ(state("with"), state("without"));
         if (world.size() > 1) {  // steps 7, 14, 21, 28 and the last one
             auto const evaluations = [](nlohmann::json const& s) { return s.at("forces").at("ghosts").at("evaluations").get<int>(); };
             EXPECT_EQ(evaluations(with) - evaluations(without), 5);
