@@ -158,7 +158,7 @@ cat "$logs/fuzz.log" "$logs/changed-scenes.log"
 # the command line, dynamics and restarts stay. Vectors' kernels have no sanitizers.
 mathematics=(dca_stage_kernels dca_levels dca_articulated dca_campaign dca_campaign_long oracle kinematics mixed-precision)
 runs=(force_ranks force_ranks_mpi openmm_runs fixman implicit adaptive at_once simd balance carried_beads command_same_bits command_third_party
-      command_sampling_copies cases_accuracy cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
+      command_sampling_copies cases_accuracy cases_slab cases_verdict cases_pictures cases_runs cases_starts cases_steps cases_structures_generator)
 unbuilt=("${mathematics[@]}" "${runs[@]}")
 if [ $long = yes ]; then unbuilt=(); fi
 if build asan-ubsan "${unbuilt[@]}"; then

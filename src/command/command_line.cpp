@@ -80,7 +80,7 @@ void add_refine(CLI::App& command, Words& words) {
     command
         .add_option("--refine", words.common.refine,
                     "steps of iterative refinement of solutions in joint coordinates (default: the scene's solver.refine, 0): 1 or 2 bring "
-                    "back what nearly parallel hinges, light bodies between heavy ones and thin bodies lose")
+                    "back what nearly parallel revolute joints, light bodies between heavy ones and thin bodies lose")
         ->type_name("K");
 }
 

@@ -102,7 +102,8 @@ class List {
                     add("orientations of bodies but chains' first ones: nothing in the scene acts along ground axes; for output alone");
             }
             if (group.hinged && group.partition.trees.front().run_length > 1)
-                add("velocity terms and bodies' accelerations of chains on hinges where a step solves once: the solver goes from rates to "
+                add("velocity terms and bodies' accelerations of chains on revolute joints where a step solves once: the solver goes from "
+                    "rates to "
                     "rates",
                     share);
             add("rotations at merges: both sides of a joint share its axes", share, seconds_of_turning);

@@ -60,6 +60,7 @@ SystemLinks read_system_links(OpenMmSpec const& spec, std::string const& scene_f
     auto const system = read_openmm_system(spec.system, where);
     SystemLinks links;
     links.notes = leave_movers_out(*system, spec.force_groups, where);
+    links.periodic = system->usesPeriodicBoundaryConditions();
     Joinings const joinings(*system, where);
     links.to_previous.resize(static_cast<std::size_t>(system->getNumParticles()));
     for (int p = 1; p < system->getNumParticles(); ++p) links.to_previous[static_cast<std::size_t>(p)] = joinings.to_previous(p);

@@ -29,6 +29,7 @@ struct ImportedSystem {
 
 /// What the System says of chains that the scene writes down.
 struct SystemLinks {
+    bool periodic = false;             // some force uses the box
     std::vector<Joining> to_previous;  // by particle: what joins it to the one before
     std::vector<std::string> notes;    // what was left out, a sentence each
 };

@@ -115,7 +115,7 @@ struct BeadChainsIn {
     /// Whether error(k) is known to be at most `tolerance` for beads [begin, end), all of which have links to the beads before them.
     /// Neither branches nor roots, so that compilers make vectors of it.
     bool closed_along(std::int64_t begin, std::int64_t end, double tolerance) const {
-        double const near = 0.999 * tolerance;  // the squares of relative errors are left out
+        double const near = 0.999 * tolerance * (1 - tolerance);  // the squares of relative errors are left out
         std::int64_t open = 0;
         for (std::int64_t k = begin; k < end; ++k) {
             double const off = excess(position.load(k) - position.load(k - 1), length.at(k, 0), half_over_length.at(k, 0));

@@ -56,7 +56,8 @@ class Pushes {
 /// A joint's torque on its outboard body and the opposite on the body before, with the arms at which a sliding joint's force acts.
 void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
     Vec3 const& torque = b.torque[k];
-    double const size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
+    double size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
+    if (b.joint[k] == JointType::universal) size /= norm(cross(b.first_axis[k], b.axis[k]));  // axes that are not perpendicular need more
     Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
     switch (b.joint[k]) {
         case JointType::revolute:
@@ -98,6 +99,11 @@ bool has_load(ChainSpec const& chain) {
 
 }  // namespace
 
+double drift_of_step(DynamicsSpec const& d) {
+    double const x = 0.5 * d.friction * d.step;
+    return x < 1e-4 ? 1 : x / std::tanh(x);
+}
+
 Heating heating_of(Scene const& scene, bool with_gravity) {
     auto const any = [&](auto const& is) { return std::any_of(scene.chains.begin(), scene.chains.end(), is); };
     double const gravity = norm(scene.forces.gravity);
@@ -110,7 +116,7 @@ Heating heating_of(Scene const& scene, bool with_gravity) {
     }
     double sum = 0;
     for (ChainSpec const& chain : scene.chains) sum += square_of(chain, with_gravity ? gravity : 0);
-    double const friction = scene.dynamics.friction;
+    double const friction = scene.dynamics.friction / drift_of_step(scene.dynamics);
     found.excess = sum / (friction * friction * static_cast<double>(degrees_of_freedom(scene)) * scene.boltzmann());
     if (!std::isfinite(found.excess)) found.unknown = "torques act about axes without inertia";
     return found;

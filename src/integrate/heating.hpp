@@ -15,6 +15,10 @@ struct Heating {
     double excess = 0;       // K: the most by which they raise the mean kinetic temperature; gravity counts where `with_gravity` says so
     std::string unknown;     // why no bound can be given, e.g. "motions are prescribed"; empty where one can
 };
+/// How much faster than by load / friction a step drifts under a constant load: (x / tanh x), x = friction * step / 2, of schemes that
+/// drift in halves about an exact thermostat (BAOAB; Leimkuhler & Matthews, Molecular Dynamics, 2015, ch. 7). 1 in the limit of short
+/// steps.
+double drift_of_step(DynamicsSpec const&);
 /// Of a scene whose integrator has a thermostat with friction. `with_gravity`: frames do not tell gravity's potential energy.
 Heating heating_of(Scene const&, bool with_gravity);
 

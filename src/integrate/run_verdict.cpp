@@ -6,7 +6,8 @@ namespace catena {
 namespace {
 
 constexpr char const *array_of_error = "largest_constraint_error", *step_of_error = "largest_constraint_error_at",
-                     *array_of_coordinate = "largest_coordinate", *array_of_frames = "verdict_frames";
+                     *array_of_coordinate = "largest_coordinate", *array_of_frames = "verdict_frames",
+                     *whether_midway = "verdict_begins_midway", *step_covered_from = "verdict_covers_from";
 
 }  // namespace
 
@@ -19,6 +20,8 @@ void RunVerdict::save(Checkpoint& c) const {
     c.integers[step_of_error] = worst_.step;
     c.arrays[array_of_coordinate] = {largest_coordinate_};
     c.arrays[array_of_frames] = energies_.state();
+    c.integers[whether_midway] = energies_.is_midway();
+    if (covers_from_) c.integers[step_covered_from] = *covers_from_;
 }
 
 std::string RunVerdict::restore(Checkpoint const& c) {
@@ -28,11 +31,17 @@ std::string RunVerdict::restore(Checkpoint const& c) {
     auto const frames = c.arrays.find(array_of_frames);
     if (frames != c.arrays.end()) {
         if (!energies_.set_state(frames->second, c.step)) refuse_checkpoint(std::string(array_of_frames) + " are no frames of its run");
-        return "";
+        if (c.integers.contains(step_covered_from)) covers_from_ = step_of(c, step_covered_from, 0);
+        auto const midway = c.integers.find(whether_midway);
+        if (midway != c.integers.end() && midway->second != 0) energies_.begins_midway();
+    } else {
+        covers_from_ = c.step;
+        energies_.begins_midway();
     }
-    energies_.begins_midway();
-    return "the checkpoint keeps no energies of the frames before it: the verdict on energy and temperature covers the steps from " +
-           std::to_string(c.step) + " on alone";
+    if (!covers_from_) return "";
+    return "a checkpoint of this run kept no energies of the frames before it: the verdict on energy and temperature covers only the steps "
+           "from " +
+           std::to_string(*covers_from_) + " on";
 }
 
 std::vector<RunCheck> RunVerdict::checks() const {

@@ -45,6 +45,7 @@ class RunVerdict {
     EnergyWatch energies_;
     JointError worst_, end_;
     double largest_coordinate_ = 0;
+    std::optional<std::int64_t> covers_from_;  // energies before that step were not kept
 };
 
 }  // namespace catena

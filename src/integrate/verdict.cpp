@@ -110,7 +110,10 @@ bool EnergyWatch::conserves_energy(Scene const& scene) {
 EnergyWatch::EnergyWatch(Scene const& scene)
     : scene_(scene),
       freedom_(static_cast<double>(degrees_of_freedom(scene))),
-      heating_(is_thermal(scene) ? heating_of(scene, !has_energies(scene)) : Heating()) {}
+      heating_(is_thermal(scene) ? heating_of(scene, false) : Heating()),
+      heating_by_gravity_too_(is_thermal(scene) ? heating_of(scene, true) : Heating()) {}
+
+Heating const& EnergyWatch::heating() const { return series_.has_potential() ? heating_ : heating_by_gravity_too_; }
 
 std::string EnergyWatch::span(double from, double to) const {
     return fmt::format("{:.5g} to {:.5g} {}", from, to, scene_.si ? "J" : "kJ/mol");
@@ -160,13 +163,13 @@ EnergyWatch::Warmth EnergyWatch::warmth() const {
     double const independent = std::min(static_cast<double>(w.ratio.size()), std::max(1.0, w.lasted * d.friction));
     double const own = w.ratio.size() < 2 ? 0 : standard_error(w.ratio);
     w.error = std::max(own, std::sqrt(2 / freedom_) / std::sqrt(independent));
-    if (!heating_.is_pushed || w.lasted <= 0) return w;
-    w.added = heating_.excess / d.temperature;
+    if (!heating().is_pushed || w.lasted <= 0) return w;
+    w.added = heating().excess / d.temperature;
     // What the window lost of its energy friction took: so much kinetic energy was beyond the thermostat's.
     double const time = (series_.middle(n - 1) - series_.middle(from)) * d.step;
     if (!series_.has_potential()) return w;
     w.error = std::hypot(w.error, 2 * std::sqrt(2 / freedom_) / (d.friction * time));
-    w.released = (series_.total(from) - series_.total(n - 1)) / (2 * d.friction * time * thermal);
+    w.released = drift_of_step(d) * (series_.total(from) - series_.total(n - 1)) / (2 * d.friction * time * thermal);
     return w;
 }
 
@@ -179,13 +182,15 @@ std::optional<RunCheck> EnergyWatch::temperature() const {
     if (!is_thermal(scene_) || freedom_ <= 0 || series_.size() < 2) return std::nullopt;
     Warmth const w = warmth();
     double const of_thermostat = scene_.dynamics.temperature, canonical = std::sqrt(2 / freedom_);
-    double const most = worthless_heat * (1 + standard_errors * canonical + std::max(0.0, w.released) + w.added);
+    // Weak friction leaves what potential energy gave uncertain.
+    double const error = heating().is_pushed ? std::max(canonical, w.error) : canonical;
+    double const most = worthless_heat * (1 + standard_errors * error + std::max(0.0, w.released) + w.added);
     RunCheck v{"temperature", true, w.mean * of_thermostat, most * of_thermostat, series_.last_step(), ""};
-    if (heating_.is_pushed && !heating_.unknown.empty()) {
-        v.advice = "temperature is not checked: " + heating_.unknown;
+    if (heating().is_pushed && !heating().unknown.empty()) {
+        v.advice = "temperature is not checked: " + heating().unknown;
         return v;
     }
-    if (heating_.is_pushed && w.ratio.size() < enough_frames) return std::nullopt;
+    if (heating().is_pushed && w.ratio.size() < enough_frames) return std::nullopt;
     if (!(v.value <= v.limit)) {
         // Velocities that the scene gives may be far from thermal until friction has taken them.
         v.passed = std::isfinite(v.value) && !w.forgotten && (begins_midway_ || starts_at_given_velocities(scene_));
@@ -204,7 +209,7 @@ void EnergyWatch::judge(Warmth const& w, RunCheck& v) const {
         v.advice = fmt::format("{} ({:.0f} standard errors away)", found(w), away / w.error);
         v.advice += v.passed ? ": the step is long for these forces: a smaller dynamics.step brings it nearer" : causes_of_heat;
     } else if (w.added > said_heat) {
-        v.advice = fmt::format("{}: loads may add up to {:.3g} K, so that less heat than that is not noticed", found(w), heating_.excess);
+        v.advice = fmt::format("{}: loads may add up to {:.3g} K, so that less heat than that is not noticed", found(w), heating().excess);
     }
 }
 

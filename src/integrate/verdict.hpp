@@ -48,6 +48,7 @@ class EnergyWatch {
     bool set_state(std::vector<double> const& state, std::int64_t steps) { return series_.set_state(state, steps); }
     /// The frames begin at another run's state, which may be far from the thermostat's temperature.
     void begins_midway() { begins_midway_ = true; }
+    bool is_midway() const { return begins_midway_; }
     /// Of what conserves its energy: drift over the last three quarters of the frames against kinetic energy, and a jump before.
     std::optional<RunCheck> energy() const;
     /// Of what a thermostat holds: the second half of the frames. Under gravity, less what potential energy gave; under torques and
@@ -67,13 +68,15 @@ class EnergyWatch {
         std::int64_t from = 0;           // step
         bool forgotten = false;          // the start is
     };
+    /// Of gravity as well where frames do not tell its energy.
+    Heating const& heating() const;
     Warmth warmth() const;
     std::string found(Warmth const&) const;
     void judge(Warmth const&, RunCheck&) const;
     std::string span(double from, double to) const;
     Scene const& scene_;
     double freedom_;  // degrees
-    Heating heating_;
+    Heating heating_, heating_by_gravity_too_;
     EnergySeries series_;
     bool begins_midway_ = false;
 };

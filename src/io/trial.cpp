@@ -12,12 +12,34 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 
 namespace catena {
 namespace {
 
 double constexpr best_compression = 1100;  // deflate makes 1032 bytes of one
+double constexpr seconds_per_byte = 1e-8;  // of what was compressed
+
+/// What breaking code ends with. Other signals come from outside and say nothing about a file.
+constexpr int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU};
+constexpr int from_outside[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2};
+
+/// Children are waited for even where whoever started the process has it ignore their ends.
+class Waiting {
+  public:
+    Waiting() {
+        struct sigaction wanted{};
+        wanted.sa_handler = SIG_DFL;
+        ::sigaction(SIGCHLD, &wanted, &before_);
+    }
+    ~Waiting() { ::sigaction(SIGCHLD, &before_, nullptr); }
+    Waiting(Waiting const&) = delete;
+    Waiting& operator=(Waiting const&) = delete;
+
+  private:
+    struct sigaction before_{};
+};
 
 std::int64_t address_space() {
     std::ifstream in("/proc/self/statm");
@@ -37,7 +59,8 @@ void limit(__rlimit_resource_t resource, std::int64_t most) {
 void become_silent(TrialLimits const& limits) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_DUMPABLE, 0);
-    for (int const number : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGTERM, SIGINT}) std::signal(number, SIG_DFL);
+    for (int const number : faults) std::signal(number, SIG_DFL);
+    for (int const number : from_outside) std::signal(number, SIG_IGN);
     int const nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     for (int const descriptor : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, descriptor);
     limit(RLIMIT_CPU, limits.seconds);
@@ -59,10 +82,12 @@ TrialLimits limits_for_file(std::string const& file) {
     std::error_code ignored;
     std::uintmax_t const found = std::filesystem::file_size(file, ignored);
     double const size = ignored ? 0 : static_cast<double>(found);
-    return {static_cast<std::int64_t>(std::clamp(best_compression * size, 0.8e9, 1e15)), 10 + static_cast<std::int64_t>(size * 1e-6)};
+    double const unpacked = best_compression * size;
+    return {static_cast<std::int64_t>(std::clamp(unpacked, 0.8e9, 1e15)), 10 + static_cast<std::int64_t>(unpacked * seconds_per_byte)};
 }
 
 std::string trial(std::function<void()> const& action, TrialLimits const& limits) {
+    Waiting const waiting;
     pid_t const copy = ::fork();
     if (copy < 0) return "";
     if (copy == 0) try_it(action, limits);
@@ -70,6 +95,7 @@ std::string trial(std::function<void()> const& action, TrialLimits const& limits
     while (::waitpid(copy, &status, 0) < 0)
         if (errno != EINTR) return "";
     if (WIFEXITED(status)) return WEXITSTATUS(status) == 0 ? "" : "status " + std::to_string(WEXITSTATUS(status));
+    if (std::find(std::begin(faults), std::end(faults), WTERMSIG(status)) == std::end(faults)) return "";
     return WTERMSIG(status) == SIGXCPU ? "no end within " + std::to_string(limits.seconds) + " s" : strsignal(WTERMSIG(status));
 }
 

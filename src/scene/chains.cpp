@@ -87,6 +87,11 @@ bool explicit_beads(ChainRequest const& request, Node const& source, BeadArrays&
 
 /// Bodies on links that the sides of the box cut.
 void note_cut_links(ChainRequest const& request, ExplicitLinked const& made) {
+    if (made.doubtful > 0)
+        request.scene.note(
+            fmt::format("chain `{}`: the link to body {} is {:.4g} long, beyond half an edge of the periodic box, and is left as it "
+                        "is: if a side of the box cuts it, give its `length`",
+                        shown(request.name()), made.doubtful, made.doubtful_length));
     if (made.cut_links == 0) return;
     request.scene.note(
         fmt::format("{} of chain `{}` {} cut by the sides of the periodic box, the first that of body {}: made whole by nearest images",

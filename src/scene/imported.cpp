@@ -7,6 +7,7 @@
 #include "force/openmm_import.hpp"
 #include "scene/conformation.hpp"
 #include "scene/fields.hpp"
+#include "scene/force_notes.hpp"
 #include "scene/start_fit.hpp"
 
 namespace catena::scene {
@@ -44,6 +45,7 @@ std::vector<Draft> import_chains(Node const& openmm, Scene& scene, bool warm) {
     ImportedSystem imported = import_openmm_system(spec, scene.file);
     for (std::string const& note : imported.notes) scene.note(note);
     if (!scene.box && imported.periodic) scene.box = imported.box;
+    note_box_that_no_force_knows(scene, imported.periodic);
     std::vector<Draft> drafts;
     // Frames of a run with soft springs stretch them as far as their thermal motion does.
     StartFit fit(scene, *openmm.find("topology"), "give the topology positions that fit the System's bonds",

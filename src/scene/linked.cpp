@@ -9,6 +9,7 @@
 #include "scene/carried_beads.hpp"
 #include "scene/cells.hpp"
 #include "scene/physics.hpp"
+#include "scene/start_fit.hpp"
 
 namespace catena::scene {
 
@@ -102,12 +103,19 @@ class LinkedReader {
 
     Vec3 start_of_link(std::size_t k) const { return k == 0 ? linked_.anchor : at(k - 1, linked_.outboard[k - 1]); }
 
-    /// Moves the body by whole edges of the box where the link's nearest image fits its length better; without one, where it is shorter.
+    double longest_so_far() const { return linked_.length.empty() ? 0 : *std::max_element(linked_.length.begin(), linked_.length.end()); }
+
+    /// Moves the body by whole edges of the box where the link's nearest image fits its length better; without one, where it is half as
+    /// long, or shorter and not much longer than the links before.
     void make_whole(Node const* given, std::size_t k) {
         if (!images_) return;
         Vec3 const link = at(k, linked_.inboard[k]) - start_of_link(k), image = images_->shortest(link);
         double const length = given ? positive(*given) : 0;
         if (!(std::abs(norm(image) - length) < (1 - length_tolerance) * std::abs(norm(link) - length))) return;
+        if (!given && norm(image) > std::max(most_usual * longest_so_far(), 0.5 * norm(link))) {
+            if (made_.doubtful == 0) made_.doubtful = static_cast<std::int64_t>(k) + 1, made_.doubtful_length = norm(link);
+            return;
+        }
         Vec3 by = image - link;  // whole edges, but for rounding
         for (int i = 0; i < 3; ++i) by[i] = images_->edge()[i] * std::rint(by[i] / images_->edge()[i]);
         shift_ = shift_ + by, linked_.position[k] = linked_.position[k] + by;

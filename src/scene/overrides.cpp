@@ -78,6 +78,7 @@ class Override {
         return map.items.back();
     }
     Node& entry(Node& list, std::size_t index) const {
+        if (list.kind == Node::Kind::null) refuse(fmt::format("there is no list `{}`", shown(list.key)), "correct the path");
         if (list.kind != Node::Kind::list) refuse(fmt::format("`{}` is not a list", shown(list.key)), "leave the index out");
         if (index >= list.items.size())
             refuse(fmt::format("index {} is beyond the list `{}` of {}", index, shown(list.key), list.items.size()),

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/force_notes.hpp"
+
 namespace catena::scene {
 
 namespace {
@@ -62,6 +64,7 @@ void WrittenSystem::judge(std::vector<Draft> const& drafts, Scene& scene) const 
                 links.add(p - 1, p, links_.to_previous[static_cast<std::size_t>(p)]);
         }
     for (std::string const& note : links.notes()) scene.note(note);
+    note_box_that_no_force_knows(scene, links_.periodic);
 }
 
 }  // namespace catena::scene

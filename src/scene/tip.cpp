@@ -84,7 +84,7 @@ void make_tip_whole(ChainSpec& chain, Vec3 const& start, Node const& node, Chain
         fail(node,
              fmt::format("the ring winds through the periodic box: its last body is {:.4g} from the first and {:.4g} from an image of it",
                          norm(link), norm(link - by)),
-             "give positions of a ring that closes on itself, or leave `ring` out");
+             "give positions of a ring that closes on itself, or the closing link's `length`, or leave `ring` out");
     *tip.anchor = *tip.anchor - by;
     request.scene.note(
         fmt::format("the link to the anchor at the tip of chain `{}` is cut by the sides of the periodic box: the anchor is "

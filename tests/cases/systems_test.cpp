@@ -182,6 +182,12 @@ TEST(Slips, MillimolarIsNoted) {
                       "forces.openmm.ionic_strength is 150 mol/l, more than the solubility of any salt: did you mean 0.15"));
 }
 
+TEST(Slips, StepsInFemtosecondsAndImpossiblePhAreNoted) {
+    EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.step=10"}),
+                      "dynamics.step is 10 ps, that is 10000 fs: steps of such chains are 0.01 to 0.06 ps. Did you mean 0.01?"));
+    EXPECT_TRUE(holds(notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "forces.openmm.ph=70"}), "ph is 70, outside 0 to 14"));
+}
+
 TEST(Slips, FrozenWaterIsNoted) {
     EXPECT_TRUE(holds(
         notes_of("22-slips-of-the-pen/temperatures.yaml", {"--set", "dynamics.temperature=200", "--set", "forces.openmm.temperature=200"}),

@@ -82,12 +82,14 @@ def fault(ended, asks_for_many):
         return "" if asks_for_many else f"no end within {SECONDS} s"
     if ended.status not in (0, 1, 2, 3):
         return f"signal {-ended.status}" if ended.status < 0 else f"status {ended.status}"
-    if re.search(rb"[\x00-\x08\x0b-\x1f\x7f]", said):
-        return "control characters"
     try:
-        said.decode()
+        text = said.decode()
     except UnicodeDecodeError:
         return "text that is not UTF-8"
+    if re.search("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]", text):
+        return "control characters"
+    if ended.status == 1 and not said.strip():
+        return "status 1 without a word"
     lines = [line for line in ended.err.splitlines() if not line.startswith(WARNING)]
     if ended.status == 2 and (len(lines) != 1 or not lines[0].startswith(WRONG_START)):
         return f"{len(lines)} lines for a refusal"

@@ -19,8 +19,13 @@ inline std::atomic<bool>& own_fault() {
 
 }  // namespace catena::fuzz
 
-/// The address sanitizer calls it before its report.
-extern "C" inline __attribute__((used)) void __asan_on_error() {
+/// The address sanitizer calls it before its report. Not inline: the sanitizer's own weak one would be taken. One source of a target
+/// includes this.
+extern "C" void __asan_on_error();
+extern "C" void __asan_on_error() {
     Dl_info at{};
     if (::dladdr(__asan_get_report_pc(), &at) == 0 || std::strstr(at.dli_fname, "libhdf5") == nullptr) catena::fuzz::own_fault() = true;
 }
+/// The sanitizer of undefined behaviour calls it before its report; HDF5 is not compiled with it.
+extern "C" void __ubsan_on_report();
+extern "C" void __ubsan_on_report() { catena::fuzz::own_fault() = true; }

@@ -160,7 +160,7 @@ TEST_P(VerletRuns, FramesEvaluateAnewForEnergiesAlone) {
     };
     nlohmann::json const with = run_with("with", "energy"), without = run_with("without", "radius_of_gyration");
     if (world.rank() == 0) {
-        auto const state = [](std::string const& name) {
+        auto const state = [this](std::string const& name) {
             auto all = arrays(name);
             all.erase("verdict_frames");  // energies of frames, which only one of the runs has
             return all;

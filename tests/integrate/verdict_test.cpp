@@ -146,8 +146,26 @@ TEST(Verdict, TheWorstJointKeepsItsStepOverARestart) {
     EXPECT_FALSE(second.checks().at(0).passed);
     c.arrays.erase("verdict_frames");
     c.integers.clear();
-    EXPECT_NE(earlier.restore(c).find("from 20 on alone"), std::string::npos);
+    EXPECT_NE(earlier.restore(c).find("from 20 on"), std::string::npos);
     EXPECT_EQ(earlier.checks().at(0).step, 20);
+    // The next restart says it again.
+    Checkpoint later;
+    later.step = 30;
+    earlier.save(later);
+    EXPECT_NE(RunVerdict(scene).restore(later).find("from 20 on"), std::string::npos);
+}
+TEST(Verdict, ABranchIsStillOneAfterARestart) {
+    Scene const scene = chain_under("g-baoab");
+    double const thermal = 0.5 * scene.boltzmann() * 300 * 201;
+    RunVerdict branch(scene), restarted(scene);
+    branch.branch();
+    for (int i = 0; i < 4; ++i) branch.add_frame(i, 10 * thermal, 0.0);  // 0.03 ps: nothing is forgotten at a friction of 1 / ps
+    Checkpoint c;
+    c.step = 4;
+    branch.save(c);
+    EXPECT_EQ(restarted.restore(c), "");
+    for (RunVerdict const* const verdict : {&branch, &restarted})
+        for (RunCheck const& check : verdict->checks()) EXPECT_TRUE(check.passed) << check.name << ": " << check.advice;
 }
 
 /// The mean of frames `above` the thermostat's temperature, of a chain with loads.
@@ -178,6 +196,42 @@ TEST(Verdict, ATorqueAddsNoMoreThanFrictionLetsIt) {
     EXPECT_TRUE(mild.temperature().value().passed);
     EXPECT_NE(mild.temperature().value().advice.find("120 K"), std::string::npos);
     EXPECT_FALSE(hot.temperature().value().passed);
+}
+
+TEST(Verdict, ObliqueAxesOfAUniversalJointNeedMoreTorque) {
+    auto const excess = [](std::string const& second) {
+        return heating_of(parse_scene("chains: [{name: u, base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], joint: {type: universal, "
+                                      "axes: [[1, 0, 0], " +
+                                          second +
+                                          "], torque: [2, 0]}}]}]\n"
+                                          "dynamics: {integrator: baoab, step: 0.01, steps: 10, temperature: 300, friction: 1}\n",
+                                      "scene.yaml"),
+                          false)
+            .excess;
+    };
+    EXPECT_NEAR(excess("[1, 1, 0]") / excess("[0, 1, 0]"), 2, 1e-9);  // 1 / sin^2 of 45 degrees
+}
+TEST(Verdict, LongStepsDriftFasterThanFrictionTells) {
+    DynamicsSpec d;
+    d.friction = 60, d.step = 0.05;
+    EXPECT_NEAR(drift_of_step(d), 1.5 / std::tanh(1.5), 1e-15);
+    d.step = 1e-9;
+    EXPECT_EQ(drift_of_step(d), 1);
+}
+TEST(Verdict, WeakFrictionLeavesTheHeatOfAFallUncertain) {
+    // A free body of 6 degrees falls from rest; friction has taken next to nothing in 3 ps, and kinetic energy is what gravity gave.
+    Scene const scene = parse_scene(
+        "chains: [{name: b, bodies: [{mass: 10, inertia: [1, 1, 1], joint: {type: free}}]}]\n"
+        "forces: {gravity: [0, 0, -3]}\n"
+        "dynamics: {integrator: baoab, step: 0.01, steps: 300, temperature: 300, friction: 0.0001}\n",
+        "scene.yaml");
+    EnergyWatch watch(scene);
+    double const start = 3 * scene.boltzmann() * 300;
+    for (int i = 0; i <= 30; ++i) {
+        double const speed = 3 * 0.1 * i, gained = 0.5 * 10 * speed * speed;
+        watch.add(10 * i, start + gained, -gained + 0.01 * i);  // total energy rises by a little: noise
+    }
+    EXPECT_TRUE(watch.temperature().value().passed) << watch.temperature().value().advice;
 }
 
 TEST(Failure, WithinAStepNamesTheStepBeforeTheMasses) {

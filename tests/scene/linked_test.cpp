@@ -30,6 +30,18 @@ void expect_closed_links(ChainSpec const& chain) {
     }
 }
 
+/// A link that is long by design has no length that a nearest image would fit better.
+TEST(Linked, the_first_of_long_links_is_left_and_noted) {
+    Scene const scene = parse_scene(
+        "box: {periodic: [3, 3, 3]}\n"
+        "chains: [{base: fixed, bodies: [{mass: 1, inertia: [1, 1, 1], position: [0, 0, 1.7], joint: {type: link}},\n"
+        "{mass: 1, position: [0.3, 0, 1.7], joint: {type: link}}]}]\n",
+        "scene.yaml");
+    EXPECT_EQ(scene.chains[0].linked.length[0], 1.7);
+    ASSERT_EQ(scene.notes.size(), 1U);
+    EXPECT_NE(scene.notes[0].find("the link to body 1 is 1.7 long, beyond half an edge of the periodic box"), std::string::npos);
+}
+
 /// Right: the bodies are 1 apart across the side of the box, as rods that the side cuts.
 TEST(Linked, bodies_that_the_box_cuts_are_made_whole) {
     std::string const chain =
