@@ -51,14 +51,16 @@ compile() {
     is_fresh "$file" || "$compiler" "${flags[@]}" -fsanitize=fuzzer-no-link -MD -MF "$file.d" "$@" -o "$file"
 }
 
-# target NAME LIBRARIES SOURCE...: the reader with what it needs.
+# target NAME LIBRARIES SOURCE...: the reader with what it needs. Two compilers at a time.
 target() {
     local name=$1 libraries=$2 objects=() source
     shift 2
     for source in tests/fuzz/entry.cpp "tests/fuzz/$name.cpp" "$@"; do
         objects+=("$made/${source//\//_}.o")
-        compile "${objects[-1]}" -include-pch "$made/precompiled.pch" -c "$source"
+        while [ "$(jobs -rp | wc -l)" -ge 2 ]; do wait -n; done
+        compile "${objects[-1]}" -include-pch "$made/precompiled.pch" -c "$source" &
     done
+    wait
     # shellcheck disable=SC2086
     "$compiler" "${flags[@]}" -fsanitize=fuzzer "${objects[@]}" $libraries -lfmt -o "$made/targets/$name"
     rm -rf "$made/targets/corpus/$name"

@@ -62,7 +62,7 @@ Bad const bad[] = {
     {"chains.count=1", "`chains` is a list, it has no key `count` (--set chains.count=1): correct the path"},
     {"chains[0].name.x=1", "`name` is `a`, it has no key `x` (--set chains[0].name.x=1): correct the path"},
     {"chain[0].count=3", "there is no list `chain` (--set chain[0].count=3): correct the path"},
-    {"title[0]=1", "`title` is not a list (--set title[0]=1): leave the index out"},
+    {"chains[0].name[0]=1", "`name` is not a list (--set chains[0].name[0]=1): leave the index out"},
     {"title=[1, 2", "a key is not plain text (--set title=[1, 2): write `name: value`, and close every bracket"},
     {"box={a: 1, a: 2}", "key `a` is given twice (--set box={a: 1, a: 2}): keep one of them"},
     {"chains[0].coutn=1", "unknown key `coutn` (s.yaml: chains[0].coutn, from the command line): did you mean `count`?"},
