@@ -579,7 +579,8 @@ json run_simulation(Scene const& scene, Communicator const& communicator, RunOpt
         throw InputError("the scene has no dynamics section", scene.file, "add `dynamics: {integrator: ..., step: ..., steps: ...}`");
     if (!options.steps && scene.dynamics.steps == 0 && !scene.dynamics.has_steps)
         throw InputError("no steps to run", scene.file + ": dynamics.steps", "say how many there or with --steps");
-    std::optional<RelaxedScene> const relaxed = options.restart.empty() ? relaxed_where_asked(scene, communicator, relaxation_says(options.quiet)) : std::nullopt;
+    std::optional<RelaxedScene> const relaxed =
+        options.restart.empty() ? relaxed_where_asked(scene, communicator, relaxation_says(options.quiet)) : std::nullopt;
     Scene const& start = relaxed ? relaxed->scene : scene;
     if (options.restart.empty() && !relaxed) refuse_coinciding(scene, communicator);
     std::optional<StartRelaxation> const relaxation = relaxed ? std::optional(relaxed->relaxation) : std::nullopt;
