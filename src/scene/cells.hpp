@@ -22,9 +22,12 @@ class Images {
         return point;
     }
     /// The shortest image of a difference.
-    Vec3 shortest(Vec3 apart) const {
-        for (int i = 0; i < 3; ++i) apart[i] -= edge_[i] * std::rint(apart[i] * inverse_[i]);
-        return apart;
+    Vec3 shortest(Vec3 const& apart) const { return apart - whole_edges(apart); }
+    /// What a difference has beyond its shortest image.
+    Vec3 whole_edges(Vec3 const& apart) const {
+        Vec3 edges = Vec3::zero();
+        for (int i = 0; i < 3; ++i) edges[i] = edge_[i] * std::rint(apart[i] * inverse_[i]);
+        return edges;
     }
 
   private:

@@ -116,9 +116,8 @@ class LinkedReader {
             if (made_.doubtful == 0) made_.doubtful = static_cast<std::int64_t>(k) + 1, made_.doubtful_length = norm(link);
             return;
         }
-        Vec3 by = image - link;  // whole edges, but for rounding
-        for (int i = 0; i < 3; ++i) by[i] = images_->edge()[i] * std::rint(by[i] / images_->edge()[i]);
-        shift_ = shift_ + by, linked_.position[k] = linked_.position[k] + by;
+        Vec3 const by = images_->whole_edges(link);
+        shift_ = shift_ - by, linked_.position[k] = linked_.position[k] - by;
         if (made_.cut_links++ == 0) made_.first_cut = static_cast<std::int64_t>(k) + 1;
     }
 

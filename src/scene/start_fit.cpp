@@ -110,7 +110,7 @@ void StartFit::make_whole(Chain const& chain, bool as_given) {
         bool const is_cut = as_given ? norm(image) < norm(link) && norm(image) <= most_usual * usual
                                      : std::abs(norm(image) - chain.beads.length[k]) < std::abs(norm(link) - chain.beads.length[k]);
         if (is_cut) {
-            for (int i = 0; i < 3; ++i) shift[i] += images.edge()[i] * std::rint((image[i] - link[i]) / images.edge()[i]);
+            shift = shift - images.whole_edges(link);
             if (cut_links_ + cut == 0) first_cut_ = fmt::format("{} of chain `{}`", ends_of(k), shown(chain.name));
             ++cut;
         }
@@ -155,7 +155,7 @@ StartFit::Change StartFit::largest_change(Chain const& chain, std::vector<double
 
 void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<double> const& before) const {
     auto const too_much = [&](double from, double to) {
-        return from > to ? from - to > (scene_.relax ? relaxed_ : most_) * to : !scene_.relax && to - from > most_ * to;
+        return from > to ? from - to > most_shortened() * to : !scene_.relax && to - from > most_ * to;
     };
     Change named = worst;
     std::size_t links = 0;
@@ -169,9 +169,8 @@ void StartFit::refuse(Chain const& chain, Change const& worst, std::vector<doubl
     std::string what = fmt::format("{} of chain `{}` are {:.4g} {} apart, their link is {:.4g} {} long", ends_of(named.link),
                                    shown(chain.name), named.from, unit(), named.to, unit());
     if (links > 1)
-        what +=
-            fmt::format(", and {} would change by more than {:.0f} %",
-                        links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * (scene_.relax ? relaxed_ : most_));
+        what += fmt::format(", and {} would change by more than {:.0f} %",
+                            links == 2 ? "another link" : fmt::format("{} other links", links - 1), 100 * most_shortened());
     what += nearest_text(chain);
     std::string remedy = remedy_;
     bool const mended = named.from < named.to || named.from - named.to <= relaxed_ * named.to;

@@ -71,6 +71,8 @@ class StartFit {
     std::string nearest_text(Chain const& chain) const;
     void project(Chain const& chain, Change const& worst);
     void record(Chain const& chain, Change const& worst, std::vector<Vec3> const& given);
+    /// By how much of its wanted length a link may be longer.
+    double most_shortened() const { return scene_.relax ? relaxed_ : most_; }
     char const* unit() const { return scene_.si ? "m" : "nm"; }
 
     Scene& scene_;

@@ -69,9 +69,7 @@ Vec3 cut_by(Vec3 const& link, double length, double longest, std::optional<Vec3>
     Vec3 const image = images.shortest(link);
     bool const nearer = std::abs(norm(image) - length) < (1 - closure_tolerance) * std::abs(norm(link) - length);
     if (!nearer || (length == 0 && norm(image) > most_usual * longest)) return Vec3::zero();
-    Vec3 edges = Vec3::zero();
-    for (int i = 0; i < 3; ++i) edges[i] = (*box)[i] * std::rint((link[i] - image[i]) / (*box)[i]);
-    return edges;
+    return images.whole_edges(link);
 }
 
 /// The tip's anchor stands where its link is not cut. A ring that ends at an image of its first body has no first body there.

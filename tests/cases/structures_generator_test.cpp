@@ -5,31 +5,16 @@
 
 #include <fstream>
 
-#include "error.hpp"
-#include "scene/scene.hpp"
+#include "tests/cases/opened.hpp"
 #include "tests/io/temporary_folder.hpp"
 
 namespace catena::test {
 namespace {
 
-/// What Catena makes of it.
-struct Opened {
-    bool refused = false;
-    std::string message;
-    Scene scene;
-};
-
 Opened open(Structure const& structure) {
     TemporaryFolder const folder;
     std::ofstream(folder / "a.pdb", std::ios::binary) << text_of(structure);
-    Opened opened;
-    try {
-        opened.scene = parse_scene("chains: [{name: p, pdb: a.pdb, model: calvados2}]" + structure.box, folder / "s.yaml");
-    } catch (InputError const& error) {
-        opened.refused = true;
-        opened.message = error.what();
-    }
-    return opened;
+    return open_scene("chains: [{name: p, pdb: a.pdb, model: calvados2}]" + structure.box, folder / "s.yaml");
 }
 
 /// Links are fitted to 0.38 nm, which moves beads a little, and the chain as a whole may stand in another image.
