@@ -1,5 +1,5 @@
-#include "cuda/device_levels.cuh"
-#include "cuda/solver.hpp"
+#include "cuda/space/device_levels.cuh"
+#include "cuda/device/gpu.hpp"
 
 namespace catena::cuda {
 

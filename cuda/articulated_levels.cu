@@ -1,4 +1,4 @@
-#include "cuda/device_levels.cuh"
+#include "cuda/space/device_levels.cuh"
 
 namespace catena::cuda {
 

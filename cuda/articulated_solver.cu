@@ -1,4 +1,4 @@
-#include "cuda/device_solver.cuh"
+#include "cuda/space/device_solver.cuh"
 #include "dca/leaf_choice.hpp"
 
 namespace catena::cuda {

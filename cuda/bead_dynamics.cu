@@ -1,6 +1,6 @@
-#include "cuda/device_solver.cuh"
+#include "cuda/space/device_solver.cuh"
 #include "cuda/dynamics.hpp"
-#include "integrate/bead_dynamics.hpp"
+#include "dynamics/bead_dynamics.hpp"
 
 namespace catena::cuda {
 

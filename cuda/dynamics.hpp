@@ -1,7 +1,7 @@
 // Chains whose state stays on a GPU.
 #pragma once
 
-#include "integrate/joint_dynamics.hpp"
+#include "dynamics/joint/joint_dynamics.hpp"
 
 namespace catena::cuda {
 

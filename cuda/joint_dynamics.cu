@@ -1,6 +1,6 @@
-#include "cuda/device_solver.cuh"
+#include "cuda/space/device_solver.cuh"
 #include "cuda/dynamics.hpp"
-#include "integrate/joint_dynamics_in.hpp"
+#include "dynamics/joint/joint_dynamics_in.hpp"
 
 namespace catena::cuda {
 

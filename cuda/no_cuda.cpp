@@ -1,9 +1,9 @@
-#include "cuda/clusters.hpp"
+#include "cuda/device/clusters.hpp"
 #include "cuda/dynamics.hpp"
-#include "cuda/memory.hpp"
-#include "cuda/solver.hpp"
+#include "cuda/space/memory.hpp"
+#include "cuda/device/gpu.hpp"
 #include "error.hpp"
-#include "force/device_path.hpp"
+#include "neighbours/device_path.hpp"
 
 namespace catena::cuda {
 

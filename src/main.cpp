@@ -1,6 +1,7 @@
 // The command line: catena check | plan | solve | run | report | bench. What each does is in command/.
+#include "bench/benchmarks.hpp"
 #include "command/commands.hpp"
-#include "command/plan_network.hpp"
+#include "plan/plan_network.hpp"
 #include "command/report_scenes.hpp"
 #include "command/session.hpp"
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "chain/group_view.hpp"
-#include "dca/executor.hpp"
-#include "dca/shares.hpp"
-#include "dca/tree.hpp"
+#include "math/executor.hpp"
+#include "tree/load_balance.hpp"
+#include "tree/tree.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 

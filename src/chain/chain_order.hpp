@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "dca/linear.hpp"
-#include "dca/shares.hpp"
+#include "math/linear.hpp"
+#include "tree/load_balance.hpp"
 #include "scene/scene.hpp"
 
 namespace catena {

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "chain/field.hpp"
+#include "math/field.hpp"
 
 namespace catena {
 

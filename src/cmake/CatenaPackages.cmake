@@ -139,7 +139,7 @@ if(catena_wanted)
     if(CATENA_NVCC)
         execute_process(COMMAND "${CATENA_NVCC}" --version OUTPUT_VARIABLE nvcc_says ERROR_QUIET)
         string(REGEX MATCH "release ([0-9]+\\.[0-9]+)" release "${nvcc_says}")
-        if(release AND CMAKE_MATCH_1 VERSION_GREATER_EQUAL 12.1)  # st.async (cuda/cluster.cuh) is of PTX 8.1
+        if(release AND CMAKE_MATCH_1 VERSION_GREATER_EQUAL 12.1)  # st.async (cuda/device/cluster.cuh) is of PTX 8.1
             set(CMAKE_CUDA_COMPILER "${CATENA_NVCC}")
             set(CMAKE_CUDA_HOST_COMPILER "${CMAKE_CXX_COMPILER}" CACHE FILEPATH "Host compiler of nvcc")
             enable_language(CUDA)

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
 #include "command/commands.hpp"
-#include "command/describe.hpp"
-#include "command/terminal.hpp"
+#include "plan/describe.hpp"
+#include "console/terminal.hpp"
 #include "integrate/chain_system.hpp"
-#include "integrate/observables.hpp"
-#include "integrate/start_relaxation.hpp"
-#include "integrate/start_report.hpp"
+#include "observe/observables.hpp"
+#include "start/start_relaxation.hpp"
+#include "start/start_report.hpp"
 
 namespace catena::command {
 namespace {

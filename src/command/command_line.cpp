@@ -5,10 +5,10 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "command/figures.hpp"
-#include "command/sampling_words.hpp"
-#include "command/values.hpp"
-#include "command/version.hpp"
+#include "report/figures.hpp"
+#include "bench/sampling_options.hpp"
+#include "console/option_values.hpp"
+#include "report/version.hpp"
 #include "error.hpp"
 
 namespace catena::command {

@@ -1,7 +1,7 @@
 // The command line: what may be asked, and how it is explained.
 #pragma once
 
-#include "command/requests.hpp"
+#include "console/requests.hpp"
 
 namespace catena::command {
 

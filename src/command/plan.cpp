@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "command/commands.hpp"
-#include "command/describe.hpp"
-#include "command/left_out.hpp"
-#include "command/plan_messages.hpp"
-#include "command/plan_steps.hpp"
-#include "command/predictions.hpp"
+#include "plan/describe.hpp"
+#include "plan/savings.hpp"
+#include "plan/plan_messages.hpp"
+#include "plan/plan_steps.hpp"
+#include "plan/predictions.hpp"
 #include "integrate/chain_system.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"

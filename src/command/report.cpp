@@ -8,18 +8,18 @@
 #include <set>
 
 #include "command/commands.hpp"
-#include "command/peer_answers.hpp"
-#include "command/picture.hpp"
-#include "command/report_parts.hpp"
-#include "command/values.hpp"
-#include "command/version.hpp"
-#include "cuda/solver.hpp"
+#include "bench/peer_answers.hpp"
+#include "console/picture.hpp"
+#include "report/report_parts.hpp"
+#include "console/option_values.hpp"
+#include "report/version.hpp"
+#include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "force/openmm_force.hpp"
-#include "integrate/run_folder.hpp"
+#include "run/run_folder.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
-#include "report/hardware.hpp"
+#include "measure/hardware.hpp"
 
 namespace catena::command {
 namespace {

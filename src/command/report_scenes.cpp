@@ -1,8 +1,8 @@
 #include "command/report_scenes.hpp"
 
-#include "command/generated.hpp"
+#include "bench/generated.hpp"
 #include "force/openmm_force.hpp"
-#include "report/integrator_errors.hpp"
+#include "measure/integrator_errors.hpp"
 
 namespace catena::command {
 

@@ -9,13 +9,13 @@
 
 #include "clock.hpp"
 #include "command/commands.hpp"
-#include "command/describe.hpp"
+#include "plan/describe.hpp"
 #include "command/stop_signals.hpp"
 #include "integrate/joint_integrators.hpp"
-#include "integrate/simulation.hpp"
+#include "run/simulation.hpp"
 #include "integrate/step_limit.hpp"
 #include "plan/choice.hpp"
-#include "report/forward_error.hpp"
+#include "measure/forward_error.hpp"
 
 namespace catena::command {
 namespace {

@@ -11,15 +11,16 @@
 
 #include "clock.hpp"
 #include "command/command_line.hpp"
-#include "command/process.hpp"
-#include "command/terminal.hpp"
+#include "console/process.hpp"
+#include "console/terminal.hpp"
 #include "error.hpp"
 #include "io/output.hpp"
 #include "mpi/first_rank.hpp"
 #include "mpi/gather_way.hpp"
 #include "mpi/gpu_exchange.hpp"
 #include "mpi/launcher.hpp"
-#include "scene/printable.hpp"
+#include "io/printable.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::command {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <functional>
 
-#include "command/outcome.hpp"
-#include "command/requests.hpp"
+#include "console/outcome.hpp"
+#include "console/requests.hpp"
 #include "mpi/communicator.hpp"
 #include "scene/scene.hpp"
 

@@ -7,19 +7,19 @@
 #include <utility>
 
 #include "command/commands.hpp"
-#include "command/describe.hpp"
-#include "command/terminal.hpp"
-#include "dca/oracle/oracle.hpp"
+#include "plan/describe.hpp"
+#include "console/terminal.hpp"
+#include "oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
-#include "integrate/observables.hpp"
-#include "integrate/start_relaxation.hpp"
-#include "integrate/start_report.hpp"
-#include "integrate/start_velocities.hpp"
+#include "observe/observables.hpp"
+#include "start/start_relaxation.hpp"
+#include "start/start_report.hpp"
+#include "start/start_velocities.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/choice.hpp"
-#include "report/forward_error.hpp"
-#include "report/solution.hpp"
-#include "report/timing.hpp"
+#include "measure/forward_error.hpp"
+#include "measure/solution.hpp"
+#include "measure/timing.hpp"
 
 namespace catena::command {
 namespace {

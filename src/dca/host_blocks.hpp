@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "dca/solver.hpp"
-#include "dca/stages.hpp"
+#include "tree/stages.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena {

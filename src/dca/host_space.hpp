@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dca/host_blocks.hpp"
-#include "dca/records.hpp"
+#include "math/records.hpp"
 #include "dca/solver.hpp"
 
 /// Of what a loop does with one item: all that it calls is inlined, small vectors and matrices then stay in registers. By itself gcc stops
@@ -119,7 +119,7 @@ class HostSpace : public HostAccess {
     /// Whether there are any for a group whose handles carry K directions.
     template <int K>
     static constexpr bool has_blocks = true;
-    /// Whether blocks are teams of threads (parts.hpp).
+    /// Whether blocks are teams of threads (team_tree.hpp).
     template <int K>
     static constexpr bool has_teams = false;
     /// Whether it pays to let each block do its whole work alone.

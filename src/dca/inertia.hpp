@@ -1,4 +1,4 @@
-// Inertias and wrenches of articulated bodies as runs on hinges (inertia_run.hpp) go by them: about another point, in other axes, and past
+// Inertias and wrenches of articulated bodies as runs on hinges (floating_run.hpp) go by them: about another point, in other axes, and past
 // a hinge, which is released. Host and device; Real = double, wider, or several side by side.
 #pragma once
 

@@ -5,7 +5,7 @@
 // which is D_i^T zeta_ij D_j of the leaf (src/dca/README.md, "Bodies"; chapter, eqs 2.1-2.4, 2.6-2.7) for every kind of joint.
 #pragma once
 
-#include "dca/rotation.hpp"
+#include "math/rotation.hpp"
 #include "dca/segment.hpp"
 
 namespace catena::dca {

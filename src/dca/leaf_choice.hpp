@@ -2,7 +2,7 @@
 #pragma once
 
 #include "dca/articulated_sweeps.hpp"
-#include "dca/leaves.hpp"
+#include "dca/body_leaf.hpp"
 
 namespace catena::dca {
 

@@ -6,7 +6,7 @@
 // the same, since forces along free directions are known and stand in the biases (src/dca/README.md, "Projected handles").
 #pragma once
 
-#include "dca/linear.hpp"
+#include "math/linear.hpp"
 
 namespace catena::dca {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "dca/host_space.hpp"
-#include "dca/lost_matrix.hpp"
+#include "dca/pivot_failure.hpp"
 #include "error.hpp"
 
 namespace catena {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "chain/chain_group.hpp"
-#include "dca/executor.hpp"
+#include "math/executor.hpp"
 
 namespace catena {
 

@@ -4,19 +4,19 @@
 // A sweep is an object with its sweeps `s` (TreeSweeps, or another of SweepsOf with all its members), Segment (what travels upwards), Part
 // (what read(begin, end) finds of a part's bodies), part(Run, p, Part), joined(inboard, outboard, JointAt), load and store of slots,
 // close(Root, segment) and, if it `descends`, node(joint), force(node, first, next), down<unroll>(Run, p, Part, first, next) from the
-// states at the ends of part p and ShownNumbers (of what ranks show each other in between, shown_numbers.hpp). One that `keeps_nodes` has
-// joined(..., node) and keep(joint, node) as well. One that `goes_short` (cuda/short_chain.cuh, cuda/group_lanes.cuh) also has bodies that
+// states at the ends of part p and ShownNumbers (of what ranks show each other in between, frontier_records.hpp). One that `keeps_nodes` has
+// joined(..., node) and keep(joint, node) as well. One that `goes_short` (cuda/short/short_chain.cuh, cuda/sweeps/group_lanes.cuh) also has bodies that
 // are read one by one (body_at), join_bodies() or join_bodies_at_once(), joined_at_once(), first_force(), forces() or forces_by_gains(),
 // accelerate() or accelerate_turned(), and nobody reads its joints, forces or slots afterwards: not all of them are written then. One that
-// has matrices() and biases() may leave stages with runs to these, one after the other (cuda/stage_walk.cuh); one that takes factors has
+// has matrices() and biases() may leave stages with runs to these, one after the other (cuda/sweeps/stage_walk.cuh); one that takes factors has
 // joined(..., factors), close_free(), down(..., passages, factors) and PassagesHere, instead of which there may be others
-// (cuda/run_parts.cuh).
+// (cuda/sweeps/run_parts.cuh).
 #pragma once
 
-#include "dca/closure.hpp"
-#include "dca/leaves.hpp"
-#include "dca/shown_numbers.hpp"
-#include "dca/stages.hpp"
+#include "dca/loop_closure.hpp"
+#include "dca/body_leaf.hpp"
+#include "tree/frontier_records.hpp"
+#include "tree/stages.hpp"
 
 namespace catena::dca {
 

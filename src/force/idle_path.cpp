@@ -1,6 +1,6 @@
 // A rank without beads, where others have theirs on GPUs.
-#include "force/device_path.hpp"
-#include "force/halo.hpp"
+#include "neighbours/device_path.hpp"
+#include "neighbours/halo.hpp"
 
 namespace catena {
 namespace {

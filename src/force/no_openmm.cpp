@@ -1,9 +1,9 @@
 // A build without OpenMM: every way to it says so.
 #include "error.hpp"
-#include "force/openmm_contacts.hpp"
+#include "force/contacts.hpp"
 #include "force/openmm_force.hpp"
-#include "force/openmm_import.hpp"
-#include "force/openmm_own.hpp"
+#include "systems/import.hpp"
+#include "force/openmm_integrator.hpp"
 
 namespace catena {
 

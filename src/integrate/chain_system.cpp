@@ -6,8 +6,8 @@
 
 #include "chain/gather.hpp"
 #include "cuda/dynamics.hpp"
-#include "cuda/memory.hpp"
-#include "cuda/solver.hpp"
+#include "cuda/space/memory.hpp"
+#include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "mpi/thread_limit.hpp"
 

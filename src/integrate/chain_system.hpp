@@ -11,8 +11,8 @@
 
 #include "chain/scene_windows.hpp"
 #include "force/openmm_force.hpp"
-#include "integrate/absolute_dynamics.hpp"
-#include "integrate/joint_dynamics.hpp"
+#include "dynamics/absolute_dynamics.hpp"
+#include "dynamics/joint/joint_dynamics.hpp"
 #include "integrate/timeline.hpp"
 #include "io/array_part.hpp"
 

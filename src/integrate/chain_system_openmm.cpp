@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "cuda/solver.hpp"
+#include "cuda/device/gpu.hpp"
 #include "error.hpp"
-#include "integrate/bead_system.hpp"
+#include "integrate/scene_beads.hpp"
 #include "integrate/chain_system.hpp"
 
 namespace catena {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "error.hpp"
-#include "integrate/rigid_start.hpp"
-#include "integrate/stays_open.hpp"
+#include "dynamics/rigid_start.hpp"
+#include "dynamics/stays_open.hpp"
 #include "integrate/step_failure.hpp"
 #include "mpi/first_rank.hpp"
 

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrate/absolute_dynamics.hpp"
-#include "integrate/closing.hpp"
+#include "dynamics/absolute_dynamics.hpp"
+#include "dynamics/closing.hpp"
 
 namespace catena {
 

@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "integrate/checkpoint_values.hpp"
-#include "integrate/embedded_steps.hpp"
+#include "dynamics/joint/embedded_steps.hpp"
 #include "integrate/joint_integrators.hpp"
 #include "integrate/step_control.hpp"
 #include "mpi/first_rank.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "dca/lost_matrix.hpp"
+#include "dca/pivot_failure.hpp"
 
 namespace catena {
 namespace {

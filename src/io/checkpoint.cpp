@@ -9,7 +9,7 @@
 #include "error.hpp"
 #include "io/checkpoint_file.hpp"
 #include "io/descriptor.hpp"
-#include "io/seal.hpp"
+#include "io/file_seal.hpp"
 
 namespace catena {
 namespace {

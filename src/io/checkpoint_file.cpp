@@ -5,7 +5,7 @@
 
 #include "error.hpp"
 #include "io/checksum.hpp"
-#include "io/seal.hpp"
+#include "io/file_seal.hpp"
 
 namespace catena::hdf5 {
 namespace {

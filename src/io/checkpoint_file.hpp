@@ -1,7 +1,7 @@
 // What a checkpoint's file holds: attributes format, version, step, time_bits, scene_hash and checksum at the root; groups notes (texts),
 // integers and arrays (doubles), one dataset an entry. The checksum runs over all of it, of arrays over their numbers at their places, so
 // that several ranks can write and read them: what was handed over is what is read. A seal in front of HDF5's own bytes tells of damage
-// before HDF5 meets it (seal.hpp).
+// before HDF5 meets it (file_seal.hpp).
 #pragma once
 
 #include <cstdint>

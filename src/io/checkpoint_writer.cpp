@@ -7,7 +7,7 @@
 #include "error.hpp"
 #include "io/checkpoint_file.hpp"
 #include "io/output_file.hpp"
-#include "io/seal.hpp"
+#include "io/file_seal.hpp"
 #include "io/writers.hpp"
 #include "mpi/first_rank.hpp"
 

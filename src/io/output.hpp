@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "dca/executor.hpp"
-#include "dca/linear.hpp"
-#include "dca/rotation.hpp"
+#include "math/executor.hpp"
+#include "math/linear.hpp"
+#include "math/rotation.hpp"
 #include "io/array_part.hpp"
-#include "io/file_way.hpp"
+#include "io/parallel_io_mode.hpp"
 
 namespace catena {
 

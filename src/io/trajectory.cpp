@@ -4,7 +4,7 @@
 
 #include "clock.hpp"
 #include "error.hpp"
-#include "io/file_way.hpp"
+#include "io/parallel_io_mode.hpp"
 #include "io/hdf5_data.hpp"
 #include "io/output.hpp"
 #include "io/trajectory_layout.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "cuda/memory.hpp"
+#include "cuda/space/memory.hpp"
 #include "mpi/first_rank.hpp"
 #include "plan/cache.hpp"
 

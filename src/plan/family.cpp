@@ -4,7 +4,7 @@
 #include <map>
 
 #include "scene/freedom.hpp"
-#include "scene/generators.hpp"
+#include "generate/generators.hpp"
 
 namespace catena::plan {
 namespace {

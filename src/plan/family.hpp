@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "chain/chain_group.hpp"
-#include "scene/generators.hpp"
+#include "generate/generators.hpp"
 
 namespace catena::plan {
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <numeric>
 
-#include "integrate/absolute_dynamics.hpp"
-#include "integrate/joint_dynamics.hpp"
+#include "dynamics/absolute_dynamics.hpp"
+#include "dynamics/joint/joint_dynamics.hpp"
 #include "integrate/timeline.hpp"
 
 namespace catena::plan {

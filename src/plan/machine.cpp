@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-#include "cuda/memory.hpp"
-#include "cuda/solver.hpp"
+#include "cuda/space/memory.hpp"
+#include "cuda/device/gpu.hpp"
 #include "force/openmm_force.hpp"
-#include "report/hardware.hpp"
+#include "measure/hardware.hpp"
 
 namespace catena::plan {
 namespace {

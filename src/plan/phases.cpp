@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "report/timing.hpp"
+#include "measure/timing.hpp"
 
 namespace catena::plan {
 namespace {

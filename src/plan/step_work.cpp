@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "integrate/constrained_step.hpp"
+#include "dynamics/constrained_step.hpp"
 #include "integrate/joint_integrators.hpp"
 
 namespace catena::plan {

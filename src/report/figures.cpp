@@ -1,229 +1,289 @@
 #include "report/figures.hpp"
 
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <numeric>
 
-#include "cuda/solver.hpp"
-#include "error.hpp"
-#include "integrate/stepper.hpp"
+#include "console/text.hpp"
+#include "report/version.hpp"
+#include "io/output.hpp"
+#include "mpi/first_rank.hpp"
+#include "report/chapter_figures.hpp"
+#include "measure/hardware.hpp"
+#include "measure/operation_counts.hpp"
 
-namespace catena {
+namespace catena::command {
 namespace {
 
-/// A case made ready: it goes back to the pendulum at rest before every step.
-class Prepared {
-  public:
-    Prepared(FigureCase const& what, Handles handles, std::int64_t bodies, int threads, Communicator const& communicator)
-        : scene_(scene_of(what, handles, bodies, threads)),
-          system_(scene_, Axes::joint, communicator),
-          stepper_(make_stepper(system_, scene_.dynamics)) {
-        point_.what = what;
-        point_.handles = handles;
-        point_.bodies = bodies;
-        point_.threads = system_.executor().threads();
-        system_.evaluate();
-        point_.residual = system_.residual();
-        point_.residual_bound = system_.residual_bound();
-        start_ = system_.state();
-    }
+constexpr double microseconds = 1e6, milliseconds = 1e3;
 
-    /// Once by the clock, and once more with its sweeps measured one by one.
-    void step(bool counts) {
-        Communicator const& communicator = system_.communicator();
-        double const seconds = seconds_of_step();
-        system_.measure(true);
-        SolverReport const before = system_.solver_reports().front();
-        seconds_of_step();
-        SolverReport const after = system_.solver_reports().front();
-        system_.measure(false);
-        if (!counts) return;
-        auto const solves = static_cast<double>(after.bias_sweeps + after.evaluations - before.bias_sweeps - before.evaluations);
-        auto const add = [&](std::vector<double>& list, double value) { list.push_back(communicator.max(value)); };
-        add(step_, seconds);
-        add(solve_, (after.matrix_seconds - before.matrix_seconds + after.bias_seconds - before.bias_seconds) / solves);
-        add(upload_, (after.split.upload - before.split.upload) / solves);
-        add(download_, (after.split.download - before.split.download) / solves);
-        add(lower_, (after.split.lower() - before.split.lower()) / solves);
-        add(upper_, (after.split.upper() - before.split.upper()) / solves);
-    }
+std::string number(std::optional<double> const& value) {
+    if (value && !std::isfinite(*value)) return "not resolved";
+    return value ? fmt::format("{:.3g}", *value) : "-";
+}
+char const* verdict(bool valid) { return valid ? "VALID" : "INVALID"; }
 
-    FigurePoint point() const {
-        FigurePoint p = point_;
-        p.step = spread_of(step_);
-        p.solve = spread_of(solve_);
-        if (p.what.backend != Backend::cuda_levels) return p;
-        p.upload = spread_of(upload_);
-        p.download = spread_of(download_);
-        p.lower = spread_of(lower_);
-        p.upper = spread_of(upper_);
-        return p;
-    }
+Json json_of(Operations const& o) {
+    return {{"additions", o.additions}, {"multiplications", o.multiplications}, {"fused", o.fused},
+            {"divisions", o.divisions}, {"square_roots", o.square_roots},       {"sum", o.sum()}};
+}
+Json json_of(HandleOperations const& h) {
+    return {
+        {"directions", h.directions},
+        {"assembly", {{"matrices", json_of(h.assembly_matrices)}, {"biases", json_of(h.assembly_biases)}}},
+        {"disassembly", json_of(h.disassembly)},
+        {"leaf",
+         {{"matrices", json_of(h.leaf_matrices)}, {"biases", json_of(h.leaf_biases)}, {"accelerations", json_of(h.leaf_accelerations)}}}};
+}
+Json json_of(std::optional<Spread> const& s) {
+    if (!s) return nullptr;
+    return {{"median", s->median}, {"min", s->min}, {"max", s->max}};
+}
 
-  private:
-    double seconds_of_step() {
-        system_.set_state(start_);
-        system_.wait();
-        system_.communicator().barrier();
-        double const begin = seconds_now();
-        stepper_->step(0, nullptr);
-        system_.wait();
-        return seconds_now() - begin;
+/// The lowest levels' share of the merges, and what a merge and a body cost.
+void add_table(Outcome& outcome) {
+    std::int64_t constexpr bodies = 2048;
+    std::vector<std::int64_t> const merges = merges_of_levels(bodies);
+    auto const all = std::accumulate(merges.begin(), merges.end(), std::int64_t{0});
+    Table levels({"levels", "kernel operations", "chapter", "% of a solve", "chapter"});
+    Json& json = outcome.json["table_2.1"] = {{"bodies", bodies}, {"levels", Json::array()}, {"operations", Json::array()}};
+    std::int64_t below = 0;
+    for (std::size_t l = 0; l < chapter_levels.size(); ++l) {
+        below += merges[l];
+        double const percent = 100.0 * static_cast<double>(below) / static_cast<double>(all);
+        ChapterLevel const& chapter = chapter_levels[l];
+        levels.add({chapter.level, std::to_string(below), std::to_string(chapter.operations), fmt::format("{:.1f}", percent),
+                    std::to_string(chapter.percent)});
+        json["levels"].push_back({{"levels", chapter.level},
+                                  {"kernel_operations", below},
+                                  {"chapter_kernel_operations", chapter.operations},
+                                  {"percent", percent},
+                                  {"chapter_percent", chapter.percent}});
     }
-    static Scene scene_of(FigureCase const& what, Handles handles, std::int64_t bodies, int threads) {
-        Scene scene = chapter_pendulum(bodies, {});
-        scene.solver.backend = what.backend;
-        scene.solver.gpu_levels = what.gpu_levels;
-        scene.solver.handles = handles;
-        scene.solver.threads = threads;
-        return scene;
+    outcome.text += fmt::format("Table 2.1: merges of the lowest levels, {} bodies\n", bodies) + levels.text();
+    Table operations({"joint", "directions", "assembly", "disassembly", "leaf", "full: directions", "assembly", "disassembly", "leaf",
+                      "assembly, full over projected"});
+    for (JointOperations const& joint : count_operations()) {
+        HandleOperations const &p = joint.projected, &f = joint.full;
+        operations.add({joint.joint, std::to_string(p.directions), std::to_string(p.assembly()), std::to_string(p.disassembly.sum()),
+                        std::to_string(p.leaf()), std::to_string(f.directions), std::to_string(f.assembly()),
+                        std::to_string(f.disassembly.sum()), std::to_string(f.leaf()),
+                        fmt::format("{:.3g}", static_cast<double>(f.assembly()) / static_cast<double>(p.assembly()))});
+        json["operations"].push_back({{"joint", joint.joint}, {"projected", json_of(p)}, {"full", json_of(f)}});
     }
+    outcome.text += "Floating-point operations of one merge and one body (a fused one counts twice), projected handles, then full ones\n" +
+                    operations.text();
+}
 
-    Scene scene_;
-    ChainSystem system_;
-    std::unique_ptr<Stepper> stepper_;
-    std::map<std::string, std::vector<double>> start_;
-    FigurePoint point_;
-    std::vector<double> step_, solve_, upload_, download_, lower_, upper_;
+Json json_of(LevelSeconds const& s) { return {{"assembly", s.assembly}, {"disassembly", s.disassembly}}; }
+
+/// "CPU", "GPU", or "-" where there is nothing to compare.
+char const* cheapest_place(LevelPoint const& p) {
+    double cpu = p.one_core.assembly;
+    if (p.threads) cpu = std::min(cpu, p.threads->assembly);
+    bool const known =
+        p.gpu && std::isfinite(p.gpu->assembly) && std::isfinite(p.one_core.assembly) && (!p.threads || std::isfinite(p.threads->assembly));
+    return !known ? "-" : p.gpu->assembly < cpu ? "GPU" : "CPU";
+}
+
+/// How many of the levels' times there are, and how many of them drown in noise.
+struct Resolved {
+    int all = 0, missing = 0;
+    void add(LevelSeconds const& s) {
+        for (double const value : {s.assembly, s.disassembly}) ++all, missing += std::isfinite(value) ? 0 : 1;
+    }
 };
+Resolved resolved(std::vector<LevelStudy> const& studies) {
+    Resolved count;
+    for (LevelStudy const& study : studies)
+        for (LevelPoint const& p : study.levels) {
+            count.add(p.one_core);
+            for (auto const* more : {&p.threads, &p.gpu})
+                if (*more) count.add(**more);
+        }
+    return count;
+}
+std::string resolution_text(std::vector<LevelStudy> const& studies) {
+    Resolved const count = resolved(studies);
+    if (count.missing == 0) return "";
+    return fmt::format("; figure 2.3: {} of {} times not resolved, noise is larger (raise --repeat, or measure on an idle machine)",
+                       count.missing, count.all);
+}
 
-/// The pendulum at rest, solved with the tree cut above one level.
-class CutTree {
-  public:
-    CutTree(ChainGroup const& group, Scene const& scene, Executor const& executor, Communicator const& communicator, int level,
-            dca::LevelPartMaker const& lower, Executor const& upper)
-        : dynamics_(make_joint_dynamics(group, scene, executor, communicator,
-                                        dca::make_level_solver(group, communicator, {level, level}, lower, dca::host_levels(upper)))) {}
-
-    void evaluate(bool counts) {
-        SplitSeconds const before = dynamics_->solver().report().split;
-        dynamics_->update_configuration();
-        dynamics_->assemble_matrices();
-        dynamics_->solve();
-        dynamics_->set_rates();
-        SplitSeconds spent = dynamics_->solver().report().split;
-        spent -= before;
-        if (counts) spent_.push_back(spent);
+void add_levels(Outcome& outcome, LevelStudy const& study) {
+    Table table({"level", "merges", "one core", "threads", "GPU", "transfers", "cheapest", "one core", "threads", "GPU"}, {0, 6});
+    Json levels = Json::array();
+    for (LevelPoint const& p : study.levels) {
+        auto const us = [](double seconds) { return number(microseconds * seconds); };
+        auto const part = [&](std::optional<LevelSeconds> const& s, double LevelSeconds::* what) { return s ? us((*s).*what) : "-"; };
+        table.add({std::to_string(p.level), std::to_string(p.merges), us(p.one_core.assembly), part(p.threads, &LevelSeconds::assembly),
+                   part(p.gpu, &LevelSeconds::assembly), p.transfers ? us(*p.transfers) : "-", cheapest_place(p),
+                   us(p.one_core.disassembly), part(p.threads, &LevelSeconds::disassembly), part(p.gpu, &LevelSeconds::disassembly)});
+        levels.push_back({{"level", p.level},
+                          {"merges", p.merges},
+                          {"one_core", json_of(p.one_core)},
+                          {"threads", p.threads ? json_of(*p.threads) : Json(nullptr)},
+                          {"gpu", p.gpu ? json_of(*p.gpu) : Json(nullptr)},
+                          {"transfers_cut_above", p.transfers ? Json(*p.transfers) : Json(nullptr)}});
     }
-    std::vector<SplitSeconds> const& spent() const { return spent_; }
-    double residual() { return dynamics_->residual(*serial_executor()); }
-    std::int64_t depth() const { return dynamics_->solver().report().depth; }
+    outcome.valid = outcome.valid && study.valid();
+    outcome.text += fmt::format(
+        "Figure 2.3: each level of the tree, {} bodies, {} handles, {} threads; microseconds: assembly, transfers of a tree cut above the "
+        "level, the cheapest place, disassembly. Level 1 includes the bodies. Residual {:.1e}, bound {:.1e}, {}\n",
+        study.bodies, name_of(study.handles), study.threads, study.residual, study.residual_bound, verdict(study.valid()));
+    outcome.text += table.text();
+    outcome.json["figure_2.3"].push_back({{"bodies", study.bodies},
+                                          {"handles", name_of(study.handles)},
+                                          {"threads", study.threads},
+                                          {"levels", levels},
+                                          {"residual", study.residual},
+                                          {"residual_bound", study.residual_bound},
+                                          {"valid", study.valid()}});
+}
 
-  private:
-    std::unique_ptr<JointDynamics> dynamics_;
-    std::vector<SplitSeconds> spent_;
-};
+void add_points(Outcome& outcome, std::vector<FigurePoint> const& points) {
+    outcome.json["points"] = Json::array();
+    for (FigurePoint const& p : points) {
+        outcome.valid = outcome.valid && p.valid();
+        outcome.json["points"].push_back({{"bodies", p.bodies},
+                                          {"handles", name_of(p.handles)},
+                                          {"case", p.what.name},
+                                          {"backend", name_of(p.what.backend)},
+                                          {"gpu_levels", p.what.backend == Backend::cuda_levels ? Json(p.what.gpu_levels) : Json(nullptr)},
+                                          {"threads", p.threads},
+                                          {"repeat", p.step.count},
+                                          {"full_step", json_of(p.step)},
+                                          {"solve", json_of(p.solve)},
+                                          {"upload", json_of(p.upload)},
+                                          {"download", json_of(p.download)},
+                                          {"levels_on_gpu", json_of(p.lower)},
+                                          {"levels_on_host", json_of(p.upper)},
+                                          {"residual", p.residual},
+                                          {"residual_bound", p.residual_bound},
+                                          {"valid", p.valid()}});
+    }
+}
 
-/// Median of what `more` spent in that part beyond `less`, evaluation by evaluation: they were taken one after the other. NaN where more
-/// than a quarter of the differences are not positive: noise is larger than what was to be measured.
-double median_of_differences(CutTree const& more, CutTree const& less, double SplitSeconds::* part) {
-    std::vector<double> differences;
-    for (std::size_t i = 0; i < more.spent().size(); ++i) differences.push_back(more.spent()[i].*part - less.spent()[i].*part);
-    auto const quarter = differences.begin() + std::ssize(differences) / 4;
-    std::nth_element(differences.begin(), quarter, differences.end());
-    return *quarter > 0 ? spread_of(differences).median : std::nan("");
+/// A row a number of bodies: the cases measured, the worst of their residuals, and the chapter's row where it has one.
+void add_quantity(Outcome& outcome, std::vector<FigurePoint> const& points, FigureQuantity const& quantity, Handles handles) {
+    std::vector<std::string> names;
+    std::map<std::int64_t, std::map<std::string, FigurePoint const*>> rows;
+    for (FigurePoint const& p : points) {
+        if (p.handles != handles || !quantity_of(p, quantity.figure)) continue;
+        if (std::find(names.begin(), names.end(), p.what.name) == names.end()) names.push_back(p.what.name);
+        rows[p.bodies][p.what.name] = &p;
+    }
+    if (names.empty()) {
+        outcome.text += fmt::format("Figure {}: {}, {} handles: left out, no case here has transfers that are timed\n", quantity.figure,
+                                    quantity.title, name_of(handles));
+        return;
+    }
+    std::vector<std::string> header{"bodies"};
+    header.insert(header.end(), names.begin(), names.end());
+    header.insert(header.end(), {"residual/bound", ""});
+    for (std::string const& column : chapter_columns) header.push_back("ch. " + column);
+    Table table(header, {0, names.size() + 2});
+    auto const& chapter = chapter_figures().at(quantity.chapter);
+    for (auto const& [bodies, row] : rows) {
+        std::vector<std::string> cells{std::to_string(bodies)};
+        double worst = 0;
+        bool valid = true;
+        for (std::string const& name : names) {
+            FigurePoint const& p = *row.at(name);
+            cells.push_back(number(milliseconds * quantity_of(p, quantity.figure)->median));
+            worst = larger(worst, p.residual / p.residual_bound);
+            valid = valid && p.valid();
+        }
+        cells.insert(cells.end(), {fmt::format("{:.1e}", worst), verdict(valid)});
+        auto const found = chapter.find(bodies);
+        for (std::size_t i = 0; i < chapter_columns.size(); ++i) cells.push_back(found == chapter.end() ? "" : number(found->second[i]));
+        table.add(cells);
+    }
+    outcome.text +=
+        fmt::format("Figure {}: {}, {} handles; milliseconds\n", quantity.figure, quantity.title, name_of(handles)) + table.text();
 }
-/// Of the level between two cuts.
-LevelSeconds as_lower(CutTree const& below, CutTree const& above) {
-    return {median_of_differences(above, below, &SplitSeconds::lower_assembly),
-            median_of_differences(above, below, &SplitSeconds::lower_disassembly)};
-}
-LevelSeconds as_upper(CutTree const& below, CutTree const& above) {
-    return {median_of_differences(below, above, &SplitSeconds::upper_assembly),
-            median_of_differences(below, above, &SplitSeconds::upper_disassembly)};
-}
-double median_of_transfers(CutTree const& cut) {
-    std::vector<double> transfers;
-    for (SplitSeconds const& s : cut.spent()) transfers.push_back(s.transfers());
-    return spread_of(transfers).median;
+
+void make_folder(Communicator const& communicator, std::string const& folder) {
+    on_first_rank(communicator, [&] {
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error || !std::filesystem::is_directory(folder, error))
+            throw InputError("the folder cannot be made: " + error.message(), "--output " + folder, "name another");
+    });
 }
 
 }  // namespace
 
-Scene chapter_pendulum(std::int64_t links, std::vector<std::string> const& overrides) {
-    return parse_scene(
-        "title: the chapter's pendulum\nunits: si\n"
-        "chains: [{name: pendulum, generator: {pendulum: {links: " +
-            std::to_string(links) +
-            ", mass: 12, length: 1, radius: 0.01}}}]\n"
-            "forces: {gravity: [0, -10, 0]}\n"
-            "dynamics: {integrator: rk4, step: 1e-4, steps: 1}\n",
-        "pendulum-" + std::to_string(links), overrides);
-}
+Outcome bench_figures(Communicator const& communicator, BenchRequest const& request) {
+    std::string const folder = request.output.empty() ? "catena-figures" : request.output;
+    make_folder(communicator, folder);
+    auto const wanted = [&](std::string_view figure) {
+        return std::find(request.figures.begin(), request.figures.end(), figure) != request.figures.end();
+    };
+    std::vector<Handles> handles{Handles::full, Handles::projected};
+    if (!request.handles.empty()) handles = {request.handles == "full" ? Handles::full : Handles::projected};
+    int const threads = request.threads.empty() ? 0 : std::stoi(request.threads);
+    std::vector<std::string> left_out;
+    std::vector<FigureCase> const cases = figure_cases(left_out);
+    if (cases.back().backend == Backend::cuda) left_out.emplace_back("cuda in figure 2.7: its transfers are not timed by themselves");
 
-std::vector<FigureCase> figure_cases(std::vector<std::string>& left_out) {
-    std::vector<FigureCase> cases{{"serial", Backend::serial}, {"segments", Backend::segments}};
-    if (openmp_is_built())
-        cases.push_back({"openmp", Backend::openmp});
-    else
-        left_out.emplace_back("openmp: built without OpenMP");
-    for (char const* const levels : {"1", "3", "6", "all"}) {
-        std::string const name = std::string("cuda-levels ") + levels;
-        if (cuda::why_not().empty())
-            cases.push_back({name, Backend::cuda_levels, levels});
-        else
-            left_out.push_back(name + ": " + cuda::why_not());
-    }
-    if (cuda::why_not().empty())
-        cases.push_back({"cuda", Backend::cuda});
-    else
-        left_out.push_back("cuda: " + cuda::why_not());
-    return cases;
-}
+    Figures figures;
+    std::int64_t const largest = *std::max_element(request.sizes.begin(), request.sizes.end());
+    if (wanted("2.3") && communicator.size() == 1)
+        for (Handles const kind : handles)
+            figures.levels.push_back(measure_levels(kind, largest, threads > 0 ? threads : cores_of_rank(communicator), request.repeat));
+    else if (wanted("2.3"))
+        left_out.emplace_back("figure 2.3: levels are timed on one rank");
+    if (wanted("2.5") || wanted("2.6") || wanted("2.7"))
+        for (Handles const kind : handles)
+            for (std::int64_t const bodies : request.sizes) {
+                auto const points = measure_steps(cases, kind, bodies, threads, request.repeat, communicator);
+                figures.points.insert(figures.points.end(), points.begin(), points.end());
+                spdlog::info("{} bodies, {} handles: measured", bodies, name_of(kind));
+            }
 
-std::vector<FigurePoint> measure_steps(std::vector<FigureCase> const& cases, Handles handles, std::int64_t bodies, int threads, int repeat,
-                                       Communicator const& communicator) {
-    std::vector<std::unique_ptr<Prepared>> prepared;
-    for (FigureCase const& each : cases) prepared.push_back(std::make_unique<Prepared>(each, handles, bodies, threads, communicator));
-    int constexpr warm_up = 3;
-    for (int i = 0; i < warm_up + repeat; ++i)
-        for (auto const& each : prepared) each->step(i >= warm_up);
-    std::vector<FigurePoint> points;
-    for (auto const& each : prepared) points.push_back(each->point());
-    return points;
-}
-
-std::vector<std::int64_t> merges_of_levels(std::int64_t bodies) {
-    dca::Partition const partition({bodies}, true, 1);
-    std::vector<std::int64_t> merges;
-    for (auto const& level : dca::make_schedule(partition, 0).levels) merges.push_back(std::ssize(level));
-    return merges;
-}
-
-LevelStudy measure_levels(Handles handles, std::int64_t bodies, int threads, int repeat) {
-    Scene const scene = chapter_pendulum(bodies, {});
-    auto const communicator = serial_communicator();
-    auto const groups = make_groups(scene, Axes::joint, handles, true, *communicator);
-    auto const one = serial_executor(), many = openmp_is_built() ? openmp_executor(threads) : serial_executor();
-    bool const gpu = cuda::why_not().empty() && cuda::choose_device(*communicator).empty();
-    std::vector<std::int64_t> const merges = merges_of_levels(bodies);
-    std::vector<std::unique_ptr<CutTree>> host, device;  // by the number of levels below the cut
-    for (int level = 0; level <= static_cast<int>(merges.size()); ++level) {
-        auto const cut = [&](dca::LevelPartMaker const& lower) {
-            return std::make_unique<CutTree>(*groups[0], scene, *one, *communicator, level, lower, *many);
-        };
-        host.push_back(cut(dca::host_levels(*one)));
-        if (gpu) device.push_back(cut(cuda::make_levels));
-    }
-    int constexpr warm_up = 3;
-    for (int i = 0; i < warm_up + repeat; ++i)
-        for (auto* cuts : {&host, &device})
-            for (auto const& cut : *cuts) cut->evaluate(i >= warm_up);
-    LevelStudy study{handles, bodies, many->threads(), {}, 0, 32.0 * static_cast<double>(host[0]->depth()) * 0x1p-53};
-    for (auto const* cuts : {&host, &device})
-        for (auto const& cut : *cuts) study.residual = larger(study.residual, cut->residual());
-    for (std::size_t k = 1; k < host.size(); ++k) {
-        LevelPoint point;
-        point.level = static_cast<int>(k);
-        point.merges = merges[k - 1];
-        point.one_core = as_lower(*host[k - 1], *host[k]);
-        if (many->threads() > 1) point.threads = as_upper(*host[k - 1], *host[k]);
-        if (gpu) {
-            point.gpu = as_lower(*device[k - 1], *device[k]);
-            point.transfers = median_of_transfers(*device[k]);
+    Outcome outcome;
+    outcome.json = {
+        {"bench", "figures"},
+        {"build", version_json()},
+        {"hardware", hardware_json()},
+        {"ranks", communicator.size()},
+        {"case",
+         "the chapter's pendulum at rest, one step of RK4 of 1e-4 s; medians, seconds; of a solve: both sweeps, transfers included"},
+        {"left_out", left_out}};
+    outcome.text =
+        fmt::format("medians of {}, cases in turn. {}, {}; {}, {}. ch.: the chapter, {}\n", request.repeat,
+                    counted(communicator.size(), "rank", "ranks"), hardware_text(), compiler_name(), instruction_set(), chapter_hardware);
+    if (wanted("table-2.1")) add_table(outcome);
+    for (LevelStudy const& study : figures.levels) add_levels(outcome, study);
+    add_points(outcome, figures.points);
+    for (FigureQuantity const& quantity : figure_quantities)
+        for (Handles const kind : handles)
+            if (wanted(quantity.figure)) add_quantity(outcome, figures.points, quantity, kind);
+    for (std::string const& line : left_out) outcome.text += "left out: " + line + "\n";
+    Json chapter = Json::object();
+    for (auto const& [figure, rows] : chapter_figures())
+        for (auto const& [bodies, row] : rows) chapter[figure].push_back({bodies, row[0], row[1], row[2], row[3], row[4], row[5]});
+    outcome.json["chapter"] = {{"hardware", chapter_hardware},
+                               {"columns", {"bodies", "serial", "openmp", "gpu1", "gpu3", "gpu6", "gpu_all"}},
+                               {"milliseconds", chapter}};
+    outcome.json["valid"] = outcome.valid;
+    outcome.json["not_resolved"] = resolved(figures.levels).missing;
+    outcome.complaint = "a residual above its bound: see the results";
+    on_first_rank(communicator, [&] {
+        write_text_file(folder + "/figures.json", json_text(outcome.json));
+        outcome.text += "wrote " + folder + "/figures.json";
+        for (auto const& [name, svg] : draw_figures(figures, request.figures)) {
+            write_text_file(fmt::format("{}/{}", folder, name), svg);
+            outcome.text += ", " + name;
         }
-        study.levels.push_back(point);
-    }
-    return study;
+        outcome.text += fmt::format("\n{}{}\n", verdict(outcome.valid), resolution_text(figures.levels));
+    });
+    return outcome;
 }
 
-}  // namespace catena
+}  // namespace catena::command

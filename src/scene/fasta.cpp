@@ -6,7 +6,7 @@
 #include <cctype>
 #include <sstream>
 
-#include "force/calvados2.hpp"
+#include "scene/calvados2.hpp"
 #include "scene/fields.hpp"
 #include "scene/files.hpp"
 #include "scene/residue_names.hpp"

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "dca/linear.hpp"
-#include "dca/rotation.hpp"
+#include "math/linear.hpp"
+#include "math/rotation.hpp"
 #include "scene/node.hpp"
 
 namespace catena::scene {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dca/linear.hpp"
+#include "math/linear.hpp"
 #include "scene/node.hpp"
 
 namespace catena::scene {

@@ -10,7 +10,7 @@
 #include <map>
 #include <sstream>
 
-#include "scene/printable.hpp"
+#include "io/printable.hpp"
 
 namespace catena::scene {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "dca/linear.hpp"
+#include "math/linear.hpp"
 
 namespace catena::scene {
 

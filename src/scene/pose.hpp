@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "dca/rotation.hpp"
+#include "math/rotation.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::scene {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "dca/linear.hpp"
-#include "dca/rotation.hpp"
-#include "dca/simd/level.hpp"
+#include "math/linear.hpp"
+#include "math/rotation.hpp"
+#include "math/simd_level.hpp"
 
 namespace catena {
 
@@ -267,13 +267,6 @@ struct Scene {
     /// Adds a note unless it is there.
     void note(std::string text);
 };
-
-/// Reads and validates a scene file. `overrides`: "key.path=value" with list indices as in "chains[0].count=10".
-/// Throws InputError with one line that names file, key, body index and remedy.
-Scene load_scene(std::string const& file, std::vector<std::string> const& overrides = {});
-
-/// As load_scene, from text; `name` stands for the file in messages and its folder resolves relative paths.
-Scene parse_scene(std::string const& text, std::string const& name, std::vector<std::string> const& overrides = {});
 
 char const* name_of(JointType);
 char const* name_of(Integrator);

@@ -10,11 +10,11 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "command/text.hpp"
+#include "console/text.hpp"
 #include "error.hpp"
-#include "report/hardware.hpp"
-#include "report/stability_cases.hpp"
-#include "scene/generators.hpp"
+#include "measure/hardware.hpp"
+#include "measure/stability_cases.hpp"
+#include "generate/generators.hpp"
 #include "tests/bench/precision/study.hpp"
 
 namespace catena::precision {

@@ -4,12 +4,13 @@
 #include <fstream>
 
 #include "error.hpp"
-#include "report/forward_error.hpp"
-#include "report/oracle_accelerations.hpp"
-#include "report/solver_errors.hpp"
+#include "measure/forward_error.hpp"
+#include "measure/oracle_accelerations.hpp"
+#include "measure/solver_errors.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/random_chain.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "io/memory_limit.hpp"
 #include "io/output.hpp"
-#include "io/run_lock.hpp"
+#include "run/run_lock.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "reader/load_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::test {

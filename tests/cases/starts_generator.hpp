@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dca/linear.hpp"
+#include "math/linear.hpp"
 #include "tests/cases/structures_generator.hpp"
 
 namespace catena::test {

@@ -5,12 +5,13 @@
 
 #include <fstream>
 
-#include "integrate/bead_system.hpp"
-#include "integrate/lone_forces.hpp"
-#include "integrate/start_relaxation.hpp"
+#include "integrate/scene_beads.hpp"
+#include "start/lone_forces.hpp"
+#include "start/start_relaxation.hpp"
 #include "mpi/communicator.hpp"
 #include "tests/cases/opened.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "dca/linear.hpp"
+#include "math/linear.hpp"
 
 namespace catena::test {
 

@@ -7,6 +7,7 @@
 
 #include "tests/cases/opened.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,5 +1,5 @@
 // Scenes that commands make themselves.
-#include "command/generated.hpp"
+#include "bench/generated.hpp"
 
 #include <gtest/gtest.h>
 

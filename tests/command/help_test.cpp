@@ -1,4 +1,4 @@
-#include "cuda/solver.hpp"
+#include "cuda/device/gpu.hpp"
 #include "tests/command/program.hpp"
 
 namespace catena::test {

@@ -1,15 +1,16 @@
-#include "command/outcome.hpp"
+#include "console/outcome.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "command/describe.hpp"
+#include "plan/describe.hpp"
 #include "command/session.hpp"
-#include "command/text.hpp"
+#include "console/text.hpp"
 #include "integrate/chain_system.hpp"
 #include "mpi/first_rank.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::command {
 namespace {

@@ -1,5 +1,5 @@
 // Other programs on the stability suite's chains: those that are here agree with articulated bodies in 113 bits, and made-up ones stop.
-#include "command/peer_answers.hpp"
+#include "bench/peer_answers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,9 @@
 #include <cstdio>
 #include <limits>
 
-#include "command/peer_chain.hpp"
-#include "report/growth.hpp"
+#include "bench/peer_chain.hpp"
+#include "measure/growth.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cuda/solver.hpp"
+#include "cuda/device/gpu.hpp"
 #include "force/openmm_force.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"

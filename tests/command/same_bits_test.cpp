@@ -5,10 +5,11 @@
 #include <cmath>
 #include <cstring>
 
-#include "report/solution.hpp"
-#include "report/solver_errors.hpp"
+#include "measure/solution.hpp"
+#include "measure/solver_errors.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,8 +1,8 @@
-#include "command/sampling_copies.hpp"
+#include "bench/sampling_copies.hpp"
 
 #include <gtest/gtest.h>
 
-#include "integrate/absolute_dynamics.hpp"
+#include "dynamics/absolute_dynamics.hpp"
 
 namespace catena::command {
 namespace {

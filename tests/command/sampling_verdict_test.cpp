@@ -1,4 +1,4 @@
-#include "command/sampling_verdict.hpp"
+#include "bench/sampling_verdict.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
 #include <cmath>
 #include <fstream>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "tests/command/program.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,15 +1,16 @@
 // What `solve` and `report` take for a thermal start is what `run` draws: the same velocities, though in other coordinates.
-#include "integrate/start_velocities.hpp"
+#include "start/start_velocities.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
-#include "integrate/observables.hpp"
+#include "observe/observables.hpp"
 #include "integrate/stepper.hpp"
 #include "tests/mpi/world.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <cstdio>
 
-#include "report/solution.hpp"
-#include "report/solver_errors.hpp"
+#include "measure/solution.hpp"
+#include "measure/solver_errors.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/reference_data.hpp"
 

@@ -4,17 +4,18 @@
 
 #include <gtest/gtest.h>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
-#include "report/oracle_accelerations.hpp"
-#include "report/solution.hpp"
-#include "report/solver_errors.hpp"
-#include "scene/generators.hpp"
+#include "measure/oracle_accelerations.hpp"
+#include "measure/solution.hpp"
+#include "measure/solver_errors.hpp"
+#include "generate/generators.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 #include "tests/support/same_bits.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

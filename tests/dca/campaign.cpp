@@ -8,9 +8,9 @@
 
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
-#include "report/nudged.hpp"
-#include "report/solution.hpp"
-#include "report/solver_errors.hpp"
+#include "measure/nudged.hpp"
+#include "measure/solution.hpp"
+#include "measure/solver_errors.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "scene/scene.hpp"
 #include "tests/support/shrink.hpp"
 
@@ -25,7 +25,7 @@ CampaignCase campaign_case(std::uint64_t seed);
 
 /// Errors are relative to the largest component of each quantity: accelerations (joints, centres of mass, angular, base) and
 /// constraint forces (torques, forces) by the articulated-body algorithm in long double and, up to 12 bodies, by one dense system.
-/// Bounds: of errors 1e-11, and where that is not kept the solver's residual bound times the growth of such residuals (report/nudged.hpp);
+/// Bounds: of errors 1e-11, and where that is not kept the solver's residual bound times the growth of such residuals (measure/nudged.hpp);
 /// of the residual the solver's own. Of a chain that its tip holds twice (planar, on joints that keep its plane) accelerations alone:
 /// forces are not unique there.
 struct CampaignErrors {

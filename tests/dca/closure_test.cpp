@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-#include "dca/closure.hpp"
+#include "dca/loop_closure.hpp"
 #include "tests/support/random_chain.hpp"
 
 namespace catena::test {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "dca/elementary.hpp"
-#include "dca/rotation.hpp"
+#include "math/elementary.hpp"
+#include "math/rotation.hpp"
 
 namespace catena {
 namespace {

@@ -1,11 +1,12 @@
 // How arrays of bodies lie in memory: the host's, and the order of a GPU's.
-#include "chain/field.hpp"
+#include "math/field.hpp"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "integrate/chain_system.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena {
 namespace {

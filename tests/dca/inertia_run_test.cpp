@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "dca/inertia_run.hpp"
+#include "dca/floating_run.hpp"
 
 namespace catena::dca {
 namespace {

@@ -1,5 +1,5 @@
 // Long arrays are zero when they are made, whatever was in the memory before.
-#include "dca/large_pages.hpp"
+#include "math/large_pages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 #include "tests/mpi/world.hpp"
 #include "tests/support/level_solvers.hpp"
 #include "tests/support/random_chain.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

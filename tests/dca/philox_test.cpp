@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "dca/philox.hpp"
+#include "math/philox.hpp"
 
 namespace catena {
 namespace {

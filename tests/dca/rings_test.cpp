@@ -4,10 +4,11 @@
 
 #include <cmath>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 #include "tests/support/variants.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

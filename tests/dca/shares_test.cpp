@@ -1,5 +1,5 @@
 // Ranks' shares of the bodies: what speeds make of them, and the cuts they make.
-#include "dca/shares.hpp"
+#include "tree/load_balance.hpp"
 
 #include <gtest/gtest.h>
 

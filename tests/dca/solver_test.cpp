@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dca/oracle/oracle.hpp"
-#include "report/nudged.hpp"
+#include "oracle/oracle.hpp"
+#include "measure/nudged.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 #include "tests/support/variants.hpp"

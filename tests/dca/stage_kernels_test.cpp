@@ -10,6 +10,7 @@
 #include "tests/support/compared_solver.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/stage_space.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

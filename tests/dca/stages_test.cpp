@@ -1,4 +1,4 @@
-#include "dca/stage_words.hpp"
+#include "tree/stage_encoding.hpp"
 
 #include <gtest/gtest.h>
 

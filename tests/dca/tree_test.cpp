@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "dca/tree.hpp"
+#include "tree/tree.hpp"
 
 namespace catena::dca {
 namespace {

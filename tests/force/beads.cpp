@@ -10,7 +10,7 @@
 #include <random>
 #include <set>
 
-#include "force/calvados2.hpp"
+#include "scene/calvados2.hpp"
 
 namespace catena::testing {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "chain/field.hpp"
+#include "math/field.hpp"
 #include "error.hpp"
 #include "force/openmm_force.hpp"
 

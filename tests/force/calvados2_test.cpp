@@ -1,4 +1,4 @@
-#include "force/calvados2.hpp"
+#include "scene/calvados2.hpp"
 
 #include <gtest/gtest.h>
 

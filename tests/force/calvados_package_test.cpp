@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "reader/load_scene.hpp"
 #include "scene/scene.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"

@@ -1,12 +1,12 @@
 // What is written into OpenMM's arrays and read from them, on the host.
-#include "force/device_beads.hpp"
+#include "neighbours/device_beads.hpp"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 #include <vector>
 
-#include "force/bead_tables.hpp"
+#include "neighbours/bead_tables.hpp"
 
 namespace catena::testing {
 namespace {

@@ -1,5 +1,5 @@
 // Which forces get a Context of their own, and what their layer is made of.
-#include "force/force_layers.hpp"
+#include "systems/force_layers.hpp"
 
 #include <gtest/gtest.h>
 

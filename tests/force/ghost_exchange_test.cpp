@@ -1,5 +1,5 @@
 // Ghosts are those that a search among all beads finds, and stand where their beads do, on any number of ranks.
-#include "force/ghost_exchange.hpp"
+#include "neighbours/ghost_exchange.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <set>
 
-#include "force/ghosts.hpp"
+#include "neighbours/ghosts.hpp"
 #include "mpi/first_rank.hpp"
 #include "tests/force/ranks.hpp"
 

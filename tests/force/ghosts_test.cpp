@@ -1,4 +1,4 @@
-#include "force/ghosts.hpp"
+#include "neighbours/ghosts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // Lists, slots and tables of the path on which positions and forces stay on GPUs, with plain memory in the place of these: forces are
 // those of the replicated System, whatever order the particles are in and whenever lists were made.
-#include "force/openmm_halo.hpp"
+#include "force/device_ghosts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 #include <numeric>
 #include <random>
 
-#include "force/bead_tables.hpp"
-#include "force/openmm_pairs.hpp"
+#include "neighbours/bead_tables.hpp"
+#include "force/pair_decomposition.hpp"
 #include "mpi/first_rank.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
@@ -18,7 +18,7 @@
 namespace catena::testing {
 namespace {
 
-/// What cuda/halo_path.cpp does, on the host. Forces: HaloForces or PairForces.
+/// What cuda/openmm/ghost_path.cpp does, on the host. Forces: HaloForces or PairForces.
 template <class Forces>
 class PlainMemory {
   public:

@@ -5,7 +5,7 @@
 
 #include "error.hpp"
 #include "force/openmm_force.hpp"
-#include "force/openmm_import.hpp"
+#include "systems/import.hpp"
 
 namespace catena {
 namespace {

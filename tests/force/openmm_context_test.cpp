@@ -1,5 +1,5 @@
 // Where a Context's particles are placed: coordinates go on where beads do, and forces are those of nearest images all the same.
-#include "force/openmm_context.hpp"
+#include "force/context.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "force/openmm_import.hpp"
+#include "systems/import.hpp"
 
 #include <OpenMM.h>
 

@@ -1,5 +1,5 @@
 // How far particles act on each other, found from forces' energies and parameters.
-#include "force/openmm_ranges.hpp"
+#include "systems/force_ranges.hpp"
 
 #include <gtest/gtest.h>
 

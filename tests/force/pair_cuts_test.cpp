@@ -1,5 +1,5 @@
 // Where a row of blocks is cut so that ranks have as much work.
-#include "force/pair_cuts.hpp"
+#include "neighbours/pair_cuts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "force/calvados2.hpp"
+#include "scene/calvados2.hpp"
 
 namespace catena::testing {
 

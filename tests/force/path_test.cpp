@@ -1,4 +1,4 @@
-#include "force/openmm_path.hpp"
+#include "force/path.hpp"
 
 #include "tests/force/beads.hpp"
 

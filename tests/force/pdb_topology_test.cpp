@@ -1,4 +1,4 @@
-#include "force/pdb_topology.hpp"
+#include "systems/pdb_topology.hpp"
 
 #include <set>
 

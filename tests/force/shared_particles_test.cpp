@@ -1,5 +1,5 @@
 // What GPUs that share out pairs send each other, on the host.
-#include "force/shared_particles.hpp"
+#include "neighbours/shared_particles.hpp"
 
 #include <gtest/gtest.h>
 

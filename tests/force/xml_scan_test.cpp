@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "force/openmm_model.hpp"
-#include "force/xml_scan.hpp"
+#include "systems/model.hpp"
+#include "systems/xml_scan.hpp"
 #include "tests/force/beads.hpp"
 #include "tests/force/every_force.hpp"
 

@@ -1,6 +1,6 @@
 // Chains of rigid bodies in HDF5 files.
 #include "error.hpp"
-#include "scene/hdf5_bodies.hpp"
+#include "bodies/hdf5_bodies.hpp"
 #include "tests/fuzz/own_fault.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -69,14 +69,14 @@ target() {
 
 mkdir -p "$made/targets/corpus"
 compile "$made/precompiled.pch" -x c++-header tests/fuzz/precompiled.hpp
-tree=(src/scene/node.cpp src/scene/printable.cpp)
+tree=(src/scene/node.cpp src/io/printable.cpp)
 files=("${tree[@]}" src/scene/files.cpp src/scene/fields.cpp)
 read_hdf5=(src/io/hdf5_handle.cpp src/io/output_file.cpp)
 target scene -lyaml-cpp "${tree[@]}"
 target table -lyaml-cpp "${files[@]}"
 target pdb -lyaml-cpp "${files[@]}" src/scene/pdb_file.cpp src/scene/pdb_sites.cpp src/scene/residue_names.cpp
-target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/force/calvados2.cpp
-target xml -lyaml-cpp "${tree[@]}" src/force/xml_scan.cpp
+target fasta -lyaml-cpp "${files[@]}" src/scene/fasta.cpp src/scene/residue_names.cpp src/scene/calvados2.cpp
+target xml -lyaml-cpp "${tree[@]}" src/systems/xml_scan.cpp
 if [ -d "$hdf5" ]; then
     target bodies '-lyaml-cpp -lhdf5_serial' "${files[@]}" "${read_hdf5[@]}" src/scene/{hdf5_bodies,hdf5_table,hdf5_texts,physics,joint_entry,freedom}.cpp \
         src/io/{memory_limit,trial}.cpp

@@ -1,5 +1,5 @@
 // The text of a System, before OpenMM sees it.
-#include "force/xml_scan.hpp"
+#include "systems/xml_scan.hpp"
 #include "tests/fuzz/plain_xml.hpp"
 #include "tests/fuzz/target.hpp"
 

@@ -1,13 +1,14 @@
 // Ranks that have a GPU each write to each other's memory, and what comes out has the bits of exchanges by the host.
 #include <cstdlib>
 
-#include "cuda/clusters.hpp"
-#include "cuda/run_groups.hpp"
+#include "cuda/device/clusters.hpp"
+#include "cuda/sweeps/run_groups.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
-#include "report/solution.hpp"
+#include "measure/solution.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/gpu.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

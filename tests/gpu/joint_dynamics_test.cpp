@@ -7,6 +7,7 @@
 #include "integrate/joint_integrators.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,10 +1,11 @@
 // What is counted beforehand is what the GPU then has less.
 #include <gtest/gtest.h>
 
-#include "cuda/memory.hpp"
+#include "cuda/space/memory.hpp"
 #include "integrate/chain_system.hpp"
 #include "plan/family.hpp"
 #include "tests/support/gpu.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,7 +1,7 @@
 // Where pairs are shared out and GPUs write to each other's memory, single precision's positions and forces go from array to array. Once
 // a process: memory of another GPU that one CUDA context of a process has opened need not open for the next.
-#include "cuda/solver.hpp"
-#include "force/device_path.hpp"
+#include "cuda/device/gpu.hpp"
+#include "neighbours/device_path.hpp"
 #include "tests/gpu/openmm_ranks.hpp"
 
 namespace catena::test {

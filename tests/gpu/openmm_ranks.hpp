@@ -12,6 +12,7 @@
 #include "tests/gpu/openmm_scene.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/gpu.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 

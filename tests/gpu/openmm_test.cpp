@@ -9,6 +9,7 @@
 #include "integrate/stepper.hpp"
 #include "tests/gpu/openmm_scene.hpp"
 #include "tests/support/gpu.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

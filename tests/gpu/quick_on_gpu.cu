@@ -1,7 +1,7 @@
 #include "tests/gpu/quick_on_gpu.hpp"
 
-#include "cuda/owners.hpp"
-#include "cuda/quick.cuh"
+#include "cuda/device/owners.hpp"
+#include "cuda/sweeps/branchless_math.cuh"
 
 namespace catena::test {
 namespace {

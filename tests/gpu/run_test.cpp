@@ -1,8 +1,9 @@
 // Whole runs on the GPU, on one rank and on several that share it, end in the bits of the host's.
-#include "cuda/solver.hpp"
+#include "cuda/device/gpu.hpp"
 #include "error.hpp"
 #include "tests/integrate/whole_run.hpp"
 #include "tests/support/gpu.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -4,13 +4,14 @@
 #include <optional>
 #include <string>
 
-#include "cuda/clusters.hpp"
-#include "cuda/memory.hpp"
-#include "cuda/run_groups.hpp"
+#include "cuda/device/clusters.hpp"
+#include "cuda/space/memory.hpp"
+#include "cuda/sweeps/run_groups.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/support/gpu.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,6 +1,6 @@
 // A program that uses the installed library: says what a scene holds.
 #include <catena/error.hpp>
-#include <catena/scene/scene.hpp>
+#include <catena/reader/load_scene.hpp>
 #include <cstdio>
 
 int main(int argc, char** argv) {

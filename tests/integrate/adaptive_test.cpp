@@ -6,12 +6,13 @@
 #include <nlohmann/json.hpp>
 
 #include "error.hpp"
-#include "integrate/embedded_steps.hpp"
+#include "dynamics/joint/embedded_steps.hpp"
 #include "integrate/step_control.hpp"
 #include "integrate/stepper.hpp"
 #include "scene/pose.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/support/random_chain.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,10 +1,11 @@
 // Matrices and biases in one sweep: as good a solution as by one sweep after the other, and the same one.
 #include <gtest/gtest.h>
 
-#include "dca/simd/level.hpp"
+#include "math/simd_level.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/same_bits.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,13 +1,14 @@
 // Ranks with unequal shares: the same bits as one rank with everything; shares follow what is measured and are those of the checkpoint.
-#include "integrate/balance.hpp"
+#include "run/balance.hpp"
 
 #include <chrono>
 #include <cstring>
 #include <thread>
 
 #include "mpi/timed_communicator.hpp"
-#include "report/solution.hpp"
+#include "measure/solution.hpp"
 #include "tests/integrate/whole_run.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

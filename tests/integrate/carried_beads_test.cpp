@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"

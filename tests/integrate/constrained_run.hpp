@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "integrate/constrained_integrator.hpp"
-#include "integrate/observables.hpp"
+#include "observe/observables.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 

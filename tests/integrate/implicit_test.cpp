@@ -4,14 +4,15 @@
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "integrate/constrained_integrator.hpp"
 #include "integrate/joint_integrators.hpp"
-#include "integrate/observables.hpp"
+#include "observe/observables.hpp"
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/variants.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -3,6 +3,7 @@
 
 #include "integrate/joint_integrators.hpp"
 #include "tests/integrate/constrained_run.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <bit>
 
-#include "chain/joint_kinematics.hpp"
-#include "integrate/hinge_scan.hpp"
+#include "kinematics/joint_kinematics.hpp"
+#include "dynamics/joint/revolute_scan.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/scan_space.hpp"

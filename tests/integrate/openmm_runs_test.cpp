@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/integrate/whole_run.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

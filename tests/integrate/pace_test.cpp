@@ -1,4 +1,4 @@
-#include "integrate/pace.hpp"
+#include "run/pace.hpp"
 
 #include <gtest/gtest.h>
 

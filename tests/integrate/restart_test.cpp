@@ -10,11 +10,12 @@
 #include <thread>
 
 #include "error.hpp"
-#include "integrate/simulation.hpp"
+#include "run/simulation.hpp"
 #include "io/output.hpp"
 #include "tests/integrate/scenes.hpp"
 #include "tests/io/dataset_bits.hpp"
 #include "tests/io/temporary_folder.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

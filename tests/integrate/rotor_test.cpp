@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "integrate/rotor.hpp"
+#include "kinematics/rotor.hpp"
 #include "tests/support/random_chain.hpp"
 
 namespace catena::test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "integrate/absolute_dynamics.hpp"
+#include "dynamics/absolute_dynamics.hpp"
 #include "tests/support/same_bits.hpp"
 
 namespace catena::test {

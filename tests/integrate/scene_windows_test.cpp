@@ -7,8 +7,9 @@
 
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
-#include "integrate/share.hpp"
+#include "run/rank_exchange.hpp"
 #include "tests/mpi/world.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <optional>
 
-#include "chain/joint_kinematics.hpp"
+#include "kinematics/joint_kinematics.hpp"
 #include "dca/simd/side_by_side.hpp"
 #include "error.hpp"
 #include "integrate/joint_integrators.hpp"
-#include "integrate/joint_lanes.hpp"
+#include "dynamics/joint/joint_lanes.hpp"
 #include "tests/mpi/world.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/same_bits.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,7 +1,7 @@
 // The torque of a spherical spring is minus the gradient of its energy along turns about the body's axes.
 #include <gtest/gtest.h>
 
-#include "integrate/body_loads.hpp"
+#include "dynamics/body_loads.hpp"
 #include "tests/support/random_chain.hpp"
 
 namespace catena::test {

@@ -1,10 +1,11 @@
 // A step that each chain takes alone leaves the bits of one that all chains take loop after loop.
 #include <gtest/gtest.h>
 
-#include "dca/tree_solver.hpp"
-#include "integrate/absolute_dynamics.hpp"
+#include "dca/solvers/tree_solver.hpp"
+#include "dynamics/absolute_dynamics.hpp"
 #include "mpi/communicator.hpp"
 #include "tests/integrate/same_steps.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

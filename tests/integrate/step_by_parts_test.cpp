@@ -7,11 +7,12 @@
 #include <mutex>
 #include <thread>
 
-#include "dca/tree_solver.hpp"
-#include "integrate/absolute_dynamics.hpp"
-#include "integrate/bead_dynamics.hpp"
+#include "dca/solvers/tree_solver.hpp"
+#include "dynamics/absolute_dynamics.hpp"
+#include "dynamics/bead_dynamics.hpp"
 #include "mpi/communicator.hpp"
 #include "tests/integrate/same_steps.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

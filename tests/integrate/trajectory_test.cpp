@@ -3,8 +3,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "dca/executor.hpp"
+#include "math/executor.hpp"
 #include "tests/integrate/whole_run.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

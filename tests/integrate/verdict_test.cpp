@@ -1,5 +1,5 @@
 // What makes a run valid, from its frames alone.
-#include "integrate/verdict.hpp"
+#include "observe/verdict.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,11 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "dca/lost_matrix.hpp"
+#include "dca/pivot_failure.hpp"
 #include "error.hpp"
-#include "integrate/closing.hpp"
-#include "integrate/run_verdict.hpp"
+#include "dynamics/closing.hpp"
+#include "observe/run_verdict.hpp"
 #include "integrate/step_failure.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

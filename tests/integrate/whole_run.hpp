@@ -8,10 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "integrate/simulation.hpp"
+#include "run/simulation.hpp"
 #include "io/output.hpp"
 #include "tests/integrate/scenes.hpp"
 #include "tests/mpi/world.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "io/seal.hpp"
+#include "io/file_seal.hpp"
 #include "sample_checkpoint.hpp"
 
 namespace catena::test {

@@ -4,13 +4,13 @@
 #include <set>
 
 #include "error.hpp"
-#include "io/axis.hpp"
-#include "io/curve_family.hpp"
-#include "io/html.hpp"
-#include "io/line_chart.hpp"
+#include "page/axis.hpp"
+#include "page/curve_family.hpp"
+#include "page/html.hpp"
+#include "page/line_chart.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
-#include "io/timeline_picture.hpp"
+#include "page/timeline_picture.hpp"
 #include "temporary_folder.hpp"
 
 namespace catena::test {

@@ -5,7 +5,7 @@
 #include <sstream>
 #include <utility>
 
-#include "dca/executor.hpp"
+#include "math/executor.hpp"
 #include "io/output.hpp"
 #include "io/output_file.hpp"
 #include "sample_frames.hpp"

@@ -10,8 +10,8 @@
 #include <optional>
 #include <string>
 
-#include "dca/oracle/oracle.hpp"
-#include "report/nudged.hpp"
+#include "oracle/oracle.hpp"
+#include "measure/nudged.hpp"
 #include "tests/support/random_chain.hpp"
 #include "tests/support/reference_data.hpp"
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "dca/oracle/quad.hpp"
+#include "oracle/quad.hpp"
 
 namespace catena::oracle {
 namespace {

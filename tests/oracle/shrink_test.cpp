@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "tests/support/random_chain.hpp"
 
 namespace catena::test {

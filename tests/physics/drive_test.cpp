@@ -5,7 +5,8 @@
 #include <cmath>
 
 #include "integrate/joint_integrators.hpp"
-#include "integrate/observables.hpp"
+#include "observe/observables.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

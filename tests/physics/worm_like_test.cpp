@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "reader/load_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::test {

@@ -1,7 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "cuda/memory.hpp"
+#include "cuda/space/memory.hpp"
 #include "tests/plan/told_machine.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "cuda/memory.hpp"
+#include "cuda/space/memory.hpp"
 #include "plan/family.hpp"
 
 namespace catena::test {

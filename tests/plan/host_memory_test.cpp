@@ -7,8 +7,9 @@
 #include <cstdlib>
 #include <new>
 
-#include "command/describe.hpp"
+#include "plan/describe.hpp"
 #include "integrate/stepper.hpp"
+#include "reader/load_scene.hpp"
 
 namespace {
 

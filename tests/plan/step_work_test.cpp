@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/plan/told_machine.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "plan/choice.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 

@@ -1,4 +1,4 @@
-#include "report/blocking.hpp"
+#include "measure/blocking.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "report/chain_sample.hpp"
+#include "measure/chain_sample.hpp"
 
 #include <gtest/gtest.h>
 

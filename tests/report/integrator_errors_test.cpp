@@ -1,5 +1,6 @@
 // Orders that are known, a drift that is there, and forces that are the reference's own.
-#include "report/integrator_errors.hpp"
+#include "measure/integrator_errors.hpp"
+#include "reader/load_scene.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

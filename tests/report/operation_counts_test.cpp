@@ -1,5 +1,5 @@
 // The counts against what one gets by hand from dca/segment.hpp.
-#include "report/operation_counts.hpp"
+#include "measure/operation_counts.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,10 +1,11 @@
 // Growth of roundings where it is known by hand, verdicts, and the cases themselves.
-#include "report/stability.hpp"
+#include "measure/stability.hpp"
 
 #include <gtest/gtest.h>
 
-#include "report/growth.hpp"
-#include "report/solver_errors.hpp"
+#include "measure/growth.hpp"
+#include "measure/solver_errors.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

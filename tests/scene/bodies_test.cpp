@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

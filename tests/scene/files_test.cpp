@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "force/calvados2.hpp"
+#include "scene/calvados2.hpp"
 #include "force/openmm_force.hpp"
 #include "tests/scene/scene_files.hpp"
 

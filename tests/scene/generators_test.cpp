@@ -6,8 +6,9 @@
 #include <cmath>
 
 #include "scene/freedom.hpp"
-#include "scene/generators.hpp"
+#include "generate/generators.hpp"
 #include "scene/pose.hpp"
+#include "reader/load_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::test {

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

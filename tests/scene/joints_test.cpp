@@ -7,6 +7,7 @@
 #include "scene/freedom.hpp"
 #include "scene/pose.hpp"
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

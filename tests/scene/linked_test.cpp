@@ -9,6 +9,7 @@
 #include "scene/freedom.hpp"
 #include "tests/io/temporary_folder.hpp"
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

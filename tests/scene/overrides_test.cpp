@@ -1,5 +1,6 @@
 // --set key.path=value.
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

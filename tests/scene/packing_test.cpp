@@ -3,8 +3,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "scene/crowd.hpp"
+#include "generate/crowd.hpp"
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "error.hpp"
+#include "reader/load_scene.hpp"
 #include "scene/scene.hpp"
 
 namespace catena::test {

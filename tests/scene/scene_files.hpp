@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace fs = std::filesystem;

@@ -3,6 +3,7 @@
 
 #include "scene/deciding.hpp"
 #include "tests/scene/refusal.hpp"
+#include "reader/load_scene.hpp"
 
 namespace catena::test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "error.hpp"
 #include "integrate/constrained_integrator.hpp"
-#include "integrate/joint_dynamics.hpp"
+#include "dynamics/joint/joint_dynamics.hpp"
 
 namespace catena::test {
 namespace {

@@ -269,7 +269,7 @@ class Block {
         watch::leave(&here_->left_);
         here_->kernel_();
         if (!here_->fibers_[threadIdx.x].waited_for_launch) {
-            ADD_FAILURE() << "a thread has not waited for the launch before";  // as cuda/launch.cuh asks of every kernel
+            ADD_FAILURE() << "a thread has not waited for the launch before";  // as cuda/device/launch.cuh asks of every kernel
             std::abort();
         }
         if (!here_->fibers_[threadIdx.x].copies.empty()) ADD_FAILURE() << "a thread has not waited for its copies";

@@ -5,7 +5,7 @@
 
 #include <cstdlib>
 
-#include "cuda/solver.hpp"
+#include "cuda/device/gpu.hpp"
 
 namespace catena::test {
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 #include "scene/pose.hpp"
 
 namespace catena::test {

@@ -5,12 +5,12 @@
 #include <set>
 
 #include "dca/host_space.hpp"
-#include "dca/scan_then.hpp"
+#include "tree/scan_then.hpp"
 #include "tests/support/cuda_on_host.hpp"
 #include "tests/support/shared_by_host.hpp"
 
 // After CUDA's words.
-#include "cuda/scan_walk.cuh"
+#include "cuda/sweeps/scan_walk.cuh"
 
 namespace catena::test {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "dca/tree.hpp"
+#include "tree/tree.hpp"
 #include "mpi/communicator.hpp"
 
 namespace catena::test {

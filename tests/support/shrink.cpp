@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "dca/oracle/oracle.hpp"
+#include "oracle/oracle.hpp"
 
 namespace catena::test {
 namespace {

@@ -7,14 +7,14 @@
 #include <optional>
 #include <set>
 
-#include "dca/tree_solver.hpp"
+#include "dca/solvers/tree_solver.hpp"
 #include "tests/support/cuda_on_host.hpp"
 #include "tests/support/shared_by_host.hpp"
 
 // After CUDA's words.
-#include "cuda/hinge_teams.cuh"
-#include "cuda/short_chain.cuh"
-#include "cuda/stage_walk.cuh"
+#include "cuda/sweeps/revolute_teams.cuh"
+#include "cuda/short/short_chain.cuh"
+#include "cuda/sweeps/stage_walk.cuh"
 
 namespace catena::test {
 namespace kernels = cuda::kernels;

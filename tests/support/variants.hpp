@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "dca/executor.hpp"
+#include "math/executor.hpp"
 #include "error.hpp"
 #include "integrate/chain_system.hpp"
 #include "tests/support/gpu.hpp"

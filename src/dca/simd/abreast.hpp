@@ -1,7 +1,7 @@
-// As many bodies as a vector has lanes, one after the other, as a place (dca/places.hpp): their numbers stand next to each other.
+// As many bodies as a vector has lanes, one after the other, as a place (dca/lane_access.hpp): their numbers stand next to each other.
 #pragma once
 
-#include "dca/places.hpp"
+#include "dca/lane_access.hpp"
 #include "dca/simd/prefetch.hpp"
 
 namespace catena::dca {

@@ -1,10 +1,10 @@
-// What the lanes of a vector do with their runs: the operations of evaluation.hpp and tree_sweeps.hpp, in the same order, on vectors.
+// What the lanes of a vector do with their runs: the operations of fused_sweep.hpp and tree_sweeps.hpp, in the same order, on vectors.
 #pragma once
 
 #include <new>
 #include <type_traits>
 
-#include "dca/simd/hinged_runs.hpp"
+#include "dca/simd/revolute_runs.hpp"
 
 namespace catena::dca {
 

@@ -1,7 +1,7 @@
-// Records (dca/records.hpp) of as many places as a vector has lanes, a number of all of them in each vector.
+// Records (math/records.hpp) of as many places as a vector has lanes, a number of all of them in each vector.
 #pragma once
 
-#include "dca/records.hpp"
+#include "math/records.hpp"
 #include "dca/simd/prefetch.hpp"
 
 namespace catena::dca {

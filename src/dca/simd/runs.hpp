@@ -3,7 +3,7 @@
 // runs: nothing of the standard library but placement new passes this door, and all behind it is a template over their own vectors.
 #pragma once
 
-#include "dca/simd/level.hpp"
+#include "math/simd_level.hpp"
 #include "dca/tree_sweeps.hpp"
 
 namespace catena::dca {

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "dca/evaluation.hpp"
+#include "dca/fused_sweep.hpp"
 #include "dca/simd/records.hpp"
 #include "dca/simd/runs.hpp"
 #include "dca/simd/tile.hpp"

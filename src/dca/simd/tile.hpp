@@ -2,7 +2,7 @@
 // as a vector has lanes. Views of a tile are read at a Column: a place that stands for one body of every run.
 #pragma once
 
-#include "dca/places.hpp"
+#include "dca/lane_access.hpp"
 #include "dca/simd/prefetch.hpp"
 #include "dca/simd/runs.hpp"
 

@@ -1,4 +1,4 @@
-// One body, or one of every stretch, as BeadLeaf and BodyLeaf (dca/leaves.hpp) have it: the same operators of dca/leaf.hpp on records.
+// One body, or one of every stretch, as BeadLeaf and BodyLeaf (dca/body_leaf.hpp) have it: the same operators of dca/leaf.hpp on records.
 #pragma once
 
 #include "dca/leaf.hpp"

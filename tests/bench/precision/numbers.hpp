@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
-#include "dca/linear.hpp"
+#include "math/linear.hpp"
 
 namespace catena::precision {
 

@@ -6,9 +6,9 @@
 
 #include "chain/chain_group.hpp"
 #include "error.hpp"
-#include "integrate/joint_dynamics.hpp"
+#include "dynamics/joint/joint_dynamics.hpp"
 #include "mpi/communicator.hpp"
-#include "report/solver_errors.hpp"
+#include "measure/solver_errors.hpp"
 
 namespace catena::precision {
 namespace {

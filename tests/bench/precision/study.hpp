@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "report/growth.hpp"
-#include "report/timing.hpp"
+#include "measure/growth.hpp"
+#include "measure/timing.hpp"
 #include "tests/bench/precision/chain.hpp"
 
 namespace catena::precision {

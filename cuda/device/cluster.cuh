@@ -1,0 +1,195 @@
+// What threads of a warp, blocks of a cluster (compute capability 9.0) and blocks of a launch give each other.
+#pragma once
+
+#include <cstdint>
+
+#include "math/linear.hpp"
+
+namespace catena::cuda::kernels {
+
+constexpr int most_in_cluster = 8;  // any GPU that has clusters takes so many blocks
+
+template <class T>
+inline constexpr int numbers_of = static_cast<int>(sizeof(T) / sizeof(double));
+template <class T>
+using NumbersOf = Vector<double, numbers_of<T>>;
+
+/// What lane `from` of the warp has. All lanes must come here.
+template <class T>
+__device__ T from_lane(T const& value, int from) {
+    auto numbers = __builtin_bit_cast(NumbersOf<T>, value);
+    CATENA_UNROLL
+    for (double& v : numbers.data) v = __shfl_sync(0xffffffffu, v, from);
+    return __builtin_bit_cast(T, numbers);
+}
+
+#if defined(__CUDACC__)
+
+/// A place in a block's shared memory where other blocks of its cluster leave numbers, and which knows when all of them have come.
+class Inbox {
+  public:
+    __device__ explicit Inbox(std::uint64_t* arrived) : arrived_(address(arrived)) {}
+    /// By one thread, before any block sends.
+    __device__ void open(int bytes) const {
+#if __CUDA_ARCH__ >= 900
+        asm volatile("mbarrier.init.shared::cta.b64 [%0], 1;\n\tfence.mbarrier_init.release.cluster;" ::"r"(arrived_) : "memory");
+        asm volatile("mbarrier.arrive.expect_tx.shared::cta.b64 _, [%0], %1;" ::"r"(arrived_), "r"(bytes) : "memory");
+#endif
+    }
+    /// To the same place `at` in a block's memory.
+    __device__ void send(int block, double* at, double value) const {
+#if __CUDA_ARCH__ >= 900
+        asm volatile(
+            "{\n\t.reg .b32 to, arrived;\n\tmapa.shared::cluster.u32 to, %0, %2;\n\tmapa.shared::cluster.u32 arrived, %1, %2;\n\t"
+            "st.async.shared::cluster.mbarrier::complete_tx::bytes.b64 [to], %3, [arrived];\n\t}" ::"r"(address(at)),
+            "r"(arrived_), "r"(block), "l"(__double_as_longlong(value))
+            : "memory");
+#endif
+    }
+    __device__ void wait() const {
+#if __CUDA_ARCH__ >= 900
+        asm volatile(
+            "{\n\t.reg .pred all;\n\tWAIT:\n\tmbarrier.try_wait.parity.acquire.cluster.shared::cta.b64 all, [%0], 0;\n\t@!all bra WAIT;\n\t}" ::"r"(
+                arrived_)
+            : "memory");
+#endif
+    }
+
+  private:
+    __device__ static std::uint32_t address(void const* shared) { return static_cast<std::uint32_t>(__cvta_generic_to_shared(shared)); }
+    std::uint32_t arrived_;
+};
+
+/// A place in memory for a letter (below): both halves are there or not, each by itself.
+struct alignas(16) LetterBox {
+    struct Halves {
+        unsigned long long lower = 0, upper = 0;
+    };
+    unsigned long long memory[2];
+
+    __device__ void put(Halves const& halves) {
+        asm volatile("st.relaxed.gpu.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
+    }
+    __device__ Halves get() const {
+        Halves halves;
+        asm volatile("ld.relaxed.gpu.global.v2.b64 {%0, %1}, [%2];" : "=l"(halves.lower), "=l"(halves.upper) : "l"(this) : "memory");
+        return halves;
+    }
+};
+
+/// One that blocks on other GPUs read and write.
+struct PeerLetterBox : LetterBox {
+    __device__ void put(Halves const& halves) {
+        asm volatile("st.relaxed.sys.global.v2.b64 [%0], {%1, %2};" ::"l"(this), "l"(halves.lower), "l"(halves.upper) : "memory");
+    }
+    __device__ Halves get() const {
+        Halves halves;
+        asm volatile("ld.relaxed.sys.global.v2.b64 {%0, %1}, [%2];" : "=l"(halves.lower), "=l"(halves.upper) : "l"(this) : "memory");
+        return halves;
+    }
+};
+
+/// In two halves, so that there is work between them.
+__device__ inline void arrive_at_cluster() {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("barrier.cluster.arrive.release.aligned;" ::: "memory");
+#endif
+}
+__device__ inline void wait_for_cluster() {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("barrier.cluster.wait.acquire.aligned;" ::: "memory");
+#endif
+}
+/// Other launches of the stream that say so may start before the last one has ended: what it wrote is there after wait_for_launch().
+__device__ inline void let_next_launch_start() {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("griddepcontrol.launch_dependents;" ::: "memory");
+#endif
+}
+__device__ inline void wait_for_launch() {
+#if __CUDA_ARCH__ >= 900
+    asm volatile("griddepcontrol.wait;" ::: "memory");
+#endif
+}
+
+#endif
+
+/// A number on its way between blocks of a launch, or of launches on several GPUs, which all run at once: each half stands beside the
+/// launch's number, so that who reads it knows whether it has come, and nobody waits at a barrier.
+struct Letter : LetterBox::Halves {
+    __device__ static Letter of(double value, unsigned launch) {
+        auto const bits = static_cast<unsigned long long>(__double_as_longlong(value)), beside = static_cast<unsigned long long>(launch) << 32;
+        return {{(bits & lower_half) | beside, bits >> 32 | beside}};
+    }
+    __device__ bool is_of(unsigned launch) const { return lower >> 32 == launch && upper >> 32 == launch; }
+    __device__ double value() const { return __longlong_as_double(static_cast<long long>((lower & lower_half) | upper << 32)); }
+
+  private:
+    static constexpr unsigned long long lower_half = 0xffffffff;
+};
+/// What such blocks give each other: number n of record i.
+template <class Box>
+struct LettersIn {
+    Box* boxes = nullptr;
+    int records = 0;
+    unsigned launch = 0;  // not 0, which letters are of that nobody has written
+
+    __device__ void put(int i, int n, double value) const { boxes[n * records + i].put(Letter::of(value, launch)); }
+    __device__ double wait_for(int i, int n) const {
+        Letter letter;
+        while (!letter.is_of(launch)) letter = {boxes[n * records + i].get()};
+        return letter.value();
+    }
+    /// put(n, its number n) for n from `begin` in steps to `end`, so many of them asked for at once.
+    template <int at_once, class Put>
+    __device__ void take_some(int i, int begin, int end, int step, Put const& put) const {
+        for (int first = begin; first < end; first += at_once * step) {
+            Letter letter[at_once];
+            bool are_here = false;
+            while (!are_here) {
+                CATENA_UNROLL
+                for (int j = 0; j < at_once; ++j)
+                    if (int const n = first + j * step; n < end && !letter[j].is_of(launch)) letter[j] = {boxes[n * records + i].get()};
+                are_here = true;
+                CATENA_UNROLL
+                for (int j = 0; j < at_once; ++j) are_here = are_here && (first + j * step >= end || letter[j].is_of(launch));
+            }
+            CATENA_UNROLL
+            for (int j = 0; j < at_once; ++j)
+                if (int const n = first + j * step; n < end) put(n, letter[j].value());
+        }
+    }
+};
+using Letters = LettersIn<LetterBox>;
+/// Of a launch that turns: to the block above and from there.
+struct TurnLetters {
+    Letters up, down;
+    unsigned* launches = nullptr;  // so far, of every block
+
+    __device__ void open() {
+        unsigned const last = launches[blockIdx.x], most = 0xffffffff;
+        up.launch = down.launch = last < most ? last + 1 : 1;
+    }
+    /// By one thread, when its block asks no more.
+    __device__ void close() const { launches[blockIdx.x] = up.launch; }
+};
+
+/// What a kernel is given lies in no cache of the processor at first: so it does when it is wanted.
+template <class T>
+__device__ void touch([[maybe_unused]] T const& parameter) {
+#if defined(__CUDA_ARCH__)
+    constexpr int line = 64;
+    CATENA_UNROLL
+    for (std::size_t i = 0; i < sizeof(T); i += line)
+        asm volatile("" ::"r"(*reinterpret_cast<int const*>(reinterpret_cast<char const*>(&parameter) + i)));
+#endif
+}
+
+/// All blocks of a cluster have come here, and see what the others wrote before.
+__device__ inline void meet_cluster() {
+    __syncthreads();
+    arrive_at_cluster();
+    wait_for_cluster();
+}
+
+}  // namespace catena::cuda::kernels

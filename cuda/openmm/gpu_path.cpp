@@ -1,0 +1,222 @@
+#include "cuda/openmm/gpu_path.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "clock.hpp"
+#include "error.hpp"
+
+namespace catena::cuda {
+
+Vec3 mean(std::span<Vec3 const> x) {
+    Vec3 sum = Vec3::zero();
+    for (Vec3 const& each : x) sum = sum + each;
+    return (1.0 / static_cast<double>(x.size())) * sum;
+}
+
+namespace {
+
+/// Of the only rank.
+class LonePath final : public GpuPath {
+  public:
+    LonePath(OpenMM::Context& context, DevicePathPlan plan) : GpuPath(context, std::move(plan), evaluations_of_an_order) {
+        compute_with(on_device(context));
+        may_ask_ = plan_.keeps_list && why_pairs_cannot_be_shared().empty();
+        if (may_ask_) openmm_->share(-1, 0, 1);
+    }
+    ~LonePath() override { make_current(); }  // what it owns lives there
+
+    void begin(std::span<DeviceBeads* const> beads, bool timed) override {
+        refuse_trouble();  // of the evaluation before, which is over where its step is
+        if (of_this_order_ == 0) order_anew(beads);
+        start(beads, timed);
+        put_own(beads);
+        computes_later_ = asks_ && plan_.overlap;
+        if (!computes_later_) choose_list_and_compute(beads);
+        if (timed) events_->chains_begin.record(stream_of(*beads.front()));
+    }
+    void go_on(std::span<DeviceBeads* const> beads) override {
+        if (timed_) events_->chains_end.record(stream_of(*beads.back()));
+        if (computes_later_) choose_list_and_compute(beads);
+    }
+    void refuse_trouble() override {
+        std::int64_t const bead = take_trouble();
+        if (bead >= 0)
+            throw ComputationError("the position of bead " + std::to_string(bead + 1) +
+                                   ", or OpenMM's force on it, is not finite: take a smaller step, or a start without overlaps");
+    }
+
+  private:
+    /// Of thousands of particles OpenMM keeps a list of pairs, and sorts blocks of them at every evaluation before it looks whether one has
+    /// moved far. Here that is found while they are moved, and the host asks while the chains go on.
+    void choose_list_and_compute(std::span<DeviceBeads* const> beads) {
+        if (asks_) {
+            placed_.record(stream_);
+            exchange_.begin = seconds_now();
+            placed_.wait();
+            exchange_.end = seconds_now();
+            // The GPU may have been behind: its clock is the host's where both are known to be.
+            if (timed_) begun_ = exchange_.end - placed_.seconds_since(events_->begun);
+            bool const far = std::exchange(flags_->data()->far, 0) != 0;
+            bool const anew = far || of_this_order_ == 0 || !std::exchange(has_list_, true);
+            if (anew) openmm_->make_list(0, 1);
+            note_list(anew);
+        }
+        compute(beads);
+        if (asks_) openmm_->keep_list();  // until it is made anew; for energies that are asked for now, too
+        if (!std::exchange(has_computed_, true)) asks_ = may_ask_ && openmm_->tiles() > 0;
+        if (asks_) of_an_order_ = evaluations_of_a_listed_order;
+    }
+
+    void order_anew(std::span<DeviceBeads* const> beads) {
+        beads_.assign(beads.begin(), beads.end());
+        std::vector<Vec3> const x = positions();
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (!std::isfinite(norm(x[i]))) flags_->data()->trouble = static_cast<std::int64_t>(i);
+        refuse_trouble();
+        order(x, {}, mean(x));
+    }
+
+    bool may_ask_ = false, has_computed_ = false, has_list_ = false, asks_ = false, computes_later_ = false;
+    Event placed_{Event::For::clock};
+};
+
+}  // namespace
+
+GpuPath::GpuPath(OpenMM::Context& home, DevicePathPlan plan, int evaluations)
+    : plan_(std::move(plan)), home_(on_device(home)), of_an_order_(evaluations) {
+    // What lives in OpenMM's context is made there.
+    if (!home_->make_current()) throw ComputationError("OpenMM's CUDA context cannot be made current");
+    flags_ = std::make_unique<PinnedBuffer<Flags>>(1);
+    *flags_->data() = Flags{};
+    events_ = std::make_unique<Events>();
+    own_ = std::make_unique<Buffer<DeviceBead>>(plan_.particle.size());
+    particles_.trouble = &flags_->data()->trouble;
+    particles_.bead = own_->data();
+    if (plan_.box) particles_.box = *plan_.box;
+}
+
+GpuPath::~GpuPath() { home_->make_current(); }  // what it owns lives there
+
+void GpuPath::compute_with(std::unique_ptr<OpenMmOnDevice> openmm) {
+    openmm_ = std::move(openmm);
+    stream_ = openmm_ ? static_cast<cudaStream_t>(openmm_->arrays().stream) : nullptr;
+}
+
+void GpuPath::start(std::span<DeviceBeads* const> beads, bool timed) {
+    beads_.assign(beads.begin(), beads.end());
+    timed_ = timed;
+    begun_ = seconds_now();
+    if (timed) events_->begun.record(stream_of(*beads.front()));
+}
+
+std::int64_t GpuPath::take_trouble() {
+    std::int64_t const own = std::exchange(flags_->data()->trouble, -1);
+    return own < 0 ? own : plan_.bead[static_cast<std::size_t>(own)];
+}
+
+std::vector<Vec3> GpuPath::positions() {
+    if (beads_.empty()) throw ComputationError("positions on the GPU were asked for before there was an evaluation");
+    std::vector<Vec3> x;
+    x.reserve(plan_.particle.size());
+    for (DeviceBeads* group : beads_) {
+        ConstView<3> const here = group->host_positions();
+        for (std::int64_t k = 0; k < here.size; ++k) x.push_back(here.load(k));
+    }
+    return x;
+}
+
+void GpuPath::order(std::vector<Vec3> const& x, std::span<Others const> others, Vec3 const& middle) {
+    particles_.origin = plan_.shifted ? middle : Vec3::zero();
+    std::size_t particles = x.size();
+    for (Others const& more : others) particles += more.particle.size();
+    std::vector<double> of_particle(3 * particles);
+    auto const set = [&](std::span<int const> particle, std::span<Vec3 const> position) {
+        for (std::size_t i = 0; i < particle.size(); ++i)
+            for (int c = 0; c < 3; ++c)
+                of_particle[3 * static_cast<std::size_t>(particle[i]) + static_cast<std::size_t>(c)] = (position[i] - particles_.origin)[c];
+    };
+    set(plan_.particle, x);
+    for (Others const& more : others) set(more.particle, more.position);
+    std::vector<int> const& particle_at = openmm_->order(of_particle);
+    place_.resize(particles);
+    for (std::size_t i = 0; i < particles; ++i) place_[static_cast<std::size_t>(particle_at[i])] = static_cast<std::int32_t>(i);
+    std::vector<DeviceBead> beads(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) beads[i] = bead_of(plan_.particle[i], x[i]);
+    upload(*own_, beads.data(), beads.size());
+    check(cudaStreamSynchronize(stream_), "take OpenMM's order");
+    for (DeviceBeads* group : beads_) check(cudaStreamSynchronize(stream_of(*group)), "finish its work");
+    OpenMmArrays const arrays = openmm_->arrays();
+    ++particles_.order;
+    particles_.double_position = arrays.double_precision ? static_cast<double*>(arrays.position) : nullptr;
+    particles_.position = arrays.double_precision ? nullptr : static_cast<float*>(arrays.position);
+    particles_.correction = static_cast<float*>(arrays.correction);
+    particles_.force = static_cast<std::int64_t*>(arrays.force);
+    particles_.places = arrays.places;
+    particles_.listed = nullptr;
+    particles_.double_listed = nullptr;
+    particles_.far = nullptr;
+    of_this_order_ = lists_of_this_order_ = 0;
+}
+
+void GpuPath::note_list(bool anew) {
+    ++(anew ? pair_lists_.made : pair_lists_.kept);
+    if (!anew) return;
+    ++lists_of_this_order_;
+    bool const twice = particles_.double_position != nullptr;
+    void const* const now = twice ? static_cast<void const*>(particles_.double_position) : particles_.position;
+    auto const numbers = static_cast<std::size_t>(4 * particles_.places);
+    double* const listed = listed_.of(twice ? numbers : numbers / 2).data();
+    check(cudaMemcpyAsync(listed, now, numbers * (twice ? sizeof(double) : sizeof(float)), cudaMemcpyDeviceToDevice, stream_),
+          "take lists");
+    auto const lasts = static_cast<float>(openmm_->list_lasts());
+    if (twice)
+        particles_.double_listed = listed;
+    else
+        particles_.listed = reinterpret_cast<float const*>(listed);
+    particles_.farthest_squared = lasts * lasts;
+    particles_.far = &flags_->data()->far;
+}
+
+void GpuPath::put_own(std::span<DeviceBeads* const> beads) {
+    std::int64_t next = 0;
+    for (DeviceBeads* group : beads) {
+        group->put_positions(particles_.from(next));
+        events_->positions.record(stream_of(*group));
+        events_->positions.hold(stream_);
+        next += group->count();
+    }
+}
+
+void GpuPath::compute(std::span<DeviceBeads* const> beads) {
+    if (timed_) events_->openmm_begin.record(stream_);
+    openmm_->compute();
+    complete_forces();
+    if (timed_) events_->openmm_end.record(stream_);
+    events_->forces.record(stream_);
+    for (DeviceBeads* group : beads)
+        if (!plan_.overlap) events_->forces.hold(stream_of(*group));
+    of_this_order_ = lists_of_this_order_ < lists_of_an_order ? (of_this_order_ + 1) % of_an_order_ : 0;
+}
+
+void GpuPath::finish(std::span<DeviceBeads* const> beads) {
+    std::int64_t next = 0;
+    for (DeviceBeads* group : beads) {
+        events_->forces.hold(stream_of(*group));
+        group->add_forces(particles_.from(next));
+        next += group->count();
+    }
+}
+
+DevicePath::Clock GpuPath::clock() {
+    events_->openmm_end.wait();
+    events_->chains_end.wait();
+    return {{at(events_->openmm_begin), at(events_->openmm_end)}, {at(events_->chains_begin), at(events_->chains_end)}, exchange_};
+}
+
+std::unique_ptr<DevicePath> make_device_path(OpenMM::Context& context, DevicePathPlan plan) {
+    if (plan.halo) return make_halo_path(context, std::move(plan));
+    return std::make_unique<LonePath>(context, std::move(plan));
+}
+
+}  // namespace catena::cuda

@@ -1,0 +1,109 @@
+#include "cuda/openmm/openmm_on_device.hpp"
+
+#include <OpenMM.h>
+#include <cuda.h>
+#include <openmm/cuda/CudaContext.h>
+#include <openmm/cuda/CudaNonbondedUtilities.h>
+#include <openmm/cuda/CudaPlatform.h>
+
+#include <string>
+
+#include "force/openmm_impl.hpp"
+
+namespace OpenMM {
+/// In the library, not in its headers: another version may lack it.
+class CudaKernelSources {
+  public:
+    __attribute__((weak)) static std::string const nonbonded;
+};
+}  // namespace OpenMM
+
+namespace catena::cuda {
+namespace {
+
+/// In the source of OpenMM's kernel for pairs: of tiles with exclusions, which are in no list, those that a context computes, which OpenMM
+/// defines by the contexts of one process; and the reach by which a block of particles may be wrapped about its middle, which does not
+/// allow for what they have moved since their blocks were looked at, as they are whenever OpenMM makes or keeps a list by itself.
+constexpr char const *first_tile = "FIRST_EXCLUSION_TILE", *last_tile = "LAST_EXCLUSION_TILE", *wrapped = "MAX_CUTOFF";
+
+bool shares_pairs() {
+    if (&OpenMM::CudaKernelSources::nonbonded == nullptr) return false;
+    std::string const& source = OpenMM::CudaKernelSources::nonbonded;
+    auto const has = [&](char const* word) { return source.find(word) != std::string::npos; };
+    return has(first_tile) && has(last_tile) && has(wrapped);
+}
+
+std::string with(std::string text, std::string const& word, std::string const& value) {
+    for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos; at += value.size()) text.replace(at, word.size(), value);
+    return text;
+}
+
+OpenMM::CudaContext& gpu_of(OpenMM::ContextImpl& context) {
+    return *static_cast<OpenMM::CudaPlatform::PlatformData*>(context.getPlatformData())->contexts.at(0);
+}
+
+void* address(OpenMM::CudaArray& array) { return array.isInitialized() ? reinterpret_cast<void*>(array.getDevicePointer()) : nullptr; }
+
+class OnDevice final : public OpenMmOnDevice {
+  public:
+    explicit OnDevice(OpenMM::Context& context) : context_(context), impl_(impl_of(context)), gpu_(gpu_of(impl_)) {
+        cuCtxGetCurrent(&before_);
+    }
+    ~OnDevice() override {
+        CUcontext now = nullptr;
+        if (cuCtxGetCurrent(&now) == CUDA_SUCCESS && now == gpu_.getContext()) cuCtxSetCurrent(before_);
+    }
+    bool make_current() noexcept override { return cuCtxSetCurrent(gpu_.getContext()) == CUDA_SUCCESS; }
+    OpenMmArrays arrays() override {
+        return {address(gpu_.getPosq()),      gpu_.getUseMixedPrecision() ? address(gpu_.getPosqCorrection()) : nullptr,
+                gpu_.getUseDoublePrecision(), address(gpu_.getLongForceBuffer()),
+                gpu_.getPaddedNumAtoms(),     gpu_.getCurrentStream()};
+    }
+    std::vector<int> const& order(std::vector<double> const& positions) override {
+        std::vector<OpenMM::Vec3> particles(positions.size() / 3);
+        for (std::size_t i = 0; i < particles.size(); ++i) particles[i] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+        gpu_.forceReorder();
+        context_.setPositions(particles);  // and reorders
+        return gpu_.getAtomIndex();
+    }
+    void compute() override { impl_.calcForcesAndEnergy(true, false, groups_); }
+    void share(int groups, int part, int parts) override {
+        groups_ = groups;
+        auto const tiles = static_cast<std::int64_t>(pairs().getExclusionTiles().getSize());
+        std::string const begin = std::to_string(tiles * part / parts), end = std::to_string(tiles * (part + 1) / parts);
+        std::string const padded = gpu_.doubleToString(pairs().padCutoff(pairs().getMaxCutoffDistance()));
+        pairs().setKernelSource(with(with(with(OpenMM::CudaKernelSources::nonbonded, first_tile, begin), last_tile, end), wrapped, padded));
+    }
+    void make_list(double begin, double end) override { pairs().setAtomBlockRange(begin, end); }
+    /// Without blocks OpenMM finds nothing to prepare, and goes on to compute what is in the list.
+    void keep_list() override { pairs().setAtomBlockRange(0, 0); }
+    double list_lasts() override {
+        double const reach = pairs().getMaxCutoffDistance();
+        return (pairs().padCutoff(reach) - reach) / 2;
+    }
+    double tiles() override {
+        OpenMM::CudaArray& counts = pairs().getInteractionCount();
+        if (!counts.isInitialized()) return 0;
+        std::vector<unsigned int> found(counts.getSize());
+        counts.download(found);
+        double constexpr pairs_of_a_tile = 32 * 32;
+        return found.at(0) + found.at(1) / pairs_of_a_tile;
+    }
+
+  private:
+    OpenMM::CudaNonbondedUtilities& pairs() { return gpu_.getNonbondedUtilities(); }
+
+    int groups_ = -1;  // all
+    OpenMM::Context& context_;
+    OpenMM::ContextImpl& impl_;
+    OpenMM::CudaContext& gpu_;
+    CUcontext before_ = nullptr;
+};
+
+}  // namespace
+}  // namespace catena::cuda
+
+extern "C" __attribute__((visibility("default"))) catena::cuda::OpenMmOnDevice* catena_openmm_on_device(OpenMM::Context& context) {
+    return new catena::cuda::OnDevice(context);
+}
+extern "C" __attribute__((visibility("default"))) bool catena_openmm_shares_pairs() { return catena::cuda::shares_pairs(); }

@@ -1,0 +1,141 @@
+// A short chain whose handles carry one direction: a lane joins its part's bodies, then lanes join what they hold.
+#pragma once
+
+#include <type_traits>
+
+#include "cuda/sweeps/joined_lanes.cuh"
+#include "cuda/short/short_thread.cuh"
+
+namespace catena::cuda::kernels {
+
+/// Of one warp, in its block's shared memory.
+template <class Sweep>
+class ShortLanes {
+    using Segment = typename Sweep::Segment;
+    using State = typename Sweep::Sweeps::State;
+    using Lanes = JoinedLanes<Sweep, dca::part_length, dca::parts_of_run>;
+    using Ends = typename Lanes::Ends;
+
+  public:
+    static constexpr int most_threads = 2 * most_joining_warps * lanes_of_warp;
+    /// Warps for each that joins, itself included: few enough that all threads have as many registers as they may.
+    static constexpr int warps_for_each(int joining) { return joining <= 2 ? dca::part_length : dca::part_length / 2; }
+    /// Numbers of a block of so many warps that join, and of a launch of so many.
+    static constexpr std::size_t numbers(int joining, int warps) {
+        return static_cast<std::size_t>(Lanes::of_block(warps)) + static_cast<std::size_t>(joining) * of_warp;
+    }
+    __device__ ShortLanes(OneChain const& chain, Sweep const& sweep, double* memory)
+        : sweep_(sweep),
+          is_(chain),
+          own_(memory + Lanes::of_block(chain.warps) + is_.group * of_warp),
+          lanes_(chain, sweep, is_.lane, is_.warp, memory, own_) {}
+
+    /// While the launch before may still go on: nothing is read here that a launch writes.
+    __device__ void open() {
+        lanes_.open(is_.beside == 0);
+        count_ = is_.bodies_of(is_.lane);
+        CATENA_UNROLL
+        for (int i = 0; i < dca::part_length; ++i) restricted_[i] = i < count_ && is_.beside == 0 ? sweep_.s.restricted[is_.first + i] : 0;
+    }
+    __device__ void turn() const {
+        InMemory const memory(own_ + Lanes::of_warp + is_.lane);
+        [[maybe_unused]] typename Sweep::Body own[bodies_stay ? most_bodies : 1];
+        if (count_ < dca::part_length && is_.beside == 0) {
+            CATENA_UNROLL
+            for (int i = 0; i < dca::part_length; ++i)
+                if (i >= count_) memory.put(i, Segment::zero());
+        }
+        each_body([&](int round, int i, std::int64_t k) {
+            typename Sweep::Body const body = sweep_.bodies.body_at(k, QuickInverseLength{});
+            if constexpr (bodies_stay) own[round] = body;
+            memory.put(i, sweep_.bodies.segment(body, Factors{}));
+        });
+        __syncthreads();
+        wait_for_cluster();
+        if (is_.beside == 0) join();
+        __syncthreads();
+        each_body([&](int round, int i, std::int64_t k) {
+            Ends const ends = memory.template get<Ends>(i);
+            if constexpr (bodies_stay)
+                sweep_.accelerate(k, own[round], ends.first, ends.next, Factors{});
+            else
+                sweep_.accelerate(k, sweep_.bodies.body_at(k, QuickInverseLength{}), ends.first, ends.next, Factors{});
+        });
+    }
+
+  private:
+    /// Whether bodies are so small that they stay with their threads.
+    static constexpr bool bodies_stay = !Sweep::one_by_one;
+    static constexpr int most_bodies = dca::part_length / warps_for_each(most_joining_warps);
+    using Passed = typename Sweep::Passed;
+    using Factors = QuickFactors<true>;
+    using Passage = typename Sweep::Passage;
+    /// Of a lane's bodies, in turn in the same place.
+    class InMemory {
+      public:
+        static constexpr int of_body = OfLanes::size<Segment>, numbers = dca::part_length * of_body;
+        static_assert(sizeof(Ends) <= sizeof(Segment));
+        __device__ explicit InMemory(double* of_lane) : memory_(of_lane) {}
+        template <class T>
+        __device__ void put(int i, T const& value) const {
+            OfLanes::store(memory_ + i * of_body, 0, value);
+        }
+        template <class T>
+        __device__ T get(int i) const {
+            return OfLanes::load<T>(memory_ + i * of_body, 0);
+        }
+
+      private:
+        double* memory_;
+    };
+    /// And what the way up leaves for the way down, in registers.
+    class Kept : public InMemory {
+      public:
+        using InMemory::InMemory, InMemory::put;
+        __device__ void put(int i, Passed const& joint) { passed_[i] = joint; }
+        __device__ void put(int i, Passage const& passage) { passages_[i] = passage; }
+        template <class T>
+        __device__ T get(int i) const {
+            if constexpr (std::is_same_v<T, Passed>)
+                return passed_[i];
+            else if constexpr (std::is_same_v<T, Passage>)
+                return passages_[i];
+            else
+                return InMemory::template get<T>(i);
+        }
+
+      private:
+        Passed passed_[dca::part_length];
+        Passage passages_[dca::part_length];
+    };
+    static constexpr int of_warp = Lanes::of_warp + InMemory::numbers;
+    /// action(round, i, k) for this thread's bodies: body k is the i-th of what its lane joins.
+    template <class Action>
+    __device__ void each_body(Action const& action) const {
+        each_step<most_bodies>([&](int round) {
+            int const i = round * is_.warps_beside + is_.beside;
+            if (std::int64_t const k = is_.first + i; is_.is_here(i, k)) action(round, i, k);
+        });
+    }
+    /// What the warps do that join: up and down again.
+    __device__ void join() const {
+        Kept kept(own_ + Lanes::of_warp + is_.lane);
+        auto const restricted = [&](int i) { return restricted_[i]; };
+        bool sure = true;
+        Segment segment = sweep_.join_bodies_at_once(count_, restricted, kept, SureFactors{sure});
+        if (!sure) segment = sweep_.join_bodies(is_.first, count_, restricted, kept);
+        lanes_.turn(segment, restricted_[0], [&](Ends const& ends) {
+            sweep_.forces(count_, kept, ends.first, ends.next,
+                          [&](int i, State const& inboard, State const& outboard) { kept.put(i, Ends{inboard, outboard}); });
+        });
+    }
+
+    Sweep const& sweep_;
+    ShortThread is_;
+    double* own_;
+    Lanes lanes_;
+    int count_ = 0;                      // bodies of the lane
+    int restricted_[dca::part_length];  // directions that their joints restrict
+};
+
+}  // namespace catena::cuda::kernels

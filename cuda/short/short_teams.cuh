@@ -1,0 +1,293 @@
+// A short chain whose handles carry several directions: four or eight lanes join two segments in shared memory (merge_teams.cuh). Every
+// block is given the segments of all warps, and one of its warps joins those as well, so that nobody waits twice.
+#pragma once
+
+#include <type_traits>
+
+#include "cuda/sweeps/merge_teams.cuh"
+#include "cuda/short/short_thread.cuh"
+
+namespace catena::cuda::kernels {
+
+/// Of one warp, in its block's shared memory.
+template <class Sweep>
+class ShortTeams {
+    using Segment = typename Sweep::Segment;
+    using Node = typename Sweep::Node;
+    using State = typename Sweep::Sweeps::State;
+    using Team = MergeTeam<Sweep>;
+    using Records = typename Team::Segments;
+    static constexpr int bodies_of_warp = lanes_of_warp * dca::part_length;
+    static constexpr int teams_of_warp = lanes_of_warp / Team::lanes;
+    /// Places of what a lane joins: its i-th body's, and after all bodies' what it holds.
+    static constexpr int of_parts = dca::part_length * lanes_of_warp, places = of_parts + lanes_of_warp;
+    static constexpr int idle = 0;  // one that nobody writes while warps join
+    struct Ends {
+        State first, next;
+    };
+
+  public:
+    /// Warps for each that joins, itself included: every other thread has a body, or two.
+    static constexpr int warps_for_each(int joining) { return 1 + (joining <= 2 ? dca::part_length : dca::part_length / 2); }
+    static constexpr int most_threads = most_joining_warps * (1 + dca::part_length / 2) * lanes_of_warp;
+    /// Numbers of a block of so many warps that join, and of a launch of so many.
+    static constexpr std::size_t numbers(int joining, int warps) {
+        return 2 + Records::size(warps) + of_top_words + static_cast<std::size_t>(joining) * of_group;
+    }
+    __device__ ShortTeams(OneChain const& chain, Sweep const& sweep, double* memory)
+        : chain_(chain),
+          sweep_(sweep),
+          is_(chain, true),
+          own_(is_.lane / Team::lanes),
+          inbox_(reinterpret_cast<std::uint64_t*>(memory)),
+          top_{memory + 2},
+          at_top_(reinterpret_cast<int*>(top_.origin + Records::size(chain.warps))),
+          records_{top_.origin + Records::size(chain.warps) + of_top_words + static_cast<std::size_t>(is_.group) * of_group},
+          gains_{records_.origin + Records::size(places)},
+          ends_{gains_.origin + Gains::size(of_parts)},
+          restricted_(reinterpret_cast<int*>(ends_.origin + PackedRecords<Ends>::size(lanes_of_warp))) {}
+
+    /// While the launch before may still go on: nothing is read here that a launch writes.
+    __device__ void open() {
+        if (threadIdx.x == 0 && !is_alone(chain_)) inbox_.open(static_cast<int>(sizeof(Segment)) * chain_.warps);
+        __syncwarp();
+        arrive_at_cluster();
+        if (is_.beside >= 0)
+            for (int i = is_.beside; has_body(i); i += is_.warps_beside)
+                restricted_[place_of(is_.lane, i)] = sweep_.s.restricted[is_.first + i];
+        for (int warp = static_cast<int>(threadIdx.x); warp < chain_.warps; warp += static_cast<int>(blockDim.x))
+            at_top_[warp] = sweep_.s.restricted[warp * bodies_of_warp];
+    }
+    __device__ void turn() const {
+        Kept const kept{records_, gains_, is_.lane};
+        bool const joins = is_.beside < 0;
+        typename Sweep::Body body;
+        Turning turning;
+        auto const read = [&](int i) {
+            body = sweep_.bodies.body_at(is_.first + i, QuickInverseLength{});
+            turning = sweep_.bodies.turning(body, Factors{});
+        };
+        if (!joins) {
+            CATENA_NO_UNROLL
+            for (int i = is_.beside + dca::part_length - is_.warps_beside; i >= 0;
+                 i -= is_.warps_beside) {  // the first stays with its thread
+                if (!has_body(i)) continue;
+                read(i);
+                kept.put(i, sweep_.bodies.segment(body, turning));
+            }
+        }
+        __syncthreads();
+        if (!joins) join_bodies();
+        __syncthreads();
+        wait_for_cluster();
+        if (joins) {
+            climb();
+        } else {
+            CATENA_NO_UNROLL
+            for (int i = is_.beside; has_body(i); i += is_.warps_beside)
+                if (i > 0) kept.put_gain(i, gain(kept.template get<Passed>(i)));
+        }
+        __syncthreads();
+        if (joins && is_.warp < chain_.warps) go_down();
+        __syncthreads();
+        if (joins) return;
+        CATENA_NO_UNROLL
+        for (int i = is_.beside; has_body(i); i += is_.warps_beside) {
+            if (i != is_.beside) read(i);
+            Ends const ends = kept.template get<Ends>(i);
+            sweep_.accelerate_turned(is_.first + i, body, turning, ends.first, ends.next);
+        }
+    }
+
+  private:
+    using Passed = typename Sweep::Passed;
+    using Factors = QuickFactors<false>;
+    using Directions = Vector<double, Sweep::K>;
+    using Square = Matrix<double, Sweep::K, Sweep::K>;
+    using Biases = dca::SegmentBias<double, Sweep::K>;
+    using Turning = typename BodiesOf<Sweep>::Turning;
+    using Gains = PackedRecords<Square>;
+    /// Whole numbers, two a double.
+    static constexpr std::size_t of_top_words = most_warps_of_chain / 2, of_bodies_words = of_parts / 2;
+    static constexpr std::size_t of_group =
+        Records::size(places) + Gains::size(of_parts) + PackedRecords<Ends>::size(lanes_of_warp) + of_bodies_words;
+    static constexpr int steps_of_parts = dca::parts_of_run - 1,
+                         steps_of_warp = steps_of_parts + levels_above(lanes_of_warp / dca::parts_of_run);
+    __device__ static int place_of(int lane, int i) { return i * lanes_of_warp + lane; }
+    __device__ static int place_of_part(int lane) { return of_parts + lane; }
+    __device__ bool has_body(int i) const { return is_.is_here(i, is_.first + i); }
+
+    /// What a lane's bodies keep: a segment, of those that have been joined what they pass on, and the forces in the end.
+    struct Kept {
+        Records records;
+        Gains gains;
+        int lane;
+        static constexpr int at_bias = Team::at_inboard;  // a joint's own inboard matrix is not wanted on the way down
+        static_assert(numbers_of<Biases> <= numbers_of<Square>);
+
+        template <class T>
+        __device__ void put(int i, T const& value) const {
+            write(of(i), value);
+        }
+        template <class T>
+        __device__ T get(int i) const {
+            double const* const record = of(i);
+            if constexpr (std::is_same_v<T, Passed>) {
+                if (i == 0) {
+                    Segment const own = Team::template record<Segment>(record);
+                    return {{}, own.matrix.z12, own.bias};
+                }
+                return {Team::template record<Symmetric<double, Sweep::K>>(record),
+                        Team::template record<Square>(record + Team::at_outboard), Team::template record<Biases>(record + at_bias)};
+            } else {
+                return Team::template record<T>(record);
+            }
+        }
+        __device__ void put_gain(int i, Square const& gain) const { gains.store(place_of(lane, i), gain); }
+        __device__ Square gain(int i) const { return gains.load(place_of(lane, i)); }
+        __device__ void put_offset(int i, Directions const& offset) const { write(of(i) + at_bias, offset); }
+        __device__ Directions offset(int i) const { return Team::template record<Directions>(of(i) + at_bias); }
+
+      private:
+        __device__ double* of(int i) const { return records.record(place_of(lane, i)); }
+        template <class T>
+        __device__ static void write(double* record, T const& value) {
+            auto const values = __builtin_bit_cast(NumbersOf<T>, value);
+            CATENA_UNROLL
+            for (int n = 0; n < numbers_of<T>; ++n) record[n] = values[n];
+        }
+    };
+    /// Two segments that a team joins, unless there is no second one: the joined one takes the place of the first, the node that of the other.
+    struct Pair {
+        double *inboard, *outboard;
+        dca::JointAt at;
+        bool works;
+    };
+    /// Every part's bodies, by the teams of all warps that have bodies.
+    __device__ void join_bodies() const {
+        Team const team;
+        CATENA_NO_UNROLL
+        for (int part = is_.beside * teams_of_warp + own_; part < lanes_of_warp; part += is_.warps_beside * teams_of_warp) {
+            int const count = is_.bodies_of(part);
+            double *const first = records_.record(part), *const joined = records_.record(place_of_part(part));
+            if (count == 1) team.copy(first, joined);
+            auto const pair = [&](int i) {
+                int const place = place_of(part, i);
+                bool const works = i < count;
+                return Pair{i == 1 ? first : joined, records_.record(place), {is_.first_of(part) + i, works ? restricted_[place] : 0}, works};
+            };
+            Pair next = pair(1);
+            CATENA_NO_UNROLL
+            for (int i = 1; i < dca::part_length; ++i) {
+                Pair const now = next;
+                if (i + 1 < dca::part_length) next = pair(i + 1);
+                Biases const bias = team.join(sweep_, now.at, now.works, {now.inboard, now.outboard, joined, now.outboard});
+                __syncwarp();
+                if (now.works) team.put_bias(now.outboard + Kept::at_bias, bias);
+            }
+        }
+    }
+    /// In step `step` of the warp's, the i-th: parts of runs one after the other, then pairs.
+    __device__ Pair of_lanes(int step, int i) const {
+        int const level = step - steps_of_parts, apart = level < 0 ? step + 1 : dca::parts_of_run << level;
+        int const inboard = level < 0 ? dca::parts_of_run * i : 2 * apart * i, outboard = inboard + apart;
+        bool const works = outboard < lanes_of_warp && is_.first_of(outboard) < chain_.bodies;
+        int const there = works ? outboard : 0;
+        return {records_.record(works ? place_of_part(inboard) : idle), records_.record(works ? place_of_part(outboard) : idle),
+                {is_.first_of(there), restricted_[place_of(there, 0)]}, works};
+    }
+    /// Of all warps, pairs.
+    __device__ Pair of_warps(int level, int i) const {
+        int const inboard = i << (level + 1), outboard = inboard + (1 << level);
+        bool const works = outboard < chain_.warps;
+        int const there = works ? outboard : 0;
+        double* const nowhere = records_.record(idle);
+        return {works ? top_.record(inboard) : nowhere, works ? top_.record(outboard) : nowhere, {there * bodies_of_warp, at_top_[there]}, works};
+    }
+    /// pair(step, i) for i of [0, count(step)) by the warp's teams, step by step: each is looked for while the last ones join.
+    template <class Count, class Of>
+    __device__ void join_steps(int steps, Count const& count, Of const& pair) const {
+        int step = 0, i = own_;
+        Pair next = pair(step, i);
+        CATENA_NO_UNROLL
+        while (step < steps) {
+            Pair const now = next;
+            i += teams_of_warp;
+            if (i - own_ >= count(step)) ++step, i = own_;
+            if (step < steps) next = pair(step, i);
+            Team().join(sweep_, now.at, now.works, {now.inboard, now.outboard, now.inboard, now.outboard});
+            __syncwarp();
+        }
+    }
+    __device__ int levels_of_top() const {
+        int levels = 0;
+        while (1 << levels < chain_.warps) ++levels;
+        return levels;
+    }
+    /// What the warps do that join: each its own, and the block's first one what all of them hold.
+    __device__ void climb() const {
+        join_steps(
+            steps_of_warp,
+            [](int step) { return step < steps_of_parts ? lanes_of_warp / dca::parts_of_run : lanes_of_warp / (2 * dca::parts_of_run << (step - steps_of_parts)); },
+            [&](int step, int i) { return of_lanes(step, i); });
+        if (is_.warp < chain_.warps)
+            send_to_all<numbers_of<Segment>>(chain_, inbox_, is_.lane, records_.record(of_parts), [&](int n) { return &top_.number(is_.warp, n); });
+        if (is_.group > 0) return;
+        if (!is_alone(chain_)) inbox_.wait();
+        join_steps(
+            levels_of_top(), [&](int level) { return (chain_.warps + (2 << level) - 1) >> (level + 1); },
+            [&](int level, int i) { return of_warps(level, i); });
+    }
+    /// And down: from the first joint to the warp, by its teams to runs and their parts, by every lane to its bodies.
+    __device__ void go_down() const {
+        Team const team;
+        Ends ends{sweep_.first_force({0, at_top_[0]}, top_.load(0), Factors{}), State::zero()};
+        CATENA_NO_UNROLL
+        for (int level = levels_of_top() - 1; level >= 0; --level) go_down(team, ends, top_, 0, is_.warp, 1 << level, chain_.warps);
+        int const lanes = (chain_.bodies - is_.first_of(0) + dca::part_length - 1) / dca::part_length;  // that have bodies
+        CATENA_NO_UNROLL
+        for (int lane = own_ * dca::parts_of_run; lane < lanes_of_warp; lane += teams_of_warp * dca::parts_of_run) {
+            Ends of_run = ends;
+            CATENA_NO_UNROLL
+            for (int distance = lanes_of_warp / 2; distance >= dca::parts_of_run; distance /= 2)
+                go_down(team, of_run, records_, of_parts, lane, distance, lanes);
+            CATENA_NO_UNROLL
+            for (int p = dca::parts_of_run - 1; p > 0; --p) {
+                bool const exists = lane + p < lanes;
+                State const there = team.force(records_.record(place_of_part(exists ? lane + p : 0)), of_run.first, of_run.next);
+                if (!exists) continue;
+                if (team.leads()) ends_.store(lane + p, {there, of_run.next});
+                of_run.next = there;
+            }
+            if (team.leads()) ends_.store(lane, of_run);
+        }
+        __syncwarp();
+        Ends const own = ends_.load(is_.lane);
+        Kept const kept{records_, gains_, is_.lane};
+        if (int const count = is_.bodies_of(is_.lane); count > 0)
+            sweep_.forces_by_gains(count, kept, own.first, own.next,
+                                   [&](int i, State const& inboard, State const& outboard) { kept.put(i, Ends{inboard, outboard}); });
+    }
+    /// Of a pair that `own` is of, of things of which there are `count`, to its half of it.
+    __device__ static void go_down(Team const& team, Ends& ends, Records const& records, int place, int own, int distance, int count) {
+        int const middle = (own & ~(2 * distance - 1)) + distance;
+        bool const exists = middle < count;
+        State const there = team.force(records.record(place + (exists ? middle : 0)), ends.first, ends.next);
+        ends.next = dca::either(exists && own < middle, there, ends.next);
+        ends.first = dca::either(exists && own >= middle, there, ends.first);
+    }
+
+    OneChain const& chain_;
+    Sweep const& sweep_;
+    ShortThread is_;
+    int own_;  // team of the warp
+    Inbox inbox_;
+    Records top_;
+    int* at_top_;  // directions that the joints before warps restrict
+    Records records_;
+    Gains gains_;
+    PackedRecords<Ends> ends_;  // of what lanes join
+    int* restricted_;  // and those of the warp's bodies
+};
+
+}  // namespace catena::cuda::kernels

@@ -1,0 +1,23 @@
+// Levels of the tree on a device, compiled one by one.
+#pragma once
+
+#include "cuda/space/device_crossing.cuh"
+#include "dca/leaf_choice.hpp"
+#include "dca/space_levels.hpp"
+
+namespace catena::cuda {
+
+std::unique_ptr<dca::LevelPart> make_absolute_levels(ChainGroup const&, dca::LevelWork const&);
+std::unique_ptr<dca::LevelPart> make_articulated_levels(ChainGroup const&, dca::LevelWork const&);
+std::unique_ptr<dca::LevelPart> make_joint_levels(ChainGroup const&, dca::LevelWork const&);
+
+struct MakeLevels {
+    ChainGroup const& group;
+    dca::LevelWork const& work;
+    template <class Leaf>
+    std::unique_ptr<dca::LevelPart> operator()(dca::Of<Leaf>) const {
+        return std::make_unique<dca::SpaceLevels<Leaf, DeviceSpace, DeviceCrossing>>(group, work, DeviceSpace(this_thread()));
+    }
+};
+
+}  // namespace catena::cuda

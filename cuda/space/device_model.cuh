@@ -1,0 +1,96 @@
+// A group's model on a device.
+#pragma once
+
+#include "chain/chain_group.hpp"
+#include "cuda/space/device_field.cuh"
+#include "cuda/space/memory.hpp"
+
+namespace catena::cuda {
+
+/// A copy of a host's field that does not change.
+template <int D>
+class FixedField {
+  public:
+    explicit FixedField(Field<D> const& host) : field_(host.size()) {
+        field_.upload(host.view(), nullptr);
+        check(cudaStreamSynchronize(nullptr), "take the model");
+    }
+    ConstView<D> view() const { return field_.view(); }
+
+  private:
+    DeviceField<D> field_;
+};
+
+/// Of bodies that are all alike one tile, and a pitch of 0: its first row is every row of bodies. The halo then is as any body, not as on
+/// the host.
+template <int D>
+class AlikeField {
+  public:
+    explicit AlikeField(Field<D> const& host)
+        : size_(host.size()), one_tile_(one_tile_serves(host)), field_(one_tile_ ? gpu_order::tile : size_) {
+        field_.upload(host.view(), nullptr);
+        check(cudaStreamSynchronize(nullptr), "take the model");
+    }
+    ConstView<D> view() const {
+        ConstView<D> const all = field_.view();
+        return one_tile_ ? ConstView<D>{all.origin, 0, size_} : all;
+    }
+
+  private:
+    std::int64_t size_;
+    bool one_tile_;
+    DeviceField<D> field_;
+};
+
+class DeviceModel {
+  public:
+    explicit DeviceModel(ChainGroup const& group)
+        : size_(group.size),
+          is_first_(group.is_first),
+          is_last_(group.is_last),
+          restricted_(group.restricted_of_joint),
+          jointed_tip_(group.jointed_tip),
+          tip_screw_(group.tip_screw),
+          inverse_mass_(group.inverse_mass),
+          inverse_inertia_(group.inverse_inertia),
+          r1_(group.r1),
+          r2_(group.r2),
+          axes1_(group.axes1),
+          axes2_(group.axes2),
+          screw_(group.screw),
+          mass_(group.mass_of_sweeps()),
+          inertia_(group.inertia_of_sweeps()) {}
+
+    GroupView view() const {
+        return {size_,
+                is_first_.data(),
+                is_last_.data(),
+                jointed_tip_.data(),
+                tip_screw_.data(),
+                inverse_mass_.view(),
+                inverse_inertia_.view(),
+                r1_.view(),
+                r2_.view(),
+                axes1_.view(),
+                axes2_.view(),
+                screw_.view(),
+                mass_.view(),
+                inertia_.view()};
+    }
+    std::uint8_t const* restricted() const { return restricted_.data(); }
+
+  private:
+    std::int64_t size_;
+    Buffer<std::uint8_t> is_first_, is_last_, restricted_;
+    Buffer<std::int32_t> jointed_tip_;
+    Buffer<Vec3> tip_screw_;
+    AlikeField<1> inverse_mass_;
+    AlikeField<6> inverse_inertia_;
+    AlikeField<3> r1_, r2_;
+    AlikeField<6> axes1_, axes2_;
+    FixedField<3> screw_;
+    AlikeField<1> mass_;
+    AlikeField<6> inertia_;
+};
+
+}  // namespace catena::cuda

@@ -1,0 +1,155 @@
+// Scans along chains on a GPU: a launch a stage upwards, a launch a stage downwards, one for both at the top.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "cuda/device/clusters.hpp"
+#include "cuda/device/launch.cuh"
+#include "cuda/device/owners.hpp"
+#include "cuda/exchange/peer_exchange.cuh"
+#include "cuda/sweeps/scan_walk.cuh"
+
+namespace catena::cuda {
+
+/// HostSpace::ScanTree says what it promises.
+class DeviceScan {
+  public:
+    DeviceScan(std::vector<dca::Run> const& runs, std::vector<std::vector<dca::Merge>> const& levels, std::vector<dca::Root> const& roots,
+               std::int64_t slots)
+        : run_list_(runs), runs_(view_of(runs, run_list_.data())) {
+        for (dca::ScanStage const& stage : dca::plan_scan(runs, levels, roots, slots, kernels::most_of_scan))
+            stages_.emplace_back(stage, runs_);
+    }
+    template <class Scan>
+    void climb(Scan const& scan, cudaStream_t stream) const {
+        walk(stream).climb(scan);
+    }
+    template <class Scan>
+    void descend(Scan const& scan, cudaStream_t stream) const {
+        walk(stream).descend(scan);
+    }
+    template <class Scan>
+    void climb_and_descend(Scan const& scan, cudaStream_t stream) const {
+        walk(stream).climb_and_descend(scan);
+    }
+    /// As ScanWalk::at_once.
+    template <class Scan, class Action>
+    bool at_once(Scan const& scan, std::int64_t count, Action const& action, cudaStream_t stream) const {
+        return walk(stream).at_once(scan, count, action);
+    }
+    /// Whether at_once() would, or the other turn_shared(), and goes_by_steps.
+    bool has_threads_for_bodies() const { return has_clusters_ && walk(nullptr).is_one_block(); }
+    /// As ScanWalk::turn_shared.
+    template <class Scan, class Numbers>
+    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, cudaStream_t stream) const {
+        return walk(stream).turn_shared(scan, exchange, Launches{top, stream});
+    }
+    template <class Scan, class Numbers, class Action>
+    bool turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, DeviceScan const& top, std::int64_t count,
+                     Action const& action, cudaStream_t stream) const {
+        return walk(stream).turn_shared(scan, exchange, Launches{top, stream}, count, action);
+    }
+
+  private:
+    struct Stage {
+        Stage(dca::ScanStage const& stage, RunsView const& runs)
+            : slot(stage.slot),
+              merges(stage.merges),
+              tops(stage.tops),
+              block(stage.blocks),
+              level_end(stage.level_end),
+              view{static_cast<unsigned>(stage.blocks.size()),
+                   stage.levels,
+                   static_cast<int>(stage.width),
+                   stage.of_runs ? runs : RunsView{},
+                   slot.data(),
+                   merges.data(),
+                   tops.data(),
+                   block.data(),
+                   level_end.data()} {}
+        Buffer<std::int32_t> slot;
+        Buffer<dca::ScanMerge> merges;
+        Buffer<dca::ScanTop> tops;
+        Buffer<dca::ScanBlock> block;
+        Buffer<std::int32_t> level_end;
+        kernels::DeviceScanStage view;
+    };
+    /// Of ScanWalk.
+    struct Launches {
+        DeviceScan const& tree;
+        cudaStream_t stream;
+
+        std::size_t stages() const { return tree.stages_.size(); }
+        unsigned blocks(std::size_t i) const { return tree.stages_[i].view.blocks; }
+        template <class Scan>
+        void climb(std::size_t i, Scan const& scan) const {
+            launch(kernels::climb_scan<Scan>, i, scan);
+        }
+        template <class Scan>
+        void turn(std::size_t i, Scan const& scan) const {
+            launch(kernels::turn_scan<Scan>, i, scan);
+        }
+        template <class Scan>
+        void descend(std::size_t i, Scan const& scan) const {
+            launch(kernels::descend_scan<Scan>, i, scan);
+        }
+        template <class Scan, class Action>
+        bool turn_then(Scan const& scan, std::int64_t count, Action const& action) const {
+            kernels::DeviceScanStage const& stage = tree.stages_.front().view;
+            unsigned const blocks = kernels::blocks_of_turn<Scan>(stage, count);
+            std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(stage, blocks);
+            if (!tree.has_cluster_of(shared)) return false;
+            auto* const kernel = kernels::turn_scan_then<Scan, Action>;
+            allow_shared(kernel, shared);
+            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, stage, scan, count, action);
+            return true;
+        }
+        template <class Scan, class Numbers>
+        void turn_shared(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, Launches const& top) const {
+            kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
+            std::size_t const all = bytes<Scan>(own) + bytes<Scan>(above);
+            auto* const kernel = kernels::turn_shared_scan<Scan, kernels::ExchangeByBlock<Numbers>>;
+            allow_shared(kernel, all);
+            cuda::launch({1, kernels::most_of_scan, all}, stream, kernel, own, above, exchange.next(), scan);
+            ++scans_shared;
+        }
+        template <class Scan, class Numbers, class Action>
+        bool turn_shared_then(Scan const& scan, ExchangeInTurn<Numbers> const& exchange, Launches const& top, std::int64_t count,
+                              Action const& action) const {
+            kernels::DeviceScanStage const &own = tree.stages_.back().view, &above = top.tree.stages_.back().view;
+            unsigned const blocks = kernels::blocks_of_turn<Scan>(own, count);
+            std::size_t const shared = sizeof(double) * kernels::numbers_of_turn<Scan>(own, blocks) + bytes<Scan>(above);
+            if (!tree.has_cluster_of(shared)) return false;
+            auto* const kernel = kernels::turn_shared_scan_then<Scan, kernels::ExchangeByBlock<Numbers>, Action>;
+            allow_shared(kernel, shared);
+            cuda::launch({blocks, kernels::most_of_scan, shared, blocks}, stream, kernel, own, above, exchange.next(), scan, count, action);
+            ++scans_shared;
+            ++shared_scans_by_bodies;
+            return true;
+        }
+
+      private:
+        template <class Scan>
+        static std::size_t bytes(kernels::DeviceScanStage const& stage) {
+            return sizeof(double) * static_cast<std::size_t>(kernels::BlockOfScan<Scan>::size(stage));
+        }
+        template <class Scan>
+        void launch(void (*kernel)(kernels::DeviceScanStage, Scan), std::size_t i, Scan const& scan) const {
+            kernels::DeviceScanStage const& stage = tree.stages_[i].view;
+            cuda::launch({stage.blocks, kernels::threads_of_scan(stage), bytes<Scan>(stage)}, stream, kernel, stage, scan);
+        }
+    };
+    ScanWalk<Launches> walk(cudaStream_t stream) const { return ScanWalk<Launches>({*this, stream}); }
+
+    /// Whose blocks have so many bytes of shared memory.
+    bool has_cluster_of(std::size_t shared_bytes) const { return has_clusters_ && shared_bytes <= most_shared_bytes_; }
+
+    bool has_clusters_ = knows_clusters();
+    std::size_t most_shared_bytes_ = most_shared_bytes();
+    Buffer<dca::Run> run_list_;
+    RunsView runs_;
+    std::vector<Stage> stages_;
+};
+
+}  // namespace catena::cuda

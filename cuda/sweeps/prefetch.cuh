@@ -1,0 +1,101 @@
+// Bodies on their way from memory to a thread's own place in its block's shared memory while the thread is busy with the one before them:
+// larger handles leave no registers in which to wait for numbers. A host compiler takes it too, where tests/support/cuda_on_host.hpp stands
+// before it.
+#pragma once
+
+#include "cuda/device/copies.cuh"
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::cuda::kernels {
+
+/// Bodies [begin, end) of a thread (`Bodies`: dca::Resting), each once and in turn. A thread's two places lie together, an odd number of
+/// numbers, so that threads do not meet in a bank.
+template <class Bodies>
+class BodiesInTurn {
+    using Read = typename decltype(Bodies::leaf)::template Body<std::int64_t>;
+    using Body = typename Bodies::template Body<std::int64_t>;
+    static constexpr int numbers = static_cast<int>(sizeof(Read) / sizeof(double)) - 1;  // but for which body it is
+    static constexpr int of_thread = 2 * numbers | 1;
+
+    /// Readers of leaves (dca/lane_access.hpp): one starts copies, the other finds what has come.
+    struct Start {
+        double* to;
+        int n = 0;
+        template <class T, int D>
+        __device__ Vector<double, D> operator()(FieldView<T, D> const& view, std::int64_t k) {
+            CATENA_UNROLL
+            for (int i = 0; i < D; ++i) start_copy(to + n + i, &view.at(k, i));
+            n += D;
+            return {};
+        }
+        template <class T, int D>
+        __device__ Vector<double, D> if_any(FieldView<T, D> const& view, std::int64_t k) {
+            if (view.origin) Start{to, n}(view, k);
+            n += D;
+            return {};
+        }
+        template <class T, int D>
+        __device__ Vector<double, D> once_if_any(FieldView<T, D> const& view, std::int64_t k) {
+            return if_any(view, k);
+        }
+    };
+    struct Take {
+        double const* from;
+        int n = 0;
+        template <class T, int D>
+        __device__ Vector<double, D> operator()(FieldView<T, D> const&, std::int64_t) {
+            Vector<double, D> v;
+            CATENA_UNROLL
+            for (int i = 0; i < D; ++i) v[i] = from[n + i];
+            n += D;
+            return v;
+        }
+        template <class T, int D>
+        __device__ Vector<double, D> if_any(FieldView<T, D> const& view, std::int64_t k) {
+            int const first = n;
+            n += D;
+            return view.origin ? Take{from, first}(view, k) : Vector<double, D>::zero();
+        }
+        template <class T, int D>
+        __device__ Vector<double, D> once_if_any(FieldView<T, D> const& view, std::int64_t k) {
+            return if_any(view, k);
+        }
+    };
+
+  public:
+    /// Numbers of a block in shared memory.
+    static __host__ __device__ constexpr std::size_t size(int threads) {
+        return static_cast<std::size_t>(of_thread) * static_cast<std::size_t>(threads);
+    }
+    __device__ BodiesInTurn(Bodies const& bodies, std::int64_t begin, std::int64_t end, double* memory)
+        : bodies_(bodies), own_(memory + threadIdx.x * of_thread), next_(begin), end_(end) {
+        start();
+    }
+    /// As a sweep asks for a part's bodies: which one it is is known.
+    struct Part {
+        BodiesInTurn& all;
+        __device__ Body body(int) const { return all.next(); }
+    };
+
+  private:
+    __device__ double* place_of(std::int64_t k) const { return own_ + (k & 1) * numbers; }
+    __device__ void start() {
+        bodies_.leaf.body(bodies_.loads, next_, Start{place_of(next_)});
+        restricted_ = bodies_.restricted[next_];
+        close_copies();
+    }
+    /// The next copies start before these numbers are asked for, as a compiler keeps them in this order: who has few registers asks late.
+    __device__ Body next() {
+        wait_for_copies<0>();
+        std::int64_t const k = next_;
+        int const restricted = restricted_;
+        if (++next_ < end_) start();
+        return {bodies_.leaf.body(bodies_.loads, k, Take{place_of(k)}), restricted};
+    }
+    Bodies const& bodies_;
+    double* own_;
+    std::int64_t next_, end_;
+    int restricted_ = 0;
+};
+
+}  // namespace catena::cuda::kernels

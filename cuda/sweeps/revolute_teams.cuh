@@ -1,0 +1,445 @@
+// Runs on hinges by several lanes of a warp each: where runs are few, a GPU has more threads than that. What does not wait for other bodies
+// the lanes find of a body each, and leave in shared memory; then, on the way up, all have the inertia and each one or two of the six
+// wrenches (floating_run.hpp), and in the end a row of the segment. They leave the bits of one thread's climb_hinges() and
+// descend_hinges(). A host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+#pragma once
+
+#include "cuda/sweeps/team_memory.cuh"
+
+namespace catena::cuda::kernels {
+
+constexpr int lanes_of_narrow_team = 4, lanes_of_broad_team = 16;
+// More runs than the first have fewer lanes each, more than the second a thread: they keep a GPU busy with that.
+constexpr std::int64_t most_runs_of_broad_teams = 2048, most_runs_of_teams = 8192;
+
+/// All lanes of a warp come to what it does: also with teams that have fewer bodies than others of it.
+template <int lanes, bool whole>
+class HingeTeam {
+    using Body = dca::HingedBody<double>;
+    using Wrench = dca::Wrench<double>;
+    using Swing = dca::BodyAcceleration<double>;
+    using InRun = dca::LoadedBodyInRun<double>;
+    using Ahead = BodiesAhead<lanes>;
+    using Column = Vector<double, 6>;
+    // Wrench 0 to 4: `first`, then the bias; wrench w is that of lane w % lanes.
+    static constexpr int bias = 5, wrenches = (bias + lanes) / lanes, last_wrench = wrenches - 1;
+    static_assert(whole ? bodies_of_whole_run % lanes == 0 : bodies_of_whole_run == lanes);
+
+  public:
+    /// `works`: else it only goes along with the warp's other teams.
+    __device__ HingeTeam(BodiesOfTeam<lanes, whole> const& bodies, int lane, bool works)
+        : bodies_(bodies), own_(lane % lanes), leader_(lane - own_), most_(bodies.most(lane)), works_(works) {}
+    __device__ bool leads() const { return works_ && own_ == 0; }
+
+    /// As dca::climb_hinges(). put_row(i, dca::SegmentRow): by the lane that has it.
+    template <class BodyOf, class Kept, class PutRow>
+    __device__ __forceinline__ void climb(BodyOf const& body, Ahead const& ahead, Kept& kept, PutRow const& put_row) {
+        Prepared const last_one = prepare(body, ahead, kept);
+        begin(body(0));
+        go_on<dca::Undriven>(ahead, kept);
+        dca::OutboardHandle<double> const before =
+            of_lane(dca::OutboardHandle<double>{last_one.turn * last_one.axes2, last_one.inward}, before_last());
+        end(before, body(bodies_.last()), dca::Undriven{}, kept, put_row);
+    }
+    /// The same where hinges' loads are given. `all`: as FollowedBodies.
+    template <class Leaf, class Kept, class PutRow>
+    __device__ __forceinline__ void climb(dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead, Kept& kept,
+                                          PutRow const& put_row) {
+        dca::FollowedState<double> const last_one = follow(loaded, all, ahead, kept);
+        begin(loaded.first());
+        go_on<double>(ahead, kept);
+        dca::OutboardHandle<double> const before{to_matrix_of_unit(last_one.turn) * loaded.axes2(bodies_.last() - 1), last_one.inward};
+        Body const last = loaded.last(before.axes, last_one.omega, ByLeader<Kept>{kept, leads()});
+        end(before, last, loaded.torque_about(bodies_.last()), kept, put_row);
+    }
+
+  private:
+    template <class Kept>
+    struct ByLeader {
+        Kept& kept;
+        bool leads;
+        __device__ void put_omega(int i, Vec3 const& omega) const {
+            if (leads) kept.put_omega(i, omega);
+        }
+        __device__ void put_orientation(Mat3 const& from_ground) const {
+            if (leads) kept.put_orientation(from_ground);
+        }
+    };
+
+    /// What the bodies after it want of one, as dca::BodiesOfRun::State.
+    struct Prepared {
+        Mat3 turn, axes2;
+        Vec3 inward;
+    };
+    /// All bodies; returns the last of the lane's own.
+    template <class BodyOf, class Kept>
+    __device__ __forceinline__ Prepared prepare(BodyOf const& body, Ahead const& ahead, Kept& kept) {
+        Prepared own{Mat3::identity(), Mat3::identity(), Vec3::zero()};
+        Mat3 turn = own.turn;
+        Swing swing{Vec3::zero(), Vec3::zero()};
+        CATENA_NO_UNROLL
+        for (int first = 0; first < bodies_of_whole_run; first += lanes) {
+            Body const here = body(bodies_.body_or_last(first + own_));
+            Mat3 const mine =
+                along(first, turn, here.turn_to(one_before(here.e2, own.axes2)), [](Mat3& t, Mat3 const& to_before) { t = t * to_before; });
+            Vec3 const inward = mine * here.inward2;
+            InRun const in_run = dca::in_run(here, mine, one_before(inward, own.inward));
+            put_ahead(first, in_run, 0.0, swing, ahead, kept);
+            own = {mine, here.e2, inward};
+        }
+        __syncwarp();
+        return own;
+    }
+    /// All bodies, as FollowedBodies; returns the last but one.
+    template <class Leaf, class Kept>
+    __device__ __forceinline__ dca::FollowedState<double> follow(dca::RunWithLoads<Leaf> const& loaded, bool all, Ahead const& ahead,
+                                                                 Kept& kept) {
+        struct Turning {
+            Vec3 axis;
+            double rate;
+        };
+        dca::FollowedState<double> own{Quat::identity(), loaded.first_omega(), loaded.first_inward()};
+        Vec3 const first_inward = own.inward;
+        Quat turn = own.turn;
+        Vec3 omega = own.omega;
+        Swing swing{Vec3::zero(), Vec3::zero()};
+        CATENA_NO_UNROLL
+        for (int first = 0; first < bodies_of_whole_run; first += lanes) {
+            int const i = first + own_;
+            int const read = bodies_.body_or_last(i);
+            dca::BodyOnHinge<double> const here = loaded.on_hinge(read);
+            Vec3 const omega_of_last = omega;
+            own.turn = along(first, turn, here.turn, [](Quat& t, Quat const& next) { t = t * next; });
+            Mat3 const mine = to_matrix_of_unit(own.turn);
+            Vec3 const after = along(first, omega, Turning{mine * here.axis, here.rate},
+                                     [](Vec3& w, Turning const& next) { w = plus_scaled(w, next.rate, next.axis); });
+            dca::FollowedBody<double> const body = dca::follow(here, mine, one_before(after, omega_of_last));
+            Vec3 const inward = i == 0 ? first_inward : body.inward2;
+            own.inward = one_before(inward, own.inward);
+            InRun in_run = own.go_on(body);
+            own.inward = inward;
+            loaded.add_wrench(read, in_run);
+            put_ahead(first, in_run, loaded.torque_about(read), swing, ahead, kept);
+            if (works_ && bodies_.is_within(i) && (all || i == bodies_.last() - 1)) kept.put_omega(i, transposed_times(mine, own.omega));
+        }
+        __syncwarp();
+        return of_lane(own, before_last());
+    }
+    /// The lane that has this body.
+    __device__ int before_last() const { return (bodies_.last() - 1) % lanes; }
+    /// Of the bodies from `first` on, one a lane; `swing`: of the one before them.
+    template <class Kept>
+    __device__ __forceinline__ void put_ahead(int first, InRun const& body, double torque_about, Swing& swing, Ahead const& ahead,
+                                              Kept& kept) {
+        struct Swung {
+            Swing difference;
+            Vec3 across;
+        };
+        int const i = first + own_;
+        swing_ = along(first, swing, Swung{body.difference, body.across}, [](Swing& s, Swung const& next) { swing_on(s, next); });
+        if (!bodies_.is_within(i)) return;
+        ahead.put(i - 1, {body, torque_about, dca::added_body(body.mass, body.inertia, body.centre),
+                          about_point(load_of(body, swing_), body.centre)});
+        if (works_) kept.put(i, body, swing_);
+    }
+
+    __device__ __forceinline__ void begin(Body const& body) {
+        all_ = inertia_of(body);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) {
+            wrench_[s] = bias_of(body);
+            CATENA_UNROLL
+            for (int j = 0; j < bias; ++j)
+                if (j == own_ + s * lanes) {
+                    wrench_[s] = first_of(body, j);
+                    e_[s] = row_of_first(body, j);
+                }
+            CATENA_UNROLL
+            for (int i = 0; i < bias; ++i) row_[s][i] = 0;
+        }
+    }
+    /// To all bodies but the first and the last. `Torque`: as dca::release_driven.
+    template <class Torque, class Kept>
+    __device__ __forceinline__ void go_on(Ahead const& ahead, Kept& kept) {
+        CATENA_NO_UNROLL
+        for (int i = 1; i < most_ - 1; ++i) {
+            bool const goes = whole || bodies_.is_within(i);
+            BodyAhead const next = ahead.get(i - 1);
+            dca::ReleasedHinge<double> const hinge = pass_hinge(next.axis, torque_of<Torque>(next.torque_about), goes);
+            if (!goes) continue;
+            CATENA_UNROLL
+            for (int s = 0; s < wrenches; ++s) move_point(wrench_[s], next.across);
+            if (has_bias()) add_load(wrench_[last_wrench], next.load);
+            move_point(all_, next.across);
+            add_body(all_, next.body);
+            if (leads()) kept.put(i, hinge);
+        }
+    }
+    template <class Torque>
+    __device__ static Torque torque_of(double torque) {
+        if constexpr (std::is_same_v<Torque, double>)
+            return torque;
+        else
+            return {};
+    }
+    /// `goes`: else for other teams' sake.
+    template <class Torque>
+    __device__ __forceinline__ dca::ReleasedHinge<double> pass_hinge(Vec3 const& axis, Torque const& torque, bool goes = true) {
+        dca::ReleasedHinge<double> h;
+        double along[wrenches] = {};
+        if (goes) {
+            dca::Release<double> const r = release_hinge(all_, axis, h);
+            CATENA_UNROLL
+            for (int s = 0; s < last_wrench; ++s) along[s] = release_hinge(wrench_[s], r);
+            if constexpr (std::is_same_v<Torque, double>)  // to what is no bias -0 is added: it stays what it is
+                along[last_wrench] = release_driven(wrench_[last_wrench], r, has_bias() ? torque : -0.0);
+            else
+                along[last_wrench] = release_hinge(wrench_[last_wrench], r);
+        }
+        CATENA_UNROLL
+        for (int j = 0; j < bias; ++j) h.first[j] = of_lane(along[j / lanes], j % lanes);
+        h.bias = of_lane(along[last_wrench], bias % lanes);
+        if (!goes) return h;
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) gain_row(h, along[s], bias - 1, row_[s], e_[s]);
+        return h;
+    }
+    /// As dca::end_run() and dca::segment_of().
+    template <class Torque, class Kept, class PutRow>
+    __device__ __forceinline__ void end(dca::OutboardHandle<double> const& before, Body const& last, Torque const& torque, Kept& kept,
+                                        PutRow const& put_row) {
+        take_difference(of_lane(swing_, before_last()));
+        Mat3 const turn = transpose(before.axes);
+        turn_axes(all_, turn);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) turn_axes(wrench_[s], turn);
+        dca::ReleasedHinge<double> const hinge = pass_hinge(dca::last_axis<double>(), torque);
+        leave_hinge(all_);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) wrench_[s].torque[2] = 0;
+        if (has_bias()) wrench_[last_wrench].torque[2] = dca::left_along_hinge<double>(torque);
+        take_difference(last_difference(last, turn * before.inward));
+
+        dca::LastBody<double> const body = last_body(last);
+        Symmetric<double, 6> const factor = dca::factorize(inertia_of_end(all_, body), 6);
+        if (leads()) {
+            kept.put(bodies_.last(), hinge);
+            kept.put(factor);
+            kept.put_axes(before.axes);
+        }
+        dca::Handle<double, 5> const handle = handle2_of_end(last);
+        Column first[wrenches], second[wrenches];  // L^-1 of them; the bias's lane: of that
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) {
+            int const own = own_ + s * lanes;
+            first[s] = own == bias ? bias_of_end(wrench_[s], body) : dca::six_of(wrench_[s].force, wrench_[s].torque);
+            if (works_ && own < bias) kept.put_first(own, first[s]);
+            if (works_ && own == bias) kept.put_bias(first[s]);
+            second[s] = second_of(handle, 0);
+            CATENA_UNROLL
+            for (int j = 1; j < bias; ++j)
+                if (j == own) second[s] = second_of(handle, j);
+            first[s] = dca::solve_lower(factor, first[s]);
+            second[s] = dca::solve_lower(factor, second[s]);
+        }
+        dca::SegmentRow<double, 5> row[wrenches];
+        CATENA_UNROLL
+        for (int j = 0; j < bias; ++j) {
+            Column const first_j = of_lane(first[j / lanes], j % lanes), second_j = of_lane(second[j / lanes], j % lanes);
+            CATENA_UNROLL
+            for (int s = 0; s < wrenches; ++s) {
+                row[s].z11[j] = row_[s][j] + dca::product(factor, first[s], first_j);
+                row[s].z12[j] = dca::product(factor, first[s], second_j);
+                row[s].z22[j] = dca::product(factor, second[s], second_j);
+            }
+        }
+        Column const of_bias = of_lane(first[last_wrench], bias % lanes);
+        Vector<double, 5> const beyond = bias_beyond(handle, last);
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) {
+            double own_beyond = beyond[0];
+            CATENA_UNROLL
+            for (int j = 1; j < bias; ++j)
+                if (j == own_ + s * lanes) own_beyond = beyond[j];
+            row[s].b1 = e_[s] - dca::product(factor, first[s], of_bias);
+            row[s].b2 = own_beyond - dca::product(factor, second[s], of_bias);
+            if (works_ && own_ + s * lanes < bias) put_row(own_ + s * lanes, row[s]);
+        }
+    }
+    __device__ __forceinline__ void take_difference(Swing const& d) {
+        CATENA_UNROLL
+        for (int s = 0; s < wrenches; ++s) dca::take_difference(e_[s], wrench_[s], d);
+        if (has_bias()) dca::take_difference(wrench_[last_wrench], all_, d);
+    }
+    /// Whether the lane's last wrench is the bias.
+    __device__ bool has_bias() const { return own_ == bias % lanes; }
+
+    /// step(state, value of it) for the team's lanes in turn, for the first body of all not; returns what it was after the lane's own.
+    template <class State, class T, class Step>
+    __device__ __forceinline__ State along(int first, State& state, T const& value, Step const& step) const {
+        constexpr int few = 4;  // so that what they have is under way together
+        State own = state;
+        CATENA_NO_UNROLL
+        for (int begin = 0; begin < lanes; begin += few) {
+            CATENA_UNROLL
+            for (int i = 0; i < few; ++i) {
+                int const lane = begin + i;
+                T const here = of_lane(value, lane);
+                bool const goes_on = i > 0 || first + begin > 0;
+                if constexpr (lanes == bodies_of_whole_run) {
+                    if (goes_on) step(state, here);
+                    if (lane == own_) own = state;
+                } else if (goes_on && lane <= own_) {
+                    step(own, here);
+                }
+            }
+        }
+        if constexpr (lanes < bodies_of_whole_run) state = of_lane(own, lanes - 1);
+        return own;
+    }
+    /// What the lane before has; `of_last`: the same of the bodies before, by the lanes that have them.
+    template <class T>
+    __device__ T one_before(T const& value, T const& of_last) const {
+        T const before = from_lane(value, leader_ + (own_ + lanes - 1) % lanes), last = of_lane(of_last, lanes - 1);
+        return dca::either(own_ > 0, before, last);
+    }
+    template <class T>
+    __device__ T of_lane(T const& value, int lane) const {
+        return from_lane(value, leader_ + lane);
+    }
+
+    BodiesOfTeam<lanes, whole> bodies_;
+    int own_, leader_;  // lane of the team, and of the warp that is the team's first
+    int most_;
+    bool works_;
+    Swing swing_;  // of the last of the lane's own bodies
+    dca::SpatialInertia<double> all_;
+    Wrench wrench_[wrenches];
+    double row_[wrenches][bias], e_[wrenches] = {};
+};
+
+template <bool whole, int lanes, class Sweep>
+__device__ __forceinline__ void climb_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
+    HingeTeam<lanes, whole> team(BodiesOfTeam<lanes, whole>(run), lane, works);
+    dca::HingesInJoints<typename Sweep::Sweeps> kept(sweep.s, run, sweep.goes_by_all());
+    BodiesAhead<lanes> const ahead(shared_numbers, lane);
+    auto const put_row = [&](int i, dca::SegmentRow<double, Sweep::K> const& row) { sweep.store_row(run.slot, i, row); };
+    if (sweep.follows()) {
+        team.climb(sweep.with_loads(run), sweep.goes_by_all(), ahead, kept, put_row);
+    } else {
+        auto const body = [&](int i) { return sweep.s.leaf.hinged(sweep.bodies.loads, run.body + i); };
+        team.climb(body, ahead, kept, put_row);
+    }
+    sweep.s.note(kept.lost());
+}
+template <bool whole, int lanes, class Sweep>
+__device__ __forceinline__ void descend_by_team(Sweep const& sweep, dca::Run const& run, int lane, bool works) {
+    BodiesOfTeam<lanes, whole> const bodies(run);
+    bool const leads = works && lane % lanes == 0;
+    dca::HingesInJoints<typename Sweep::Sweeps> const kept(sweep.s, run, false);
+    auto const first = sweep.s.forces.load(run.body), next = sweep.s.forces.load(run.next);
+    HingesBehind<Sweep, lanes, whole> const behind(bodies, shared_numbers, lane);
+    behind.fetch(kept, first, [&](int i) { return sweep.frame(run, kept, i); });
+    dca::descend_hinges<double>(
+        bodies.count(), false, [&](int i) { return behind.frame(i); }, behind, first, next,
+        [&](int i, dca::HingedFrame<double> const& frame, dca::BodyAcceleration<double> const& a) {
+            if (leads) sweep.accelerate(run, i, frame, a);
+        },
+        [](int, dca::BodyAcceleration<double>&) {},
+        [&](int i, double of_hinge) {
+            if (leads) sweep.turn(run, i, of_hinge);
+        });
+}
+/// Whether all lanes of the warp say so. By shuffles: nvcc 13 makes of what comes after a vote code that takes a quarter longer.
+__device__ inline bool all_lanes(int lane, bool says) {
+    int all = says ? 1 : 0;
+    CATENA_UNROLL
+    for (int apart = 16; apart > 0; apart /= 2) all &= __shfl_sync(0xffffffffu, all, lane ^ apart);
+    return all != 0;
+}
+/// A team without a run goes along with that of the warp's other one.
+__device__ inline dca::Run for_team(RunsView const& runs, std::int64_t wanted, dca::Run const& run, bool by_hinges) {
+    std::int64_t const other = wanted ^ 1;
+    return by_hinges ? run : runs[other < runs.count ? other : runs.count - 1];
+}
+/// Whole runs by teams where a warp has no others; broad teams take others on hinges, too, but not those of one or two bodies: these, and
+/// what is beside whole runs of narrow teams, a thread takes.
+template <int lanes, class Sweep>
+__global__ void __launch_bounds__(32) climb_runs_by_teams(RunsView runs, Sweep sweep) {
+    int const lane = static_cast<int>(threadIdx.x) % 32;
+    std::int64_t const wanted = thread() / lanes;
+    bool const works = wanted < runs.count;
+    dca::Run const run = runs[works ? wanted : runs.count - 1];
+    bool const by_hinges = run.count > 2 && sweep.takes(run);
+    bool const whole = all_lanes(lane, by_hinges && run.count == dca::longest_run);
+    wait_for_launch();
+    if (whole) {
+        climb_by_team<true, lanes>(sweep, run, lane, works);
+        return;
+    }
+    if constexpr (lanes == bodies_of_whole_run) {
+        if (!all_lanes(lane, !by_hinges)) {
+            dca::Run const of_team = for_team(runs, wanted, run, by_hinges);
+            climb_by_team<false, lanes>(sweep, of_team, lane, works && by_hinges);
+        }
+        if (by_hinges) return;
+    }
+    if (works && lane % lanes == 0) climb_run(sweep, run);
+}
+/// What is wanted of every body is found one after the other: by a thread.
+template <int lanes, class Sweep>
+__global__ void __launch_bounds__(32) descend_runs_by_teams(RunsView runs, Sweep sweep) {
+    int const lane = static_cast<int>(threadIdx.x) % 32;
+    std::int64_t const wanted = thread() / lanes;
+    bool const works = wanted < runs.count;
+    dca::Run const run = runs[works ? wanted : runs.count - 1];
+    bool const by_hinges = run.count > 2 && !sweep.goes_by_all() && sweep.takes(run);
+    bool const whole = all_lanes(lane, by_hinges && run.count == dca::longest_run);
+    wait_for_launch();
+    if (whole) {
+        descend_by_team<true, lanes>(sweep, run, lane, works);
+        return;
+    }
+    if constexpr (lanes == bodies_of_whole_run) {
+        if (!all_lanes(lane, !by_hinges)) {
+            dca::Run const of_team = for_team(runs, wanted, run, by_hinges);
+            descend_by_team<false, lanes>(sweep, of_team, lane, works && by_hinges);
+        }
+        if (by_hinges) return;
+    }
+    if (works && lane % lanes == 0) descend_run(sweep, run);
+}
+template <int lanes>
+RunsGrid grid_of_teams(std::int64_t runs, std::size_t numbers_of_warp) {
+    RunsGrid grid = grid_of_runs(runs, lanes, 32);
+    grid.shared_bytes = sizeof(double) * numbers_of_warp;
+    return grid;
+}
+/// Of each of so many runs on hinges; none: a thread takes it alone.
+constexpr int lanes_of_teams(std::int64_t runs) {
+    return runs <= most_runs_of_broad_teams ? lanes_of_broad_team : runs <= most_runs_of_teams ? lanes_of_narrow_team : 0;
+}
+/// launch(kernel, grid), unless the runs go another way.
+template <class Sweep, class Launch>
+bool climb_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
+    if constexpr (dca::takes_whole_runs<Sweep>) {
+        constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
+        if (lanes == broad) launch(climb_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, BodiesAhead<broad>::size));
+        if (lanes == narrow) launch(climb_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, BodiesAhead<narrow>::size));
+        return lanes != 0;
+    }
+    return false;
+}
+template <class Sweep, class Launch>
+bool descend_by_teams(int lanes, std::int64_t runs, Launch const& launch) {
+    if constexpr (dca::takes_whole_runs<Sweep>) {
+        constexpr int broad = lanes_of_broad_team, narrow = lanes_of_narrow_team;
+        std::size_t const numbers = lanes == broad ? HingesBehind<Sweep, broad, true>::size : HingesBehind<Sweep, narrow, true>::size;
+        if (lanes == broad) launch(descend_runs_by_teams<broad, Sweep>, grid_of_teams<broad>(runs, numbers));
+        if (lanes == narrow) launch(descend_runs_by_teams<narrow, Sweep>, grid_of_teams<narrow>(runs, numbers));
+        return lanes != 0;
+    }
+    return false;
+}
+
+}  // namespace catena::cuda::kernels

@@ -1,0 +1,306 @@
+// Scans along chains (tree/stages.hpp, plan_scan) on a GPU: a block climbs its part of the tree in its shared memory and descends there. A
+// host compiler takes it too, where tests/support/cuda_on_host.hpp stands before it.
+#pragma once
+
+#include <algorithm>
+
+#include "cuda/device/cluster.cuh"
+#include "cuda/sweeps/run_parts.cuh"
+#include "cuda/sweeps/runs_view.hpp"
+#include "tree/stages.hpp"
+
+namespace catena::cuda::kernels {
+
+using dca::most_of_scan;
+
+/// A stage of a scan on a device.
+struct DeviceScanStage {
+    unsigned blocks = 0;
+    int levels = 0, width = 0;
+    RunsView runs = {};  // the items; none where they are not
+    std::int32_t const* slot = nullptr;
+    dca::ScanMerge const* merges = nullptr;
+    dca::ScanTop const* tops = nullptr;
+    dca::ScanBlock const* block = nullptr;
+    std::int32_t const* level_end = nullptr;
+};
+
+/// Whose runs' values come from their bodies' steps, one after the other (HingeScan); and what comes after the scan may come before it for
+/// runs that begin at the ground.
+template <class Scan>
+concept goes_by_steps = requires(Scan const& scan, dca::Run const& run) {
+    scan.step(run, 0);
+    scan.begins_at_ground(run);
+};
+
+/// A block's part of it. On the way up a joined value takes the inboard one's place and that the outboard one's, on the way down what lies
+/// before a segment takes its place.
+template <class Scan>
+class BlockOfScan {
+    using Value = typename Scan::Value;
+    using Values = PackedRecords<Value>;
+
+  public:
+    /// Numbers that it needs.
+    static __host__ __device__ int size(DeviceScanStage const& stage) {
+        return static_cast<int>(Values::size(stage.width)) + stage.width + (stage.levels + 1) / 2;
+    }
+    /// Reads the lists, and what lies before what is complete where that is `known`: nothing waits for these later. A thread an item.
+    __device__ BlockOfScan(DeviceScanStage const& stage, Scan const& scan, double* memory, bool known, unsigned number = blockIdx.x)
+        : stage_(stage),
+          scan_(scan),
+          values_{memory},
+          merges_(reinterpret_cast<dca::ScanMerge*>(memory + Values::size(stage.width))),
+          level_end_(reinterpret_cast<std::int32_t*>(merges_ + stage.width)) {
+        dca::ScanBlock const here = stage.block[number];
+        std::int64_t const item = here.item.begin + threadIdx.x, merge = here.merge.begin + threadIdx.x, top = here.top.begin + threadIdx.x;
+        has_item_ = item < here.item.end;
+        has_top_ = top < here.top.end;
+        if (has_item_) slot_ = stage.slot[item];
+        if (has_item_ && stage.runs) run_ = stage.runs[item];
+        if (has_top_) top_ = stage.tops[top];
+        if (merge < here.merge.end) merges_[threadIdx.x] = stage.merges[merge];
+        if (static_cast<int>(threadIdx.x) < stage.levels)
+            level_end_[threadIdx.x] = stage.level_end[static_cast<std::int64_t>(number) * stage.levels + threadIdx.x];
+        if (known) learn();
+    }
+    /// What lies before what is complete.
+    __device__ void learn() {
+        if (has_top_) before_top_ = scan_.before(top_.slot);
+    }
+
+    /// `runs_are_known`: as wholes.
+    template <bool runs_are_known = false>
+    __device__ void climb() const {
+        if (has_item_) values_.store(place(), !runs_are_known && stage_.runs ? scan_.of_run(run_) : scan_.whole(slot_));
+        CATENA_NO_UNROLL
+        for (int l = 0; l < stage_.levels; ++l)
+            at_merge(l, [&](dca::ScanMerge const& m) {
+                Value const inboard = values_.load(m.inboard), joined = scan_.joined(inboard, values_.load(m.outboard));
+                values_.store(m.inboard, joined);
+                values_.store(m.outboard, inboard);
+            });
+        __syncthreads();
+    }
+    /// What other stages make more of, and what the way down by a launch of its own needs.
+    __device__ void put() const {
+        if (has_item_) scan_.set_whole(slot_, values_.load(place()));
+        put_tops();
+    }
+    __device__ void put_tops() const {
+        if (has_top_) scan_.set_whole(top_.slot, values_.load(top_.place));
+    }
+    __device__ void take() const {
+        if (has_item_) values_.store(place(), scan_.whole(slot_));
+        __syncthreads();
+    }
+    /// Precondition: what lies before the block was known.
+    __device__ void descend() const {
+        if (has_top_) values_.store(top_.place, before_top_);
+        CATENA_NO_UNROLL
+        for (int l = stage_.levels - 1; l >= 0; --l)
+            at_merge(l, [&](dca::ScanMerge const& m) {
+                values_.store(m.outboard, scan_.joined(values_.load(m.inboard), values_.load(m.outboard)));
+            });
+        __syncthreads();
+        if (has_item_) scan_.set_before(slot_, values_.load(place()));
+    }
+
+  private:
+    static __device__ int place() { return static_cast<int>(threadIdx.x); }
+    /// After all threads have met.
+    template <class Action>
+    __device__ void at_merge(int level, Action const& action) const {
+        __syncthreads();
+        int const i = (level == 0 ? 0 : level_end_[level - 1]) + static_cast<int>(threadIdx.x);
+        if (i < level_end_[level]) action(merges_[i]);
+    }
+
+    DeviceScanStage const& stage_;
+    Scan const& scan_;
+    Values values_;
+    dca::ScanMerge* merges_;
+    std::int32_t* level_end_;
+    bool has_item_, has_top_;
+    std::int32_t slot_ = 0;
+    dca::Run run_;
+    dca::ScanTop top_;
+    Value before_top_;
+};
+
+/// Blocks that share a multiprocessor: more find no registers for larger values.
+template <class Scan>
+constexpr int scans_at_once = sizeof(typename Scan::Value) <= 8 * sizeof(double) ? 2 : 1;
+template <class Scan>
+__global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) climb_scan(DeviceScanStage stage, Scan scan) {
+    wait_for_launch();
+    BlockOfScan<Scan> const block(stage, scan, shared_numbers, false);
+    block.climb();
+    block.put();
+}
+template <class Scan>
+__global__ void __launch_bounds__(most_of_scan) turn_scan(DeviceScanStage stage, Scan scan) {
+    wait_for_launch();
+    BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
+    block.climb();
+    block.descend();
+}
+/// action(item i)
+template <class Item, class Action>
+struct OfItem {
+    Item const* items;
+    Action action;
+    __device__ void operator()(std::int64_t i) const { action(items[i]); }
+};
+template <class Action>
+inline constexpr bool is_of_items = false;
+template <class Item, class Action>
+inline constexpr bool is_of_items<OfItem<Item, Action>> = true;
+/// action(k) for every body or item k, by all threads of the launch: neighbours at neighbouring places.
+template <bool of_items, class Action>
+__device__ void for_all(std::int64_t count, Action const& action) {
+    std::int64_t const threads = static_cast<std::int64_t>(gridDim.x) * blockDim.x, end = of_items ? count : gpu_order::padded(count);
+    for (std::int64_t i = thread(); i < end; i += threads)
+        if (std::int64_t const k = of_items ? i : gpu_order::body(i); k < count) action(k);
+}
+/// What a cluster's blocks find of the runs of a stage of one block: a thread a body, then a thread a run.
+template <class Scan>
+class RunsByStep {
+    static constexpr int bodies = static_cast<int>(dca::longest_run), at_once = most_of_scan / bodies;
+    using Steps = PackedRecords<typename Scan::Step>;
+
+  public:
+    static __host__ __device__ int runs_of_block(DeviceScanStage const& stage, unsigned blocks) {
+        return (stage.width + static_cast<int>(blocks) - 1) / static_cast<int>(blocks);
+    }
+    /// Numbers that it needs.
+    static __host__ __device__ std::size_t size(DeviceScanStage const& stage, unsigned blocks) {
+        return Steps::size((runs_of_block(stage, blocks) + at_once - 1) / at_once * most_of_scan);
+    }
+    __device__ RunsByStep(DeviceScanStage const& stage, Scan const& scan, double* memory)
+        : stage_(stage),
+          scan_(scan),
+          steps_{memory},
+          begin_(static_cast<int>(blockIdx.x) * runs_of_block(stage, gridDim.x)),
+          end_(begin_ + runs_of_block(stage, gridDim.x)) {
+        if (end_ > stage.width) end_ = stage.width;
+    }
+    /// Leaves their wholes.
+    __device__ void operator()() const {
+        int const thread = static_cast<int>(threadIdx.x);
+        CATENA_NO_UNROLL
+        for (int i = thread / bodies; begin_ + i < end_; i += at_once) {
+            dca::Run const run = stage_.runs[begin_ + i];
+            if (thread % bodies < run.count) steps_.store(i * bodies + thread % bodies, scan_.step(run, thread % bodies));
+        }
+        __syncthreads();
+        if (int const i = begin_ + thread; i < end_) scan_.set_whole(stage_.slot[i], whole(thread, static_cast<int>(stage_.runs[i].count)));
+    }
+
+  private:
+    __device__ typename Scan::Value whole(int i, int count) const {
+        auto const [rotation_of_first, omega_of_first, axes] = steps_.load(i * bodies);
+        auto rotation = rotation_of_first;
+        auto omega = omega_of_first;
+        CATENA_NO_UNROLL
+        for (int body = 1; body < count; ++body) Scan::go_on(rotation, omega, steps_.load(i * bodies + body));
+        return Scan::ended(rotation, omega);
+    }
+
+    DeviceScanStage const& stage_;
+    Scan const& scan_;
+    Steps steps_;
+    int begin_, end_;
+};
+/// Of one block's runs, and then action(i) for every item i, a run of the stage's: by one cluster, whose first block turns() when all runs'
+/// wholes are known.
+template <class Scan, class Action, class Turns>
+__device__ void turn_by_steps(DeviceScanStage const& stage, Scan const& scan, double* memory, std::int64_t count, Action const& action,
+                              Turns const& turns) {
+    static_assert(is_of_items<Action>);
+    RunsByStep<Scan>(stage, scan, memory)();
+    meet_cluster();
+    if (blockIdx.x + 1 == gridDim.x)  // while the first block turns
+        for (std::int64_t i = threadIdx.x; i < count; i += blockDim.x)
+            if (scan.begins_at_ground(stage.runs[i])) action(i);
+    if (blockIdx.x == 0) turns();
+    meet_cluster();
+    for_all<true>(count, [&](std::int64_t i) {
+        if (!scan.begins_at_ground(stage.runs[i])) action(i);
+    });
+}
+/// Of one block, and then action(k) for every body or item k: by one cluster.
+template <class Scan, class Action>
+__global__ void __launch_bounds__(most_of_scan) turn_scan_then(DeviceScanStage stage, Scan scan, std::int64_t count, Action action) {
+    wait_for_launch();
+    if constexpr (goes_by_steps<Scan>) {
+        BlockOfScan<Scan> const block(stage, scan, shared_numbers, true, 0);  // lists on their way meanwhile
+        turn_by_steps(stage, scan, shared_numbers + BlockOfScan<Scan>::size(stage), count, action, [&] {
+            block.template climb<true>();
+            block.descend();
+        });
+    } else {
+        if (blockIdx.x == 0) {
+            BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
+            block.climb();
+            block.descend();
+        }
+        meet_cluster();
+        for_all<is_of_items<Action>>(count, action);
+    }
+}
+/// Of that, of most_of_scan threads each.
+template <class Scan>
+unsigned blocks_of_turn(DeviceScanStage const& stage, std::int64_t count) {
+    std::int64_t const wanted = goes_by_steps<Scan> ? std::max(count, stage.width * dca::longest_run) : count;
+    return static_cast<unsigned>(std::min<std::int64_t>(most_in_cluster, (wanted - 1) / most_of_scan + 1));
+}
+template <class Scan>
+std::size_t numbers_of_turn(DeviceScanStage const& stage, unsigned blocks) {
+    auto numbers = static_cast<std::size_t>(BlockOfScan<Scan>::size(stage));
+    if constexpr (goes_by_steps<Scan>) numbers += RunsByStep<Scan>::size(stage, blocks);
+    return numbers;
+}
+/// Of one block, with exchange() and the one block of the top `above` in between, as turn().
+template <bool runs_are_known, class Scan, class Exchange>
+__device__ void turn_shared_block(BlockOfScan<Scan>& block, BlockOfScan<Scan> const& above, Exchange const& exchange) {
+    block.template climb<runs_are_known>();
+    block.put_tops();
+    __syncthreads();
+    exchange();
+    __syncthreads();
+    above.climb();
+    above.descend();
+    __syncthreads();
+    block.learn();
+    block.descend();
+}
+template <class Scan, class Exchange>
+__global__ void __launch_bounds__(most_of_scan) turn_shared_scan(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan) {
+    wait_for_launch();
+    BlockOfScan<Scan> block(stage, scan, shared_numbers, false);
+    BlockOfScan<Scan> const above(top, scan, shared_numbers + BlockOfScan<Scan>::size(stage), true);
+    turn_shared_block<false>(block, above, exchange);
+}
+/// The same of one block's runs, and then action(i) as turn_scan_then().
+template <class Scan, class Exchange, class Action>
+__global__ void __launch_bounds__(most_of_scan)
+    turn_shared_scan_then(DeviceScanStage stage, DeviceScanStage top, Exchange exchange, Scan scan, std::int64_t count, Action action) {
+    wait_for_launch();
+    double* const of_top = shared_numbers + BlockOfScan<Scan>::size(stage);
+    BlockOfScan<Scan> block(stage, scan, shared_numbers, false, 0);
+    BlockOfScan<Scan> const above(top, scan, of_top, true, 0);
+    turn_by_steps(stage, scan, of_top + BlockOfScan<Scan>::size(top), count, action,
+                  [&] { turn_shared_block<true>(block, above, exchange); });
+}
+template <class Scan>
+__global__ void __launch_bounds__(most_of_scan, scans_at_once<Scan>) descend_scan(DeviceScanStage stage, Scan scan) {
+    wait_for_launch();
+    BlockOfScan<Scan> const block(stage, scan, shared_numbers, true);
+    block.take();
+    block.descend();
+}
+
+inline unsigned threads_of_scan(DeviceScanStage const& stage) { return static_cast<unsigned>((stage.width + 31) / 32 * 32); }
+
+}  // namespace catena::cuda::kernels

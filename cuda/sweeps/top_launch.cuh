@@ -1,0 +1,53 @@
+// The launch that takes the last two stages of a sweep up and down again (stage_kernels.cuh).
+#pragma once
+
+#include <map>
+
+#include "cuda/device/clusters.hpp"
+#include "cuda/device/launch.cuh"
+#include "cuda/sweeps/stage_kernels.cuh"
+
+namespace catena::cuda {
+
+/// Of a tree, whose GPU and context it belongs to.
+class TurnLaunch {
+  public:
+    TurnLaunch() = default;
+    /// `most_bytes`: of shared memory that the GPU gives a block.
+    TurnLaunch(dca::StagesTogether const& stages, dca::StageRecords const& records, int most_bytes)
+        : up_(stages.numbers_up(records)),
+          down_(stages.numbers_down(records)),
+          launches_(stages.blocks()),
+          items_(static_cast<int>(stages.upper->width)),
+          forces_(static_cast<int>(stages.upper->forces)),
+          most_bytes_(most_bytes) {}
+    explicit operator bool() const { return launches_.size() > 0; }
+    kernels::TurnLetters letters() const { return {{up_.data(), items_}, {down_.data(), forces_}, launches_.data()}; }
+    /// Whether the GPU runs all of the grid's blocks at once, and has so many multiprocessors to spare; of a kernel and a tree there is one
+    /// grid.
+    template <class Kernel>
+    bool fits(Kernel* kernel, Grid const& grid, int spare) const {
+        auto const [known, is_new] = fits_.try_emplace(reinterpret_cast<void const*>(kernel));
+        if (is_new) known->second = asks_for(kernel, grid, spare);
+        return known->second;
+    }
+
+  private:
+    template <class Kernel>
+    bool asks_for(Kernel* kernel, Grid const& grid, int spare) const {
+        if (grid.shared_bytes > static_cast<std::size_t>(most_bytes_)) return false;
+        allow_shared(kernel, grid.shared_bytes);
+        int of_multiprocessor = 0;
+        check(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&of_multiprocessor, kernel, static_cast<int>(grid.threads), grid.shared_bytes),
+              "say how many blocks it runs at once");
+        return grid.blocks <= static_cast<unsigned>(of_multiprocessor * (multiprocessors() - spare));
+    }
+
+    Buffer<kernels::LetterBox> up_, down_;
+    Buffer<unsigned> launches_;
+    int items_ = 0, forces_ = 0;
+    int most_bytes_ = 0;
+    mutable std::map<void const*, bool> fits_;  // of each kind of sweep
+};
+
+}  // namespace catena::cuda

@@ -1,0 +1,205 @@
+#include "bench/peer_chain.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <tuple>
+
+#include "math/rotation.hpp"
+#include "dynamics/body_loads.hpp"
+
+namespace catena::command {
+namespace {
+
+enum class PeerJoint { revolute, ball, slide, universal };
+
+struct PeerBody {
+    double mass = 0;
+    Vec3 com = Vec3::zero();
+    Sym3 inertia = Sym3::zero();
+    PeerJoint joint = PeerJoint::revolute;
+    Vec3 axis = Vec3::zero();
+    Mat3 rotation = Mat3::identity();
+    Vec3 translation = Vec3::zero();
+    std::array<double, 4> q{0, 0, 0, 0};
+    Vec3 qd = Vec3::zero(), torque = Vec3::zero(), wrench_torque = Vec3::zero(), wrench_force = Vec3::zero();
+};
+constexpr std::size_t columns = 42;
+
+void append(std::vector<double>& table, Vec3 const& v) { table.insert(table.end(), v.data, v.data + 3); }
+
+void append(std::vector<double>& table, PeerBody const& b) {
+    table.push_back(b.mass);
+    append(table, b.com);
+    for (auto const& [i, j] : {std::pair{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}) table.push_back(b.inertia(i, j));
+    table.push_back(static_cast<double>(b.joint));
+    append(table, b.axis);
+    table.insert(table.end(), b.rotation.data, b.rotation.data + 9);
+    append(table, b.translation);
+    table.insert(table.end(), b.q.begin(), b.q.end());
+    for (Vec3 const& v : {b.qd, b.torque, b.wrench_torque, b.wrench_force}) append(table, v);
+}
+
+Vec3 entry(std::vector<Vec3> const& list, std::size_t k) { return list.empty() ? Vec3::zero() : list[k]; }
+
+Quat quaternion(std::array<double, 4> const& q) { return {q[0], q[1], q[2], q[3]}; }
+
+/// The joint's torque, its spring's and its damper's at the state.
+Vec3 torque_of(BodyArrays const& b, std::size_t k) {
+    Vec3 torque = entry(b.torque, k);
+    Vec3 const stiffness = entry(b.stiffness, k), damping = entry(b.damping, k);
+    bool const sprung = norm(stiffness) > 0;
+    if (b.joint[k] == JointType::revolute) {
+        torque[0] -= sprung ? stiffness[0] * (b.q[k][0] - (b.rest.empty() ? 0 : b.rest[k][0])) : 0;
+    } else if (sprung) {
+        Quat const rest = b.rest.empty() ? Quat::identity() : quaternion(b.rest[k]);
+        torque = torque + spherical_spring_torque(stiffness, rest, quaternion(b.q[k]));
+    }
+    for (int i = 0; i < 3; ++i) torque[i] -= damping[i] * b.qd[k][i];
+    return torque;
+}
+
+PeerBody body_of(BodyArrays const& bodies, std::size_t k) {
+    PeerBody b{bodies.mass[k],        bodies.com[k], bodies.inertia[k], PeerJoint::ball,      bodies.axis[k], bodies.rotation[k],
+               bodies.translation[k], bodies.q[k],   bodies.qd[k],      torque_of(bodies, k), Vec3::zero(),   Vec3::zero()};
+    if (bodies.joint[k] == JointType::revolute) b.joint = PeerJoint::revolute;
+    if (!bodies.wrench.empty()) std::tie(b.wrench_torque, b.wrench_force) = bodies.wrench[k];
+    if (bodies.joint[k] == JointType::free) b.rotation = Mat3::identity(), b.translation = b.torque = Vec3::zero();
+    return b;
+}
+
+PeerBody slide_at(Vec3 const& position, Vec3 const& velocity, double mass) {
+    PeerBody slide;
+    slide.joint = PeerJoint::slide;
+    slide.mass = mass;
+    slide.translation = position;
+    slide.qd = velocity;
+    return slide;
+}
+
+void append(std::vector<double>& table, BodyArrays const& bodies) {
+    if (bodies.joint[0] == JointType::free) append(table, slide_at(bodies.free_position, bodies.free_velocity, 0));
+    for (std::size_t k = 0; k < bodies.size(); ++k) append(table, body_of(bodies, k));
+}
+
+/// A link as a rod: axes with z along it, at rest about z against the rod before.
+struct Rod {
+    double length = 0;
+    Mat3 axes = Mat3::identity();  // in the ground's
+    Vec3 omega = Vec3::zero();     // W
+    double u1 = 0, u2 = 0;         // rates of the universal joint about x and y
+
+    Vec3 x() const { return axes.column(0); }
+    Vec3 y() const { return axes.column(1); }
+    Vec3 along() const { return axes.column(2); }
+};
+
+/// A right-handed frame with z along a unit vector.
+Mat3 axes_along(Vec3 const& z) {
+    Vec3 const other = std::abs(z[0]) < 0.5 ? Vec3{{1, 0, 0}} : Vec3{{0, 1, 0}};
+    Vec3 const across = cross(other, z), x = (1 / norm(across)) * across;
+    Mat3 axes;
+    axes.set_column(0, x);
+    axes.set_column(1, cross(z, x));
+    axes.set_column(2, z);
+    return axes;
+}
+
+/// From bead k - 1 to bead k; `last`: the one before.
+Rod rod_of(BeadArrays const& beads, std::size_t k, Rod const& last) {
+    Rod rod;
+    Vec3 const link = beads.position[k] - beads.position[k - 1];
+    rod.length = norm(link);
+    rod.axes = axes_along((1 / rod.length) * link);
+    Vec3 const across = (1 / rod.length) * cross(rod.along(), beads.velocity[k] - beads.velocity[k - 1]);
+    rod.u1 = dot(rod.x(), across - last.omega);
+    rod.u2 = dot(rod.y(), across - last.omega);
+    rod.omega = across + dot(rod.along(), last.omega) * rod.along();
+    return rod;
+}
+
+void append(std::vector<double>& table, BeadArrays const& beads) {
+    append(table, slide_at(beads.position[0], beads.velocity[0], beads.mass[0]));
+    Rod last;
+    for (std::size_t k = 1; k < beads.size(); ++k) {
+        Rod const rod = rod_of(beads, k, last);
+        PeerBody b;
+        b.joint = PeerJoint::universal;
+        b.mass = beads.mass[k];
+        b.com = {{0, 0, rod.length}};
+        b.rotation = transposed_times(last.axes, rod.axes);
+        b.translation = {{0, 0, last.length}};
+        b.qd = {{rod.u1, rod.u2, 0}};
+        append(table, b);
+        last = rod;
+    }
+}
+
+/// Second derivatives along the rods, from the first bead on.
+std::vector<double> accelerations_of_beads(BeadArrays const& beads, std::vector<double> const& found) {
+    std::vector<double> list(found.begin(), found.begin() + 3);
+    Vec3 acceleration{{found[0], found[1], found[2]}}, alpha = Vec3::zero();
+    Rod last;
+    for (std::size_t k = 1; k < beads.size(); ++k) {
+        Rod const rod = rod_of(beads, k, last);
+        Vec3 const relative = rod.u1 * rod.x() + rod.u2 * rod.y(), along = rod.length * rod.along();
+        alpha =
+            alpha + found[2 * k + 1] * rod.x() + found[2 * k + 2] * rod.y() + (rod.u1 * rod.u2) * rod.along() + cross(last.omega, relative);
+        acceleration = acceleration + cross(alpha, along) + cross(rod.omega, cross(rod.omega, along));
+        append(list, acceleration);
+        last = rod;
+    }
+    return list;
+}
+
+bool has_free_body(ChainSpec const& chain) { return !chain.is_beads() && chain.bodies.joint[0] == JointType::free; }
+
+std::size_t accelerations_of(ChainSpec const& chain) {
+    if (chain.is_beads()) return 1 + 2 * chain.size();
+    std::size_t count = 0;
+    for (JointType const joint : chain.bodies.joint) count += joint == JointType::revolute ? 1 : joint == JointType::free ? 6 : 3;
+    return count;
+}
+
+bool resists(std::vector<std::array<double, 2>> const& drag) {
+    return std::any_of(drag.begin(), drag.end(), [](auto const& d) { return d[0] != 0 || d[1] != 0; });
+}
+
+}  // namespace
+
+std::string not_for_peers(Scene const& scene) {
+    auto const among = [](JointType joint) {
+        return joint == JointType::revolute || joint == JointType::spherical || joint == JointType::free;
+    };
+    ForceSpec const& forces = scene.forces;
+    if (scene.chains.size() != 1 || forces.openmm || forces.linear_drag != 0 || forces.angular_drag != 0)
+        return "not one chain alone without drag and OpenMM";
+    ChainSpec const& chain = scene.chains.front();
+    if (chain.tip != Tip::free) return "a closed chain";
+    if (chain.is_linked()) return "beads and rigid bodies on links in one chain";
+    if (chain.is_beads()) return chain.base == Base::free ? "" : "beads that hang on the ground";
+    if (!std::all_of(chain.bodies.joint.begin(), chain.bodies.joint.end(), among)) return "joints neither revolute nor spherical";
+    return chain.bodies.driven.empty() && !resists(chain.bodies.drag) ? "" : "driven joints or drag";
+}
+
+std::vector<double> peer_table(ChainSpec const& chain, Vec3 const& gravity) {
+    std::size_t const bodies = chain.size() + (has_free_body(chain) ? 1 : 0);
+    std::vector<double> table{static_cast<double>(columns), static_cast<double>(bodies), gravity[0], gravity[1], gravity[2]};
+    table.reserve(columns * (bodies + 1));
+    table.resize(columns, 0.0);
+    if (chain.is_beads())
+        append(table, chain.beads);
+    else
+        append(table, chain.bodies);
+    return table;
+}
+
+std::vector<double> accelerations_of_peer(ChainSpec const& chain, std::vector<double> const& found) {
+    if (found.size() != accelerations_of(chain)) return {};
+    if (chain.is_beads()) return accelerations_of_beads(chain.beads, found);
+    std::vector<double> list = found;
+    if (has_free_body(chain)) std::rotate(list.begin(), list.begin() + 3, list.begin() + 6);  // the angular one comes first
+    return list;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,307 @@
+#include "bench/sampling_rows.hpp"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <random>
+
+#include "clock.hpp"
+#include "bench/step_makers.hpp"
+#include "console/option_values.hpp"
+#include "error.hpp"
+#include "scene/calvados2.hpp"
+#include "observe/observables.hpp"
+#include "io/output.hpp"
+
+namespace catena::command {
+namespace {
+
+constexpr std::string_view method_names[] = {"rigid", "rigid-fixman", "bonds", "constraints"};
+constexpr double tolerance_of_constraints = 2e-5;  // OpenMM closes them to 1e-5
+constexpr double torn = 0.5;                       // of a bond's length: ten standard deviations
+
+struct Moment {
+    std::vector<Vec3> position;
+    double kinetic = 0;     // kJ/mol
+    double link_error = 0;  // relative
+};
+
+/// What moves the copies.
+class Mover {
+  public:
+    virtual ~Mover() = default;
+    virtual void step(int count) = 0;
+    virtual Moment now() = 0;
+    /// Between samples, at little cost.
+    virtual double link_error() = 0;
+    virtual double tolerance() const = 0;
+    virtual void describe(SamplingRow&) = 0;
+};
+
+class CatenaMover final : public Mover {
+  public:
+    CatenaMover(Scene scene, Communicator const& communicator) : catena_(std::move(scene), communicator) {}
+    void step(int count) override {
+        catena_.step(count);
+        catena_.adapt();
+    }
+    Moment now() override {
+        ChainSystem::Snapshot snapshot = catena_.observe();
+        double const kinetic = kinetic_energy(catena_.scene(), snapshot);
+        return {std::move(snapshot.position), kinetic, catena_.constraint_error()};
+    }
+    double link_error() override { return catena_.constraint_error(); }
+    double tolerance() const override { return catena_.tolerance(); }
+    void describe(SamplingRow& row) override {
+        row.backend = name_of(catena_.system().backend());
+        row.platform = catena_.system().openmm()->platform();
+        row.path = catena_.system().openmm()->path();
+    }
+
+  private:
+    CatenaSteps catena_;
+};
+
+/// Bonds' lengths as they are at the temperature: friction of 0.01/ps would take hundreds of ps to bring them there.
+void warm_bonds(ChainSpec& chain, double kt, std::mt19937_64& draw) {
+    std::normal_distribution<double> longer(0, std::sqrt(kt / calvados2::bond_stiffness));
+    std::vector<Vec3>& x = chain.beads.position;
+    Vec3 shift = Vec3::zero();
+    for (std::size_t k = 1; k < x.size(); ++k) {
+        Vec3 const bond = x[k] + shift - x[k - 1];
+        shift = plus_scaled(shift, longer(draw) / norm(bond), bond);
+        x[k] = x[k] + shift;
+    }
+}
+
+class OpenMmMover final : public Mover {
+  public:
+    OpenMmMover(Scene scene, BeadSystem const& beads, Communicator const& communicator, OwnLinks links, Backend backend)
+        : links_(links), beads_(beads) {
+        std::mt19937_64 draw(scene.dynamics.seed);
+        std::vector<Vec3> x;
+        for (ChainSpec& chain : scene.chains) {
+            if (links == OwnLinks::bonds) warm_bonds(chain, scene.boltzmann() * scene.dynamics.temperature, draw);
+            x.insert(x.end(), chain.beads.position.begin(), chain.beads.position.end());
+        }
+        own_ = make_openmm_own(*scene.forces.openmm, beads, communicator, links, own_run(scene, backend), x);
+    }
+    void step(int count) override { own_->step(count); }
+    Moment now() override {
+        Moment now{own_->positions(), own_->kinetic_energy()};
+        now.link_error = catena::link_error(beads_.links, now.position);
+        return now;
+    }
+    double link_error() override { return own_->link_error(); }
+    double tolerance() const override { return links_ == OwnLinks::bonds ? torn : tolerance_of_constraints; }
+    void describe(SamplingRow& row) override {
+        row.backend = "OpenMM";
+        row.platform = own_->platform();
+    }
+
+  private:
+    OwnLinks links_;
+    BeadSystem const& beads_;
+    std::unique_ptr<OpenMmOwn> own_;
+};
+
+std::unique_ptr<Mover> make_mover(SamplingCopies& copies, Communicator const& communicator, Backend backend, SamplingMethod method,
+                                  double step, double time) {
+    Scene scene = copies.scene(step, time);
+    scene.solver.backend = backend;
+    if (method == SamplingMethod::bonds || method == SamplingMethod::constraints)
+        return std::make_unique<OpenMmMover>(scene, copies.beads(), communicator,
+                                             method == SamplingMethod::bonds ? OwnLinks::bonds : OwnLinks::constraints, backend);
+    scene.dynamics.fixman = method == SamplingMethod::rigid_fixman;
+    if (scene.dynamics.fixman && uses_gpu(backend)) {  // that force is computed on the host; OpenMM stays where it is
+        scene.solver.backend = Backend::segments;
+        if (scene.forces.openmm->platform.empty()) scene.forces.openmm->platform = "CUDA";
+    }
+    return std::make_unique<CatenaMover>(std::move(scene), communicator);
+}
+
+/// One value a copy and sample, and that of all copies' kinetic energy.
+struct Found {
+    CopySeries gyration, end_to_end, cosine, virial, divergence, kinetic;
+
+    explicit Found(std::int64_t copies) : kinetic(1) {
+        for (CopySeries* each : {&gyration, &end_to_end, &cosine, &virial, &divergence}) each->resize(static_cast<std::size_t>(copies));
+    }
+    void add(std::vector<ChainSample> const& samples) {
+        for (std::size_t c = 0; c < samples.size(); ++c) {
+            gyration[c].push_back(samples[c].radius_of_gyration);
+            end_to_end[c].push_back(samples[c].end_to_end);
+            cosine[c].push_back(samples[c].cosine);
+            virial[c].push_back(samples[c].virial);
+            divergence[c].push_back(samples[c].divergence);
+        }
+    }
+};
+
+/// A row as it runs.
+class RowRun {
+  public:
+    RowRun(SamplingCopies& copies, BenchRequest const& request, SamplingRow& row)
+        : copies_(copies), options_(request.sampling), quiet_(request.quiet), row_(row), found_(copies.copies()) {
+        of_block_ = std::max<std::int64_t>(1, std::llround(options_.every / row.step));
+        double const block = row.every = static_cast<double>(of_block_) * row.step;
+        discarded_ = std::llround(std::ceil(options_.discard / block - 1e-9));
+        wanted_ = std::max<std::int64_t>(1, std::llround(options_.duration / block));
+    }
+    double time() const { return static_cast<double>((discarded_ + wanted_) * of_block_) * row_.step; }
+
+    void run(Mover& mover) {
+        Progress progress(quiet_, 0, (discarded_ + wanted_) * of_block_, row_.step, false);
+        double const start = seconds_now();
+        for (std::int64_t block = 0; block < discarded_ + wanted_ && !row_.cut; ++block) {
+            double const before = seconds_now();
+            mover.step(static_cast<int>(of_block_));
+            double const after = seconds_now();
+            if (block < discarded_) {
+                row_.link_error = larger(row_.link_error, mover.link_error());
+            } else {
+                stepped_.push_back((after - before) / static_cast<double>(of_block_));
+                row_.stepping += after - before;
+                row_.steps += of_block_;
+                sample(mover);
+                row_.sampling += seconds_now() - after;
+            }
+            if (!(row_.link_error <= std::max(torn, mover.tolerance()))) throw ComputationError("links are torn");
+            progress.update((block + 1) * of_block_);
+            row_.cut = options_.seconds > 0 && seconds_now() - start > options_.seconds && block + 1 < discarded_ + wanted_;
+        }
+        progress.finish();
+    }
+
+    void conclude(SamplingMethod method) {
+        Scene const& model = copies_.model();
+        row_.samples = std::ssize(found_.kinetic.front());
+        row_.time = static_cast<double>(row_.samples * of_block_) * row_.step;
+        row_.all = 1e-3 * row_.time * static_cast<double>(copies_.copies());
+        row_.gyration = blocked_mean(found_.gyration);
+        row_.end_to_end = blocked_mean(found_.end_to_end);
+        row_.cosine = blocked_mean(found_.cosine);
+        row_.seconds = spread_of(stepped_);
+        if (row_.samples == 0) return;
+        row_.temperature = blocked_ratio(found_.virial, found_.divergence);
+        row_.temperature.mean /= model.boltzmann();
+        row_.temperature.error /= model.boltzmann();
+        std::int64_t dof = 3 * copies_.beads().size();
+        if (method != SamplingMethod::bonds) dof -= std::ssize(copies_.beads().links);
+        for (double& kinetic : found_.kinetic.front()) kinetic *= 2 / (model.boltzmann() * static_cast<double>(dof));
+        row_.kinetic = blocked_mean(found_.kinetic);
+    }
+
+  private:
+    void sample(Mover& mover) {
+        Moment const now = mover.now();
+        row_.link_error = larger(row_.link_error, now.link_error);
+        double const nearest = copies_.nearest(now.position);
+        if (std::isnan(nearest)) throw ComputationError("positions are not finite");
+        row_.nearest = std::min(row_.nearest, nearest);
+        std::vector<ChainSample> const samples = copies_.sample(now.position, measure_of(row_.method));
+        for (ChainSample const& each : samples)
+            if (!std::isfinite(each.radius_of_gyration + each.virial + each.divergence))
+                throw ComputationError("positions or forces are not finite");
+        found_.add(samples);
+        found_.kinetic.front().push_back(now.kinetic);
+    }
+
+    SamplingCopies& copies_;
+    SamplingOptions const& options_;
+    bool quiet_;
+    SamplingRow& row_;
+    Found found_;
+    std::vector<double> stepped_;
+    std::int64_t of_block_, discarded_, wanted_;
+};
+
+void judge(SamplingRow& row, double tolerance) {
+    row.state = "INVALID";
+    if (row.samples == 0) {
+        row.state = "too short";
+        row.why = "no sample within --seconds: the time went into what is discarded";
+    } else if (!(row.link_error <= tolerance)) {
+        row.why = fmt::format("links are off by {:.1e} of their length, allowed are {:.0e}", row.link_error, tolerance);
+    } else if (!(row.nearest > SamplingCopies::cutoff())) {
+        row.why = fmt::format("two copies came as near as {:.3g} nm, forces reach {} nm", row.nearest, SamplingCopies::cutoff());
+    } else if (!std::isfinite(row.gyration.mean + row.end_to_end.mean + row.cosine.mean + row.temperature.mean)) {
+        row.why = "a mean is not finite";
+    } else {
+        row.state = "VALID";
+    }
+}
+
+double rounding_at(double coordinate) {
+    auto const x = static_cast<float>(coordinate);
+    return 0.5 * static_cast<double>(std::nextafter(x, INFINITY) - x);
+}
+
+}  // namespace
+
+char const* name_of(SamplingMethod method) { return method_names[static_cast<std::size_t>(method)].data(); }
+
+SamplingMethod sampling_method_named(std::string const& option, std::string const& name) {
+    known_value(option, name, method_names);
+    return static_cast<SamplingMethod>(std::find(std::begin(method_names), std::end(method_names), name) - std::begin(method_names));
+}
+
+BondMeasure measure_of(SamplingMethod method) {
+    return method == SamplingMethod::rigid || method == SamplingMethod::constraints ? BondMeasure::rigid : BondMeasure::flexible;
+}
+
+SamplingRow run_sampling_row(SamplingCopies& copies, BenchRequest const& request, Communicator const& communicator, Backend backend,
+                             SamplingMethod method, double step) {
+    SamplingRow row;
+    row.method = method;
+    row.step = step;
+    RowRun run(copies, request, row);
+    row.spacing = copies.spacing(run.time());
+    row.rounding = rounding_at(copies.extent(run.time()));
+    std::unique_ptr<Mover> mover;
+    try {
+        mover = make_mover(copies, communicator, backend, method, step, run.time());
+        mover->describe(row);
+        run.run(*mover);
+        run.conclude(method);
+        judge(row, mover->tolerance());
+    } catch (InputError const&) {
+        throw;
+    } catch (std::bad_alloc const&) {
+        throw;
+    } catch (std::exception const& error) {
+        run.conclude(method);
+        row.state = mover ? "unstable" : "failed";
+        row.why = error.what();
+        spdlog::info("{} at {} ps: {}", name_of(method), step, row.why);
+    }
+    return row;
+}
+
+void equilibrate(SamplingCopies& copies, BenchRequest const& request, Communicator const& communicator, Backend backend, double time) {
+    int constexpr of_block = 100;
+    double const step = copies.model().dynamics.step;
+    std::int64_t const blocks = std::llround(std::ceil(time / (step * of_block)));
+    if (blocks == 0) return;
+    std::unique_ptr<Mover> const mover = make_mover(copies, communicator, backend, SamplingMethod::rigid, step, time);
+    Progress progress(request.quiet, 0, blocks * of_block, step, false);
+    auto const fail = [step](std::string const& why) {
+        throw ComputationError(fmt::format("before the rows, on rigid links with dynamics.step {} ps: {}", step, why));
+    };
+    try {
+        for (std::int64_t block = 0; block < blocks; ++block) {
+            mover->step(of_block);
+            progress.update((block + 1) * of_block);
+        }
+    } catch (ComputationError const& error) {
+        fail(error.what());
+    }
+    progress.finish();
+    Moment const now = mover->now();
+    if (!(now.link_error <= mover->tolerance())) fail(fmt::format("links are off by {:.1e} of their length", now.link_error));
+    if (!(copies.nearest(now.position) > SamplingCopies::cutoff())) fail("copies have met");
+    copies.start_from(now.position);
+}
+
+}  // namespace catena::command

@@ -1,0 +1,184 @@
+#include "bodies/bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "bodies/carried_beads.hpp"
+#include "scene/fields.hpp"
+#include "bodies/joint_entry.hpp"
+#include "bodies/physics.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+JointEntry joint_of(Fields const& body, std::size_t k, Base base) {
+    bool const first = k == 0;
+    if (first && base == Base::free && !body.find("joint")) {
+        JointEntry entry;
+        entry.q = entry.rest = {1, 0, 0, 0};
+        return entry;
+    }
+    Node const& node = body.need("joint", "joint: {type: revolute, axis: [0, 0, 1]}");
+    JointEntry entry = read_joint(node);
+    if (entry.type == JointType::free && !first)
+        fail(node, "a free joint inside a chain", "use it for body 1 of a chain with `base: free`");
+    if (entry.type == JointType::free && base == Base::fixed)
+        fail(node, "a free joint on a fixed base", "write `base: free`, or give joint 1 another type");
+    if (entry.type != JointType::free && first && base == Base::free)
+        fail(node, fmt::format("a {} joint 1 on a free base, which has no joint 1", name_of(entry.type)),
+             "write `base: fixed`, or `joint: {type: free}` for body 1");
+    return entry;
+}
+
+void append(BodyArrays& bodies, JointEntry const& entry) {
+    bodies.joint.push_back(entry.type);
+    bodies.axis.push_back(entry.axis);
+    bodies.first_axis.push_back(entry.first_axis);
+    bodies.pitch.push_back(entry.pitch);
+    bodies.rotation.push_back(entry.rotation);
+    bodies.translation.push_back(entry.translation);
+    bodies.q.push_back(entry.q);
+    bodies.qd.push_back(entry.qd);
+    bodies.torque.push_back(entry.torque);
+    bodies.stiffness.push_back(entry.stiffness);
+    bodies.damping.push_back(entry.damping);
+    bodies.rest.push_back(entry.rest);
+    if (entry.type == JointType::free) {
+        bodies.free_position = entry.position;
+        bodies.free_velocity = entry.velocity;
+    }
+    if (entry.motion.empty()) return;
+    DrivenJoint driven;
+    driven.body = static_cast<std::int64_t>(bodies.joint.size()) - 1;
+    std::copy(entry.motion.begin(), entry.motion.end(), driven.course.begin());
+    bodies.driven.push_back(driven);
+}
+
+/// Which of the arrays that may stay empty are needed.
+struct Needed {
+    bool torque = false, spring = false, damping = false, wrench = false, drag = false, first_axis = false, pitch = false;
+
+    void take(JointEntry const& joint) {
+        torque = torque || joint.loaded;
+        spring = spring || joint.sprung;
+        damping = damping || joint.damped;
+        first_axis = first_axis || joint.type == JointType::universal;
+        pitch = pitch || joint.type == JointType::helical;
+    }
+    void drop_rest(BodyArrays& bodies) const {
+        if (!torque) bodies.torque = {};
+        if (!spring) bodies.stiffness = {}, bodies.rest = {};
+        if (!damping) bodies.damping = {};
+        if (!wrench) bodies.wrench = {};
+        if (!drag) bodies.drag = {};
+        if (!first_axis) bodies.first_axis = {};
+        if (!pitch) bodies.pitch = {};
+    }
+};
+
+std::pair<Vec3, Vec3> read_wrench(Node const* wrench) {
+    std::pair<Vec3, Vec3> load{Vec3::zero(), Vec3::zero()};
+    if (!wrench) return load;
+    Fields const parts(*wrench, {"torque", "force"});
+    if (Node const* const torque = parts.find("torque")) load.first = vector3(*torque);
+    if (Node const* const force = parts.find("force")) load.second = vector3(*force);
+    return load;
+}
+
+Node const* type_of(Node const& body) {
+    Node const* const joint = body.find("joint");
+    return joint ? joint->find("type") : nullptr;
+}
+
+}  // namespace
+
+BodyList kind_of_list(Node const& bodies) {
+    if (list(bodies).items.empty()) fail(bodies, "the list of bodies is empty", "give at least one body");
+    Node const* other = nullptr;
+    bool links = false, rigid = false;
+    for (Node const& body : bodies.items) {
+        Node const* const type = type_of(body);
+        bool const link = type && type->text == "link";
+        links = links || link;
+        rigid = rigid || body.find("inertia");
+        if (!link && !other) other = body.find("joint");
+    }
+    if (links && other) {
+        Node const* const type = other->find("type");
+        fail(*other, fmt::format("a joint {}in a chain of links", type ? fmt::format("of type `{}` ", shown(type->text)) : ""),
+             "make it a link, or give every joint another type");
+    }
+    Node const& first = bodies.items[0];
+    bool const lone_bead = bodies.items.size() == 1 && !rigid && !first.find("joint") && first.find("position");  // an ion
+    if (!links) return lone_bead ? BodyList::beads : BodyList::bodies;
+    return rigid ? BodyList::linked : BodyList::beads;
+}
+
+std::array<double, 2> read_drag(Node const& drag) {
+    Fields const parts(drag, {"linear", "angular"});
+    Node const* const linear = parts.find("linear");
+    Node const* const angular = parts.find("angular");
+    return {linear ? non_negative(*linear) : 0, angular ? non_negative(*angular) : 0};
+}
+
+ExplicitBodies read_bodies(Node const& node, Base base, std::array<double, 2> const& scene_drag) {
+    ExplicitBodies made;
+    BodyArrays& bodies = made.bodies;
+    Needed needed;
+    CarriedList carried;
+    for (std::size_t k = 0; k < node.items.size(); ++k) {
+        Fields const body(node.items[k], {"mass", "com", "inertia", "joint", "wrench", "drag", "beads"});
+        bodies.mass.push_back(positive(body.need("mass", "mass: 1.0")));
+        Node const* const com = body.find("com");
+        bodies.com.push_back(com ? vector3(*com) : Vec3::zero());
+        bodies.inertia.push_back(inertia(body.need("inertia", "inertia: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]")));
+        JointEntry const entry = joint_of(body, k, base);
+        append(bodies, entry);
+        if (entry.planar && !made.planar) made.planar = body.find("joint");
+        needed.take(entry);
+        Node const* const wrench = body.find("wrench");
+        bodies.wrench.push_back(read_wrench(wrench));
+        needed.wrench = needed.wrench || wrench;
+        Node const* const drag = body.find("drag");
+        bodies.drag.push_back(drag ? read_drag(*drag) : scene_drag);
+        needed.drag = needed.drag || drag;
+        carried.add(body.find("beads"));
+    }
+    needed.drop_rest(bodies);
+    bodies.carried = carried.take();
+    return made;
+}
+
+ExplicitBeads read_beads(Node const& node, Base base) {
+    ExplicitBeads made;
+    for (std::size_t k = 0; k < node.items.size(); ++k) {
+        Node const& item = node.items[k];
+        for (char const* const key : {"com", "inertia", "wrench", "drag", "beads"})
+            if (Node const* const extra = item.find(key))
+                fail(*extra, fmt::format("key `{}` means nothing for a point bead on a link", key), "leave it out or change `joint`");
+        Fields const body(item, {"mass", "position", "velocity", "residue", "joint"});
+        made.beads.mass.push_back(positive(body.need("mass", "mass: 1.0")));
+        made.beads.position.push_back(vector3(body.need("position", "position: [0, 0, 0]")));
+        Node const* const velocity = body.find("velocity");
+        made.velocities = made.velocities || velocity;
+        made.beads.velocity.push_back(velocity ? vector3(*velocity) : Vec3::zero());
+        Node const* const residue = body.find("residue");
+        made.beads.residue.push_back(residue ? text(*residue) : "UNK");
+        double length = std::numeric_limits<double>::quiet_NaN();
+        Node const* const joint_node = k == 0 ? body.find("joint") : &body.need("joint", "joint: {type: link}");
+        if (joint_node) {
+            Fields const joint(*joint_node, {"type", "length"});
+            Node const* const given = joint.find("length");
+            if (given && k == 0 && base == Base::free)
+                fail(*given, "a link length for bead 1 of a free base, which has no link", "leave it out or write `base: fixed`");
+            if (given) length = positive(*given);
+        }
+        made.beads.length.push_back(length);
+    }
+    return made;
+}
+
+}  // namespace catena::scene

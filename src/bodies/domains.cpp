@@ -1,0 +1,180 @@
+#include "bodies/domains.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "bodies/carried_beads.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+/// Below this ratio of principal moments the beads stand on a line as far as positions with a few digits can tell.
+double constexpr least_ratio = 1e-6;
+
+struct RigidBody {
+    double mass = 0;
+    Vec3 com = Vec3::zero(), moments = Vec3::zero();
+    Mat3 axes = Mat3::identity();  // R_WB: principal axes as columns
+};
+
+RigidBody body_of(BeadArrays const& beads, Domain const& domain) {
+    RigidBody body;
+    Vec3 const origin = beads.position[domain.first];
+    for (std::size_t k = domain.first; k <= domain.last; ++k) {
+        body.mass += beads.mass[k];
+        body.com = plus_scaled(body.com, beads.mass[k], beads.position[k] - origin);
+    }
+    body.com = origin + (1 / body.mass) * body.com;
+    Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
+    for (std::size_t k = domain.first; k <= domain.last; ++k) {
+        Vec3 const p = beads.position[k] - body.com;
+        Eigen::Vector3d const r(p[0], p[1], p[2]);
+        inertia += beads.mass[k] * (r.squaredNorm() * Eigen::Matrix3d::Identity() - r * r.transpose());
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> const solver(inertia);
+    Eigen::Matrix3d axes = solver.eigenvectors();
+    if (axes.determinant() < 0) axes.col(2) *= -1;
+    for (int i = 0; i < 3; ++i) {
+        body.moments[i] = solver.eigenvalues()[i];
+        for (int j = 0; j < 3; ++j) body.axes(i, j) = axes(i, j);
+    }
+    return body;
+}
+
+class LinkedBuilder {
+  public:
+    explicit LinkedBuilder(BeadArrays const& beads) : beads_(beads) { linked_.anchor = beads.anchor; }
+
+    void add_bead(std::size_t k) {
+        add(k, beads_.mass[k], beads_.position[k], beads_.velocity[k]);
+        linked_.inertia.push_back(Sym3::zero());
+        linked_.orientation.push_back({1, 0, 0, 0});
+        linked_.inboard.push_back(Vec3::zero());
+        linked_.outboard.push_back(Vec3::zero());
+        carried_.append(Vec3::zero(), beads_.mass[k], beads_.residue[k]);
+        carried_.close();
+    }
+
+    void add_domain(Domain const& domain, Node const& node) {
+        RigidBody const body = body_of(beads_, domain);
+        if (!(body.moments[0] > least_ratio * body.moments[2]))
+            fail(node, fmt::format("the beads of {} stand on one line: a thin rod", domain.name),
+                 "take in a residue beside it, or leave the domain out");
+        add(domain.first, body.mass, body.com, Vec3::zero());
+        linked_.inertia.push_back(Sym3{{body.moments[0], 0, body.moments[1], 0, 0, body.moments[2]}});
+        Quat const q = to_quaternion(body.axes);
+        linked_.orientation.push_back({q.w, q.x, q.y, q.z});
+        Mat3 const r = to_matrix(q);
+        auto const inside = [&](std::size_t k) { return transposed_times(r, beads_.position[k] - body.com); };
+        linked_.inboard.push_back(inside(domain.first));
+        linked_.outboard.push_back(inside(domain.last));
+        for (std::size_t k = domain.first; k <= domain.last; ++k) carried_.append(inside(k), beads_.mass[k], beads_.residue[k]);
+        carried_.close();
+    }
+
+    LinkedArrays take() {
+        linked_.carried = carried_.take();
+        return std::move(linked_);
+    }
+
+  private:
+    void add(std::size_t k, double mass, Vec3 const& position, Vec3 const& velocity) {
+        linked_.mass.push_back(mass);
+        linked_.position.push_back(position);
+        linked_.velocity.push_back(velocity);
+        linked_.omega.push_back(Vec3::zero());
+        linked_.length.push_back(beads_.length[k]);
+    }
+
+    BeadArrays const& beads_;
+    LinkedArrays linked_;
+    CarriedList carried_;
+};
+
+/// What the numbers of a scene's `rigid` mean.
+class Numbering {
+  public:
+    Numbering(std::size_t residues, std::vector<std::string> const& labels) : residues_(residues), labels_(labels) {
+        for (std::size_t k = 0; k < labels.size(); ++k) beads_[labels[k]].push_back(k);
+    }
+
+    std::string remedy() const {
+        return labels_.empty() ? fmt::format("give [first, last] with residues from 1 to {}, both included", residues_)
+                               : fmt::format("give [first, last] with the file's residue numbers, here {} to {}, both included",
+                                             labels_.front(), labels_.back());
+    }
+    Domain domain(Node const& pair) const {
+        if (pair.kind != Node::Kind::list || pair.items.size() != 2) fail(pair, describe(pair) + " is not a pair of residues", remedy());
+        Domain domain{bead(pair, pair.items[0]), bead(pair, pair.items[1])};
+        std::string const span = fmt::format("residues {} to {}", shown(pair.items[0].text), shown(pair.items[1].text));
+        if (domain.last < domain.first + 2) fail(pair, span + " are no rigid body: it needs three that do not stand on one line", remedy());
+        domain.name = span;
+        return domain;
+    }
+
+  private:
+    std::size_t bead(Node const& pair, Node const& end) const {
+        if (labels_.empty()) {
+            std::int64_t const number = whole(end, 1);
+            if (number > static_cast<std::int64_t>(residues_))
+                fail(pair, fmt::format("residue {} of a chain of {}", number, residues_), remedy());
+            return static_cast<std::size_t>(number - 1);
+        }
+        auto const found = beads_.find(label(end));
+        if (found == beads_.end()) fail(pair, fmt::format("residue {} is not in the file", shown(end.text)), remedy());
+        if (found->second.size() > 1)
+            fail(pair, fmt::format("{} residues of the file bear the number {}", found->second.size(), shown(end.text)),
+                 "give each residue its own number or insertion code");
+        return found->second[0];
+    }
+    static std::string label(Node const& end) {
+        double value = 0;
+        std::string const written = text(end);
+        bool const number = parse_number(written, value) == NumberFault::none && value == std::floor(value) && std::abs(value) < 1e15;
+        return number ? std::to_string(static_cast<std::int64_t>(value)) : written;
+    }
+
+    std::size_t residues_;
+    std::vector<std::string> const& labels_;
+    std::map<std::string, std::vector<std::size_t>> beads_;
+};
+
+}  // namespace
+
+std::vector<Domain> read_domains(Node const& rigid, std::size_t residues, std::vector<std::string> const& labels) {
+    Numbering const numbering(residues, labels);
+    if (list(rigid).items.empty()) fail(rigid, "the list of rigid domains is empty", "leave the key out or " + numbering.remedy());
+    std::vector<Domain> domains;
+    for (Node const& item : rigid.items) {
+        Domain const domain = numbering.domain(item);
+        for (Domain const& other : domains)
+            if (domain.first <= other.last && other.first <= domain.last)
+                fail(item, fmt::format("{} overlap the domain{}", domain.name, other.name.substr(std::string("residues").size())),
+                     "give each residue to one domain");
+        domains.push_back(domain);
+    }
+    std::sort(domains.begin(), domains.end(), [](Domain const& a, Domain const& b) { return a.first < b.first; });
+    return domains;
+}
+
+LinkedArrays with_domains(BeadArrays const& beads, std::vector<Domain> const& domains, Node const& rigid) {
+    LinkedBuilder builder(beads);
+    auto next = domains.begin();
+    for (std::size_t k = 0; k < beads.size(); ++k) {
+        if (next == domains.end() || k < next->first) {
+            builder.add_bead(k);
+            continue;
+        }
+        builder.add_domain(*next, rigid);
+        k = next->last;
+        ++next;
+    }
+    return builder.take();
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,192 @@
+// Beads on links read from their positions and velocities: each link's direction is computed once and serves the beads at its two ends.
+#pragma once
+
+#include <cmath>
+
+#include "dca/leaf.hpp"
+#include "dca/lane_access.hpp"
+#include "tree/tree.hpp"
+
+namespace catena::dca {
+
+/// 1 / |d|. Another way to it may answer NaN where it does not know.
+struct InverseLength {
+    static constexpr bool may_fail = false;
+    template <class Real>
+    CATENA_HD Real operator()(Vector<Real, 3> const& d) const {
+        return Real(1) / norm(d);
+    }
+};
+
+template <class Real, int K>
+struct BiasedSegment {
+    SegmentMatrix<Real, K> matrix;
+    SegmentBias<Real, K> bias;
+    static CATENA_HD BiasedSegment zero() { return {SegmentMatrix<Real, K>::zero(), SegmentBias<Real, K>::zero()}; }
+};
+
+/// As Resting (fused_sweep.hpp). No jointed tips. K = 1 projected, 3 full.
+template <int K>
+struct MovingBeads {
+    static constexpr bool one_by_one = false;
+    template <class Real>
+    struct Link {
+        Vector<Real, 3> direction;  // 0 where there is none
+        Real swing;                 // src/dca/README.md, "Link chains": -c
+        static CATENA_HD Link none() { return {Vector<Real, 3>::zero(), Real(0)}; }
+    };
+    template <class Place>
+    struct Body {
+        using Real = RealAt<Place>;
+        Place k;
+        Link<Real> inboard, outboard;
+        Vector<Real, 3> force;
+        Real inverse_mass;
+        int restricted;
+    };
+    GroupView group;
+    std::uint8_t const* restricted = nullptr;
+    ConfigurationView configuration;
+    LoadsView loads;
+
+    /// Bodies from `begin` on, and the links between them and to their neighbours.
+    template <int most>
+    struct Neighbours {
+        std::int64_t begin;
+        Link<double> link[most + 1];
+        Vec3 force[most];
+        double inverse_mass[most];
+        std::uint8_t restricted[most];
+    };
+    using Part = Neighbours<part_length>;
+    template <class InverseLength = dca::InverseLength, class Reader = ReadHere>
+    CATENA_HD_IN_PLACE Part part(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length = {},
+                                 Reader const& by = {}) const {
+        return neighbours<part_length>(begin, end, inverse_length, by);
+    }
+    /// One alone.
+    template <class InverseLength>
+    CATENA_HD_IN_PLACE Body<std::int64_t> body_at(std::int64_t k, InverseLength const& inverse_length) const {
+        return body(neighbours<1>(k, k + 1, inverse_length, ReadHere{}), 0);
+    }
+    /// All is read at once, in the place of what is not there something that is: reads that wait for each other cost more.
+    template <int most, class InverseLength, class Reader>
+    CATENA_HD_IN_PLACE Neighbours<most> neighbours(std::int64_t begin, std::int64_t end, InverseLength const& inverse_length,
+                                                   Reader const& by) const {
+        Neighbours<most> read;
+        read.begin = begin;
+        bool const starts = group.is_first[begin] != 0, goes_on = group.is_last[end - 1] == 0;
+        Vec3 position[most + 2], velocity[most + 2];
+        CATENA_UNROLL
+        for (int i = 0; i < most + 2; ++i) {
+            std::int64_t const k = begin - 1 + i < end ? begin - 1 + i : end;  // fields have a halo, and `restricted` more
+            position[i] = by(configuration.position, k);
+            velocity[i] = by(loads.velocity, k);
+            if (i == 0 || i > most) continue;
+            read.inverse_mass[i - 1] = by(group.inverse_mass, k)[0];
+            read.restricted[i - 1] = restricted[k];
+            read.force[i - 1] = by.if_any(loads.force, k);
+        }
+        bool const floats = starts && read.restricted[0] == 0;
+        if constexpr (InverseLength::may_fail) {  // which has no branch that others would wait for
+            if (starts) {
+                if (!floats) position[0] = piece_of(configuration.piece, configuration.pieces, begin).anchor;
+                velocity[0] = Vec3::zero();
+            }
+            read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0], inverse_length);
+            if (floats) read.link[0] = Link<double>::none();
+        } else if (!starts) {
+            read.link[0] = link(position[1] - position[0], velocity[1] - velocity[0]);
+        } else {
+            read.link[0] = floats ? Link<double>::none()
+                                  : link(position[1] - piece_of(configuration.piece, configuration.pieces, begin).anchor, velocity[1]);
+        }
+        CATENA_UNROLL
+        for (int i = 1; i <= most; ++i) {
+            read.link[i] = link(position[i + 1] - position[i], velocity[i + 1] - velocity[i], inverse_length);
+            if (begin + i >= end && !goes_on) read.link[i] = Link<double>::none();
+        }
+        if constexpr (InverseLength::may_fail) {
+            double sum = read.link[0].swing;
+            CATENA_UNROLL
+            for (int i = 1; i <= most; ++i) sum = sum + read.link[i].swing;
+            if (sum != sum) return neighbours<most>(begin, end, dca::InverseLength{}, by);
+        }
+        return read;
+    }
+    template <int most>
+    CATENA_HD_IN_PLACE Body<std::int64_t> body(Neighbours<most> const& part, int i) const {
+        return {part.begin + i, part.link[i], part.link[i + 1], part.force[i], part.inverse_mass[i], part.restricted[i]};
+    }
+    template <class Factors>
+    CATENA_HD_IN_PLACE void accelerate(Part const& part, int i, Vector<double, K> const& inboard, Vector<double, K> const& outboard,
+                                       AccelerationsView const& out, Factors const& factors) const {
+        accelerate(body(part, i), inboard, outboard, out, factors);
+    }
+    template <class Place>
+    CATENA_HD static Body<Place> keep(Body<Place> const& body) {
+        return body;
+    }
+
+    /// Of several beads side by side, none of which begins or ends a chain: one after the other.
+    template <class Place>
+    class Walk {
+      public:
+        CATENA_HD_IN_PLACE Walk(MovingBeads const& beads, Place begin) : beads_(beads), begin_(begin), outboard_(beads.link_before(begin)) {}
+        CATENA_HD_IN_PLACE Body<Place> body(int i) {
+            Body<Place> const body = beads_.between(begin_ + i, outboard_);
+            outboard_ = body.outboard;
+            return body;
+        }
+
+      private:
+        MovingBeads const& beads_;
+        Place begin_;
+        Link<RealAt<Place>> outboard_;
+    };
+    template <class Place>
+    CATENA_HD_IN_PLACE Walk<Place> walk(Place begin) const {
+        return Walk<Place>(*this, begin);
+    }
+
+    template <class Place, class Factors = dca::Factors>
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Factors const& /*factors*/ = {}) const {
+        using Kind = Vector<RealAt<Place>, K>;
+        auto const &u1 = body.inboard.direction, &u2 = body.outboard.direction;
+        BiasedSegment<RealAt<Place>, K> s{bead_matrix(body.inverse_mass, u1, u2, Kind{}),
+                                          bead_bias(body.inverse_mass, body.force, u1, u2, Kind{})};
+        s.bias.b1[0] = s.bias.b1[0] + body.inboard.swing;
+        return s;
+    }
+    template <class Place>
+    CATENA_HD BiasedSegment<RealAt<Place>, K> segment(Body<Place> const& body, Body<Place> const& /*kept*/) const {
+        return segment(body);
+    }
+    template <class Place, class Factors = dca::Factors>
+    CATENA_HD void accelerate(Body<Place> const& body, Vector<RealAt<Place>, K> const& inboard_force,
+                              Vector<RealAt<Place>, K> const& outboard_force, AccelerationsView const& out,
+                              Factors const& /*factors*/ = {}) const {
+        write(out.acceleration, body.k,
+              bead_acceleration(body.inverse_mass, body.force, inboard_force[0], body.inboard.direction, outboard_force[0],
+                                body.outboard.direction));
+    }
+
+  private:
+    template <class Real, class InverseLength = dca::InverseLength>
+    CATENA_HD static Link<Real> link(Vector<Real, 3> const& d, Vector<Real, 3> const& v, InverseLength const& inverse_length = {}) {
+        Real const per_length = inverse_length(d);
+        Vector<Real, 3> const u = per_length * d, across = plus_scaled(v, -dot(v, u), u);
+        return {u, per_length * dot(across, across)};
+    }
+    template <class Place>
+    CATENA_HD Link<RealAt<Place>> link_before(Place k) const {
+        return link(read(configuration.position, k) - read(configuration.position, k - 1), read(loads.velocity, k) - read(loads.velocity, k - 1));
+    }
+    template <class Place>
+    CATENA_HD Body<Place> between(Place k, Link<RealAt<Place>> const& inboard) const {
+        auto const force = loads.force.origin ? read(loads.force, k) : Vector<RealAt<Place>, 3>::zero();
+        return {k, inboard, link_before(k + 1), force, read(group.inverse_mass, k)[0], K};
+    }
+};
+
+}  // namespace catena::dca

@@ -1,0 +1,125 @@
+// Where runs on hinges leave what their way back needs: among the nodes of the joints that they do not join.
+#pragma once
+
+#include <cstddef>
+
+#include "dca/floating_run.hpp"
+#include "dca/tree_sweeps.hpp"
+
+namespace catena::dca {
+
+/// What the way down needs of a run on hinges, where joining would keep the joints of its bodies. Precondition: what end(), hinge(),
+/// body(), omega() and swing() are asked for was put; axes(), omega(), swing() and orientation(): of a run of three bodies or more.
+template <class Sweeps>
+class HingesInJoints {
+    using Hinge = ReleasedHinge<double>;
+    using Body = BodyInRun<double>;
+    using End = RunsEnd<double>;
+    using Factor = Symmetric<double, 6>;
+    using Column = Vector<double, 6>;
+    // The last hinge's and the end's numbers lie together, what else is of the last body beside the body before: a run of two has none
+    // between its ends.
+    static constexpr int of_hinge = sizeof(Hinge) / sizeof(double), of_body = sizeof(Body) / sizeof(double), of_axes = 9, of_omega = 3;
+    static constexpr int of_end = sizeof(End) / sizeof(double), most = sizeof(typename Sweeps::Node) / sizeof(double);
+    using Swing = BodyAcceleration<double>;
+    static constexpr int of_swing = sizeof(Swing) / sizeof(double);
+    static constexpr int at_axes = of_hinge + of_body, at_swing = at_axes + of_axes, at_omega = at_swing + of_swing,
+                         at_last_omega = at_omega + of_omega, at_orientation = at_last_omega + of_omega;
+    static_assert(of_hinge + of_end <= most && at_orientation + of_axes <= most);
+    static constexpr int at_first = of_hinge + Factor::size, at_bias = at_first + 6 * 5;
+    static_assert(offsetof(End, first) == (at_first - of_hinge) * sizeof(double) &&
+                  offsetof(End, bias) == (at_bias - of_hinge) * sizeof(double));
+
+  public:
+    /// What the way back begins with, in a run of three bodies or more: end(), axes() and swing(last - 1).
+    struct Tail {
+        End end;
+        Mat3 axes;
+        Swing swing;
+    };
+    /// `all`: the way back asks for every body's swing.
+    CATENA_HD HingesInJoints(Sweeps const& sweeps, Run const& run, bool all) : sweeps_(sweeps), run_(run), all_(all) {}
+    CATENA_HD void put(int i, Hinge const& hinge) {
+        store(i, 0, hinge);
+        watch(i, hinge.inverse);
+    }
+    CATENA_HD void put(int i, Hinge const& hinge, Body const& body, Swing const& swing) {
+        put(i, hinge);
+        put(i, body, swing);
+    }
+    CATENA_HD void put(int i, Body const& body, Swing const& swing) {
+        store(i, of_hinge, body);
+        if (all_ || i == last() - 1) store(i, at_swing, swing);
+    }
+    CATENA_HD void put(End const& end) {
+        put(end.factor);
+        store(last(), at_first, end.first);
+        store(last(), at_bias, end.bias);
+    }
+    // Part by part.
+    CATENA_HD void put(Factor const& factor) {
+        store(last(), of_hinge, factor);
+        CATENA_UNROLL
+        for (int i = 0; i < 6; ++i) watch(last(), factor(i, i));
+    }
+    CATENA_HD void put_first(int j, Column const& column) const {
+        CATENA_UNROLL
+        for (int i = 0; i < 6; ++i) leave_number(&number(last(), at_first + i * 5 + j), column[i]);
+    }
+    CATENA_HD void put_bias(Column const& column) const { store(last(), at_bias, column); }
+    CATENA_HD void put_axes(Mat3 const& axes) {
+        if (last() > 1) store(last() - 1, at_axes, axes);
+    }
+    /// Of a body that is not the first, in its axes.
+    CATENA_HD void put_omega(int i, Vec3 const& omega) {
+        if (i < last())
+            store(i, at_omega, omega);
+        else if (last() > 1)
+            store(last() - 1, at_last_omega, omega);
+    }
+    /// What turns from the ground's axes to the last body's.
+    CATENA_HD void put_orientation(Mat3 const& from_ground) {
+        if (last() > 1) store(last() - 1, at_orientation, from_ground);
+    }
+    CATENA_HD Hinge hinge(int i) const { return load<Hinge>(i, 0); }
+    CATENA_HD Body body(int i) const { return load<Body>(i, of_hinge); }
+    CATENA_HD Swing swing(int i) const { return load<Swing>(i, at_swing); }
+    CATENA_HD End end() const { return load<End>(last(), of_hinge); }
+    CATENA_HD Mat3 axes() const { return load<Mat3>(last() - 1, at_axes); }
+    CATENA_HD Vec3 omega(int i) const { return i < last() ? load<Vec3>(i, at_omega) : load<Vec3>(last() - 1, at_last_omega); }
+    CATENA_HD Mat3 orientation() const { return load<Mat3>(last() - 1, at_orientation); }
+    /// Number n of it.
+    CATENA_HD double tail(int n) const {
+        static_assert(at_swing == at_axes + of_axes && sizeof(Tail) == (of_end + of_axes + of_swing) * sizeof(double));
+        return n < of_end ? number(last(), of_hinge + n) : number(last() - 1, at_axes + n - of_end);
+    }
+    CATENA_HD Lost const& lost() const { return lost_; }
+
+  private:
+    CATENA_HD int last() const { return static_cast<int>(run_.count) - 1; }
+    template <class T>
+    CATENA_HD void store(int i, int at, T const& value) const {
+        constexpr int count = sizeof(T) / sizeof(double);
+        auto const numbers = __builtin_bit_cast(Vector<double, count>, value);
+        CATENA_UNROLL
+        for (int n = 0; n < count; ++n) leave_number(&number(i, at + n), numbers[n]);
+    }
+    template <class T>
+    CATENA_HD T load(int i, int at) const {
+        constexpr int count = sizeof(T) / sizeof(double);
+        Vector<double, count> numbers;
+        CATENA_UNROLL
+        for (int n = 0; n < count; ++n) numbers[n] = number(i, at + n);
+        return __builtin_bit_cast(T, numbers);
+    }
+    CATENA_HD double& number(int i, int n) const { return sweeps_.number_of_node(run_.body + i, n); }
+    CATENA_HD void watch(int i, double inverse) {
+        if (!is_good(inverse)) lost_.add(run_.body + i);
+    }
+    Sweeps const& sweeps_;
+    Run const& run_;
+    bool all_;
+    Lost lost_;
+};
+
+}  // namespace catena::dca

@@ -1,0 +1,534 @@
+// JointDynamics in any Space: state, kinematics, loads and steps stay there.
+#pragma once
+
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "dca/host_space.hpp"
+#include "error.hpp"
+#include "dynamics/joint/embedded_steps.hpp"
+#include "dynamics/joint/revolute_scan.hpp"
+#include "dynamics/joint/joint_dynamics.hpp"
+#include "dynamics/joint/joint_lanes.hpp"
+#include "dynamics/joint/joint_solution.hpp"
+#include "dynamics/joint/joint_steps.hpp"
+
+namespace catena {
+
+/// The jointed tips of the group on this rank where the scene starts. Collective.
+std::vector<JointedTip> tips_at_start(ChainGroup const&, Scene const&, Communicator const&);
+
+template <class Space>
+struct JointRefinement;
+
+template <class Space>
+class JointDynamicsIn final : public JointDynamics {
+    template <int D>
+    using FieldOf = typename Space::template FieldOf<D>;
+    template <int D>
+    using Fixed = typename Space::template Fixed<D>;
+    template <class T>
+    using List = typename Space::template List<T>;
+    static constexpr bool has_lanes = requires(Space const& space) { space.simd(); };
+
+  public:
+    /// `solver` takes views of the same space.
+    JointDynamicsIn(ChainGroup const& group, Scene const& scene, Space const& space, Communicator const& communicator,
+                    std::unique_ptr<ChainSolver> solver, double implicit_step = 0)
+        : group_(group),
+          space_(space),
+          communicator_(communicator),
+          solver_(std::move(solver)),
+          given_(make_body_loads(group, scene)),
+          of_stiffness_(rotor_of_spring(scene.dynamics.integrator) * implicit_step * implicit_step),
+          of_damping_(0.5 * implicit_step),
+          implicit_list_(group.implicit_joint),
+          pieces_list_(local_pieces(group, scene)),
+          pieces_in_scene_(pieces_list_),
+          tip_(tips_at_start(group, scene, communicator)),
+          reach_(reach_of(group, scene)),
+          has_wrenches_(given_.wrenches || group.carried_beads() > 0),
+          has_forces_(has_wrenches_ || given_.dragged || (given_.joint_loads && group.has_screws)),
+          needs_positions_(given_.dragged || group.has_tips() || group.carried_in_scene),
+          needs_orientations_(given_.wrenches || needs_positions_),
+          goes_by_hinges_(solver_->goes_by_hinges()),
+          in_run_(goes_by_hinges_ ? hinges_in_runs(group) : std::vector<std::uint8_t>{}),
+          in_run_list_(in_run_),
+          kinematics_(group, space, communicator),
+          loads_(given_),
+          tips_(tip_),
+          beads_(group, space),
+          mass_(group.mass),
+          inertia_(group.inertia),
+          r2_(group.r2),
+          axes2_(group.axes2),
+          state_(group),
+          start_(group),
+          sum_(group),
+          motion_(group, space),
+          joint_load_(given_.joint_loads ? group.size : 0),
+          compliance_(group.implicit_joint.empty() ? 0 : group.size),
+          yielding_(group.implicit_joint.empty() ? 0 : group.size),
+          hinge_acceleration_(goes_by_hinges_ ? group.size + 1 : 0),
+          torque_(group.size),
+          force_(has_forces_ ? group.size : 0),
+          alpha_(group.size),
+          acceleration_(group.size),
+          qdd_(group.size),
+          carried_qdd_(group.size),
+          base_acceleration_(pieces()),
+          carried_base_acceleration_(pieces()),
+          outboard_end_(1),
+          zero_(group.has_tips() ? group.size : 0),
+          last_end_(tips()),
+          other_end_(tips()),
+          bias_(group.size + 1, group.directions),
+          joint_force_(group.size + 1, group.directions),
+          tip_bias_(group.has_tips() ? group.size : 0, group.directions),
+          tip_force_(group.has_tips() ? group.size : 0, group.directions) {
+        if constexpr (has_lanes)
+            if (JointLanes lanes(group, given_.springs, goes_by_hinges_ && solver_->has_runs_side_by_side(), space.simd()); lanes.any())
+                lanes_ = std::move(lanes);
+        if (scene.dynamics.given && scene.dynamics.integrator == Integrator::dormand_prince) pair_.emplace(group);
+        if (scene.solver.refine > 0) refinement_.emplace(group);
+        set_state(make_joint_state(group, scene));
+        if (tips() > 0)
+            space_.edit(other_end_, [&](View<13> view) {
+                for (std::int64_t i = 0; i < tips(); ++i) view.store(i, as_numbers(tip_[static_cast<std::size_t>(i)].ground));
+            });
+    }
+
+    JointState state() const override {
+        solver_->check();
+        JointState s;
+        s.q = space_.read(state_.q);
+        s.qd = space_.read(state_.qd);
+        s.base_position = space_.read(state_.base_position);
+        s.base_velocity = space_.read(state_.base_velocity);
+        return s;
+    }
+    void set_state(JointState const& s) override {
+        fill(space_, state_.q, s.q);
+        fill(space_, state_.qd, s.qd);
+        fill(space_, state_.base_position, s.base_position);
+        fill(space_, state_.base_velocity, s.base_velocity);
+        relative_ = false;
+    }
+
+    void update_configuration() override { go_to_configuration(false); }
+    void update_to_solve_once() override { go_to_configuration(goes_by_hinges_); }
+    void assemble_matrices() override {
+        solver_->assemble_matrices(configuration());
+        has_matrices_ = true;
+    }
+    void solve() override {
+        bool const finds_motions = may_follow_hinges();
+        if (std::exchange(leaves_loads_, false)) finds_motions ? update(false) : set_loads();
+        set_carried_loads();
+        solver_->solve(loads(), found(false));
+        exchange_ends();
+    }
+    void solve_once() override {
+        set_carried_loads();
+        find_rotations();
+        solver_->assemble_and_solve(configuration(), loads(), found(leaves_loads_));
+        has_matrices_ = false;
+        exchange_ends();
+    }
+    void solve_again() override {
+        leaves_loads_ = false;
+        update(true);
+        solver_->solve(loads(), found(false));
+        exchange_ends();
+    }
+    std::vector<double> time_at_once(int chained, int repeat) override {
+        return space_.time_chained(chained, repeat, communicator_.size() > 1, [this] {
+            update_to_solve_once();
+            solve_once();
+            set_rates();
+        });
+    }
+    /// What is lacking is looked for on the host.
+    void refine(Executor const& executor) override;
+    double correction() override;
+    void set_rates() override { set_rates({qdd_.view(), base_acceleration_.view()}); }
+    JointRates rates() const override { return {space_.read(qdd_), space_.read(base_acceleration_)}; }
+
+    void runge_kutta(int stage, double h) override {
+        double const weight[4] = {h / 6, h / 3, h / 3, h / 6}, next[4] = {h / 2, h / 2, h, h};
+        if (stage == 0) start_time_ = time_;
+        RungeKuttaStage const s{stage == 0, stage == 3, weight[stage], next[stage], start_time_ + next[stage]};
+        needs_positions_ ? runge_kutta<true>(s) : runge_kutta<false>(s);
+        time_ = s.time;
+    }
+    void embedded_stage(int stage, InnerStep const&) override;
+    double wildness(double length) override;
+    Speeds fastest() override;
+    double embedded_error(double length, AllowedErrors const&) override;
+    double reach() const override { return reach_; }
+    void carry_rates() override { set_rates(carried()); }
+    void carry_rates(JointRates const& rates) override {
+        fill(space_, carried_qdd_, rates.qdd);
+        fill(space_, carried_base_acceleration_, rates.base_acceleration);
+    }
+    JointRates carried_rates() const override { return {space_.read(carried_qdd_), space_.read(carried_base_acceleration_)}; }
+    void verlet_move(double h) override {
+        needs_positions_ ? verlet_move<true>(h) : verlet_move<false>(h);
+        time_ += h;
+    }
+    void verlet_finish(double h) override {
+        space_.for_each(group_.size, [s = steps(), h] CATENA_LAMBDA(std::int64_t k) { s.verlet_finish(k, h); });
+        relative_ = false;
+    }
+
+    void drift(double h) override {
+        needs_positions_ ? drift<true>(h) : drift<false>(h);
+        time_ += h;
+    }
+    void kick(double h) override { kick(h, false); }
+    void kick_by_carried(double h) override { kick(h, true); }
+    void thermalise(Thermostat const&, std::uint64_t step) override;
+
+    BodyMotion motion() override;
+    BodyResults results() override {
+        solver_->check();
+        return with_solution([&](JointSolution const& s) { return s.results(communicator_); });
+    }
+    double residual(Executor const& executor) override {
+        solver_->check();
+        return with_solution([&](JointSolution const& s) { return s.residual(communicator_, executor); });
+    }
+    PotentialEnergy potential() override { return potential_of(group_, given_, space_.read(state_.q), motion()); }
+
+    void close_tips(int corrections) override {
+        if (!group_.has_tips()) return;
+        for (int i = 0; i < corrections; ++i) correct(false);
+        correct(true);
+    }
+    double closure_error() override {
+        solver_->check();
+        double worst = space_.largest(group_.size, [s = steps()] CATENA_LAMBDA(std::int64_t k) -> double { return s.trouble(k); });
+        if (group_.has_tips()) {
+            move();
+            worst =
+                larger(worst, space_.largest(tips(), [t = jointed_tips()] CATENA_LAMBDA(std::int64_t i) -> double { return t.error(i); }));
+        }
+        return communicator_.max(worst);
+    }
+
+    View<3> bead_forces() override { return beads_.bead_forces(); }
+    ConstView<3> bead_positions() override { return beads_.bead_positions(); }
+    void take_bead_forces() override { beads_.take_bead_forces(); }
+    ChainSolver& solver() const override { return *solver_; }
+    ChainGroup const& group() const override { return group_; }
+
+    /// one(k) for every body; where several go side by side, some(loops, their first bodies and which of these) for them.
+    template <bool positions, class Some, class One>
+    void each_body(Some const& some, One const& one) const {
+        if constexpr (has_lanes)
+            if (lanes_) return lanes_->each(space_, positions, some, one);
+        space_.for_each(group_.size, one);
+    }
+
+    // Not private: nvcc takes lambdas for kernels from public members alone.
+    void set_carried_loads() {
+        if (group_.carried_in_scene) set_loads();
+    }
+    void set_loads() {
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.set_loads(k); });
+    }
+    /// Loads that were the solver's to find. Precondition: motions are known.
+    void leave_nothing() {
+        leaves_motions_ = false;
+        if (std::exchange(leaves_loads_, false)) set_loads();
+    }
+    void go_to_configuration(bool leaves_loads) {
+        leaves_loads_ = leaves_loads;
+        has_matrices_ = false;
+        if (!may_follow_hinges()) return update(false);
+        if (follows_hinges())
+            follow_hinges();
+        else
+            update(false);
+        has_orientations_ = false;  // as on ranks that follow: to find them is collective
+    }
+    void update(bool again) {
+        leaves_motions_ = false;
+        needs_positions_ ? update<true>(again) : update<false>(again);
+    }
+    /// `again`: the forces on carried beads stay.
+    template <bool positions>
+    void update(bool again) {
+        JointChains c = chains();
+        c.scan.motion.orients_first_alone = !needs_orientations_;
+        has_orientations_ = needs_orientations_;
+        if (!std::exchange(relative_, false))
+            each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_relative(c, bodies...); },
+                                 [c] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<positions>(k); });
+        BodyExchange<4> const loads = shown_joint_loads();
+        auto const set_motion = [c, again] CATENA_LAMBDA(std::int64_t k) { c.template set_motion<positions>(k, again); };
+        if constexpr (has_lanes) {
+            if (lanes_) {
+                lanes_->follow(space_, positions, c.scan);
+                kinematics_.template sweep<positions>(c.scan, lanes_->tree(), loads);
+            } else {
+                kinematics_.template sweep<positions>(c.scan, loads);
+            }
+            each_body<positions>([&c](JointLoops const& loops, auto... bodies) { loops.set_motion(c, bodies...); }, set_motion);
+        } else {
+            kinematics_.template sweep<positions>(c.scan, loads, set_motion);
+        }
+        if (!group_.has_tips()) return;
+        set_ends();
+        space_.for_each(tips(), [t = jointed_tips(), gravity = given_.gravity, out = tip_bias_.view()] CATENA_LAMBDA(std::int64_t i) {
+            t.set_acceleration_bias(i, gravity, out);
+        });
+    }
+    /// update() where motions within runs are the solver's to find.
+    void follow_hinges() {
+        leaves_motions_ = has_rotations_ = true;
+        JointChains c = chains();
+        c.scan.motion.orients_first_alone = !needs_orientations_;
+        bool const relative = std::exchange(relative_, false);
+        if constexpr (has_lanes)
+            if (solver_->has_runs_side_by_side()) return follow_by_lanes(c);
+        follow_by_runs(c, relative);
+    }
+    void set_relative() {
+        space_.for_each(group_.size, [c = chains()] CATENA_LAMBDA(std::int64_t k) { c.template set_relative<false>(k); });
+    }
+    /// Of hinges, where the solver asks for them and another scan has been there.
+    void find_rotations() {
+        if (leaves_motions_ && !has_rotations_) set_relative();
+        has_rotations_ = leaves_motions_;
+    }
+    void follow_by_runs(JointChains const& c, bool relative) {
+        HingeScan const scan{c, joint_by_joint(), refinement_.has_value()};
+        if (scan.joint_by_joint && !relative) set_relative();
+        kinematics_.sweep_runs(scan, shown_joint_loads(), [scan] CATENA_LAMBDA(dca::Run const& run) { scan.begin(run); });
+    }
+    void follow_by_lanes(JointChains const& c) {
+        HingeScan const scan{c, false, refinement_.has_value()};
+        // Of bodies that begin a chain, on whatever joint; where others meet is as fixed as it was at first.
+        space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_relative<false>(k); });
+        lanes_->follow_hinges(space_, c);
+        kinematics_.sweep_with(scan, lanes_->tree(), shown_joint_loads());
+        lanes_->begin_runs(space_, c.scan);
+        space_.over(lanes_->chains_begin(), [c](std::int64_t k) { c.template set_motion<false>(k, false); });
+        space_.over(lanes_->other_runs(), [scan](dca::Run const& run) { scan.begin(run); });
+    }
+    /// Of first bodies, to the rank before.
+    BodyExchange<4> shown_joint_loads() { return given_.joint_loads ? from_outboard(group_, joint_load_.view()) : BodyExchange<4>::none(); }
+    template <bool positions>
+    void runge_kutta(RungeKuttaStage const& stage) {
+        JointSteps const s = steps();
+        each_body<positions>([&](JointLoops const& loops, auto... bodies) { loops.runge_kutta(s, stage, bodies...); },
+                             [s, stage] CATENA_LAMBDA(std::int64_t k) { s.template runge_kutta<positions>(k, stage); });
+        relative_ = !s.chains.left.motions;
+    }
+    template <bool positions>
+    void embedded_stage(EmbeddedStage const&);
+    template <bool positions>
+    void verlet_move(double h) {
+        JointSteps const s = steps();
+        space_.for_each(group_.size,
+                        [s, h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template verlet_move<positions>(k, h, time); });
+        relative_ = !s.chains.left.motions;
+    }
+    template <bool positions>
+    void drift(double h) {
+        space_.for_each(group_.size,
+                        [s = steps(), h, time = time_ + h] CATENA_LAMBDA(std::int64_t k) { s.template drift<positions>(k, h, time); });
+        relative_ = true;
+    }
+    void kick(double h, bool by_carried) {
+        space_.for_each(group_.size, [s = steps(), h, by_carried] CATENA_LAMBDA(std::int64_t k) { s.kick(k, h, by_carried); });
+        relative_ = false;
+    }
+    void set_rates(RatesView const& out) {
+        JointChains const c = chains();
+        each_body<false>([&](JointLoops const& loops, auto... bodies) { loops.set_rates(c, out, bodies...); },
+                         [c, out] CATENA_LAMBDA(std::int64_t k) { c.set_rates(k, out); });
+    }
+    /// The kinematics alone, positions included.
+    void move() {
+        relative_ = has_rotations_ = false;
+        has_orientations_ = true;
+        kinematics_.evaluate(state_.view(), true, motion_.view());
+        if (group_.has_tips()) set_ends();
+    }
+    /// What jointed tips join, and where they meet: after the motion. Rings on two ranks show each other their ends.
+    void set_ends();
+    /// One Newton step: the solver with openings in the place of accelerations.
+    void correct(bool velocities);
+    void add(std::int64_t count, DirectionsView const& found, DirectionsView const& to);
+    void exchange_ends() { exchange_ends(chains()); }
+    void exchange_ends(JointChains const&);
+
+  private:
+    ConfigurationView configuration() {
+        MotionView const m = motion_.view();
+        return {{}, m.joint_turn, {}, m.r2, m.axes2, has_implicit() ? compliance_.view() : View<6>{}};
+    }
+    bool has_implicit() const { return !group_.implicit_joint.empty(); }
+    /// What only thermostats need.
+    void need_for_noise() {
+        if (has_noise_) return;
+        has_noise_ = true;
+        noise_force_ = FieldOf<3>(group_.size);
+        if (!group_.has_tips()) zero_ = FieldOf<3>(group_.size);
+    }
+    LoadsView loads() {
+        LoadsView all{torque_.view(), has_forces_ ? force_.view() : View<3>{}, motion_.omega.view(), bias_.view(),
+                      of_tips(group_, tip_bias_)};
+        if (!leaves_loads_) return all;
+        if (leaves_torques()) all.torque = {};
+        all.gyroscopic = leaves_torques();
+        View<3> const qd = state_.qd.view();
+        all.hinge_rate = {qd.origin, qd.pitch, qd.size};
+        if (leaves_motions_) all.hinges = loads_of_hinges();
+        return all;
+    }
+    HingeLoads loads_of_hinges() {
+        HingeLoads all{true, kinematics_.rotations(), {}, {}, {}, {}, {}};
+        View<4> const joint = joint_load_.view();
+        if (given_.joint_loads) all.joint_torque = {joint.origin, joint.pitch, joint.size};
+        if (given_.wrenches) {
+            BodyLoadsView const given = loads_.view();
+            all.torque = given.wrench_torque;
+            all.force = given.wrench_force;
+            all.orientation = motion_.orientation.view();
+        }
+        return all;
+    }
+    /// Nothing but gyration turns bodies, on whatever rank.
+    bool leaves_torques() const {
+        return leaves_loads_ && !given_.joint_loads && !given_.wrenches && !given_.dragged && !group_.carried_in_scene;
+    }
+    /// Whether a rank may follow_hinges(): where nothing acts by bodies' positions. The same on all ranks, not all of which do; lanes are
+    /// those of the solver's.
+    bool may_follow_hinges() const { return leaves_loads_ && !needs_positions_; }
+    bool follows_hinges() const {
+        if constexpr (has_lanes)
+            if (space_.simd() != SimdLevel::off && !rounds_as_vectors()) return false;
+        return goes_by_hinges_ && group_.drives.empty() && !has_implicit() && (lanes_ || !solver_->has_runs_side_by_side());
+    }
+    /// Whether motions joint by joint, which steps may leave, are found before those of runs.
+    bool joint_by_joint() const {
+        return space_.has_threads_to_spare(std::ssize(group_.schedule.runs)) && !kinematics_.has_threads_for_bodies();
+    }
+    AccelerationsView all() { return {alpha_.view(), acceleration_.view(), joint_force_.view(), of_tips(group_, tip_force_)}; }
+    /// Of the next solution: all of it, the joints' forces too, which no step needs, where it is to be refined. `hinges`: their
+    /// accelerations instead, where that is enough.
+    AccelerationsView found(bool hinges) {
+        has_all_ = refinement_.has_value();
+        has_hinges_ = hinges && !has_all_;
+        if (has_all_) return all();
+        return {alpha_.view(), acceleration_.view(), {}, {}, has_hinges_ ? hinge_acceleration_.view() : View<2>{}};
+    }
+    void find_all();
+    static std::vector<std::uint8_t> hinges_in_runs(ChainGroup const& group) {
+        std::vector<std::uint8_t> in_run(static_cast<std::size_t>(group.size), 0);
+        for (dca::Run const& run : group.schedule.runs)
+            for (std::int64_t k = run.body; run.count > 1 && k < run.body + run.count; ++k)
+                if (group.is_first[static_cast<std::size_t>(k)] == 0)
+                    in_run[static_cast<std::size_t>(k)] = k == run.body ? HingesInRuns::first : HingesInRuns::within;
+        return in_run;
+    }
+    std::int64_t pieces() const { return std::ssize(group_.pieces); }
+    std::int64_t tips() const { return std::ssize(tip_); }
+    JointedTips jointed_tips() { return {tips_.data(), reach_, group_.directions, motion_.view(), last_end_.view(), other_end_.view()}; }
+    RatesView carried() { return {carried_qdd_.view(), carried_base_acceleration_.view()}; }
+    JointChains chains() {
+        JointChains c;
+        c.scan = kinematics_.scan(state_.view(), motion_.view());
+        if (has_implicit())
+            c.implicit = {of_stiffness_, of_damping_, implicit_list_.data(), compliance_.view(), yielding_.view(), start_.view().qd};
+        c.given = loads_.view();
+        c.time = time_;
+        c.directions = group_.directions;
+        c.has_wrenches = has_wrenches_;
+        c.has_forces = has_forces_;
+        c.mass = mass_.view();
+        c.inertia = inertia_.view();
+        c.fixed_r2 = r2_.view();
+        c.fixed_axes2 = axes2_.view();
+        c.beads = beads_.view();
+        c.joint_load = joint_load_.view();
+        c.torque = torque_.view();
+        c.force = force_.view();
+        c.alpha = alpha_.view();
+        c.acceleration = acceleration_.view();
+        c.bias = bias_.view();
+        c.outboard_end = outboard_end_.view();
+        c.in_run = {in_run_list_.data()};
+        c.left = {leaves_torques(), leaves_loads_, leaves_motions_ && !joint_by_joint()};
+        if (has_hinges_) c.hinge_acceleration = hinge_acceleration_.view();
+        return c;
+    }
+    /// With nothing but what was solved for last.
+    JointSteps at_rest() {
+        JointSteps still = steps();
+        still.chains.scan.state.qd = zero_.view();
+        still.chains.scan.motion.omega = zero_.view();
+        still.chains.given.gravity = Vec3::zero();
+        return still;
+    }
+    EmbeddedSteps embedded() { return {steps(), pair_->kept.view(), pair_->kept_base.view()}; }
+    JointSteps steps() { return {chains(), start_.view(), sum_.view(), carried()}; }
+    template <class Use>
+    auto with_solution(Use const& use);
+
+    ChainGroup const& group_;
+    Space space_;
+    Communicator const& communicator_;
+    std::unique_ptr<ChainSolver> solver_;
+    BodyLoads given_;
+    double of_stiffness_, of_damping_;
+    List<std::uint8_t> implicit_list_;
+    std::vector<LocalPiece> pieces_list_;
+    List<LocalPiece> pieces_in_scene_;
+    std::vector<JointedTip> tip_;
+    double reach_;
+    bool has_wrenches_, has_forces_, needs_positions_, needs_orientations_, goes_by_hinges_;
+    std::vector<std::uint8_t> in_run_;  // as HingesInRuns
+    List<std::uint8_t> in_run_list_;
+    bool has_orientations_ = true;  // of all bodies, not of chains' first ones alone
+    bool has_rotations_ = false;    // of hinges, joint by joint (HingeLoads)
+    bool leaves_loads_ = false;     // some of those of the configuration updated last are the solver's to find
+    bool leaves_motions_ = false;   // and angular velocities within runs
+    bool has_matrices_ = false;     // of the configuration updated last
+    bool has_all_ = true;           // bodies' accelerations and joints' forces of the solution found last
+    bool has_hinges_ = false;       // hinge_acceleration_ of that
+    bool has_noise_ = false;
+    bool relative_ = false;  // the state's motions joint by joint are known
+    double start_time_ = 0;
+    JointKinematics<Space> kinematics_;
+    BodyLoadsIn<Space> loads_;
+    List<JointedTip> tips_;
+    CarriedBeadsIn<Space> beads_;
+    Fixed<1> mass_;
+    Fixed<6> inertia_;
+    Fixed<3> r2_;
+    Fixed<6> axes2_;
+    JointCoordinates<Space> state_, start_, sum_;
+    MotionFields<Space> motion_;
+    FieldOf<4> joint_load_;
+    FieldOf<6> compliance_;
+    FieldOf<3> yielding_, noise_force_;
+    FieldOf<2> hinge_acceleration_;
+    FieldOf<3> torque_, force_, alpha_, acceleration_, qdd_, carried_qdd_, base_acceleration_, carried_base_acceleration_;
+    FieldOf<4> outboard_end_;
+    FieldOf<3> zero_;
+    FieldOf<13> last_end_, other_end_;  // by tip
+    typename Space::Directions bias_, joint_force_, tip_bias_, tip_force_;
+    std::optional<EmbeddedRates<Space>> pair_;
+    std::optional<JointRefinement<Space>> refinement_;
+    std::optional<JointLanes> lanes_;
+};
+
+}  // namespace catena
+
+#include "dynamics/joint/joint_dynamics_embedded.hpp"
+#include "dynamics/joint/joint_dynamics_refinement.hpp"

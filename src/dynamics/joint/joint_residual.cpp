@@ -1,0 +1,190 @@
+// The local backward residual of forward dynamics in joint coordinates (src/dca/README.md, "Residuals").
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <span>
+
+#include "math/executor.hpp"
+#include "dynamics/joint/joint_solution.hpp"
+#include "kinematics/ring_ends.hpp"
+
+namespace catena {
+
+/// Forces on a body, and moments about its centre: applied, of the inboard joint, of the outboard joint; B.
+struct JointSolution::Terms {
+    std::array<Vec3, 3> forces;
+    std::array<Vec3, 5> moments;
+    double moment_sizes = 0;  // |r| |f| of forces: what their moments' rounding goes by, however short the moment
+};
+
+namespace {
+
+/// |inertial - sum of terms| over the sum of their sizes and `more`, what cancelled within them or was taken out of them.
+double balance(Vec3 const& inertial, std::span<Vec3 const> terms, double more) {
+    Vec3 difference = inertial;
+    double size = norm(inertial) + more;
+    for (Vec3 const& t : terms) {
+        difference = difference - t;
+        size += norm(t);
+    }
+    return relative(norm(difference), size);
+}
+
+Vec3 sum_of(std::span<Vec3 const> terms) {
+    Vec3 sum = Vec3::zero();
+    for (Vec3 const& t : terms) sum = sum + t;
+    return sum;
+}
+
+double radius_of(ChainGroup const& group, std::int64_t k) {
+    return radius_of_gyration(as_symmetric(group.inertia[k]), group.mass.view().at(k, 0));
+}
+
+}  // namespace
+
+JointSolution::Pair JointSolution::outboard_pair(std::int64_t k) const {
+    if (group.has_jointed_tip(k)) return along_axes(tip_force, k, outboard_screw(k));
+    if (group.is_last[k]) return {Vec3::zero(), Vec3::zero()};
+    return along_axes(joint_force, k + 1, outboard_screw(k));
+}
+
+JointSolution::Terms JointSolution::terms(std::int64_t k) const {
+    Mat3 const e1 = axes1(k), e2 = axes2(k);
+    Pair const inboard = along_axes(joint_force, k, screw(k)), outboard = outboard_pair(k);
+    Vec3 const force1 = e1 * inboard.force, force2 = -(e2 * outboard.force);
+    return {{{force.origin ? force.load(k) : Vec3::zero(), force1, force2}},
+            {{torque.load(k), cross(group.r1[k], force1), e1 * inboard.torque, cross(r2(k), force2), -(e2 * outboard.torque)}},
+            norm(group.r1[k]) * norm(force1) + norm(r2(k)) * norm(force2)};
+}
+
+/// Acceleration of a handle along its joint's axes (linear, angular), and the sizes of its terms (the same): what each force and moment
+/// on the body, and its turning, adds to it (chapter, eqs 2.1-2.2).
+Vector<double, 8> JointSolution::handle(std::int64_t k, Vec3 const& r, Mat3 const& axes) const {
+    Terms const t = terms(k);
+    Vec3 const w = omega.load(k), centripetal = cross(w, cross(w, r));
+    double linear = norm(centripetal) + norm(given.gravity), angular = 0;
+    for (Vec3 const& f : t.forces) linear += group.inverse_mass.view().at(k, 0) * norm(f);
+    for (Vec3 const& m : t.moments) {
+        Vec3 const part = as_symmetric(group.inverse_inertia[k]) * m;
+        angular += norm(part);
+        linear += norm(cross(part, r));
+    }
+    Vec3 const a = transposed_times(axes, acceleration.load(k) + cross(alpha.load(k), r) + centripetal);
+    Vec3 const turning = transposed_times(axes, alpha.load(k));
+    return {{a[0], a[1], a[2], turning[0], turning[1], turning[2], linear, angular}};
+}
+
+JointSolution::Terms JointSolution::terms_solved_for(std::int64_t k) const {
+    Terms t = terms(k);
+    if (!group.planar) return t;
+    Vec3 const axis = axes1(k).column(2);
+    for (Vec3& moment : t.moments) moment = dot(axis, moment) * axis;
+    return t;
+}
+Vec3 JointSolution::inertial_moment(std::int64_t k) const {
+    Vec3 const moment = as_symmetric(group.inertia[k]) * alpha.load(k);
+    if (!group.planar) return moment;
+    Vec3 const axis = axes1(k).column(2);
+    return dot(axis, moment) * axis;
+}
+
+Vector<double, 8> JointSolution::handle_before_first(Communicator const& communicator) const {
+    Vector<double, 8> before = Vector<double, 8>::zero();
+    if (group.neighbour_inboard < 0 && group.neighbour_outboard < 0) return before;
+    Vector<double, 8> const last =
+        group.neighbour_outboard >= 0 ? handle(group.size - 1, r2(group.size - 1), axes2(group.size - 1)) : before;
+    communicator.exchange(std::as_bytes(std::span(last.data)), group.neighbour_outboard, std::as_writable_bytes(std::span(before.data)),
+                          group.neighbour_inboard);
+    return before;
+}
+
+std::vector<Vector<double, 8>> JointSolution::handles_at_tips(Communicator const& communicator) const {
+    return beyond_tips_of<8>(group, communicator, [&](std::int64_t k) { return handle(k, group.r1[k], axes1(k)); });
+}
+
+/// D^T (outboard - inboard) + bias; 0 along what is not restricted.
+Vector<double, 6> JointSolution::opening(Vector<double, 8> const& out, Vector<double, 8> const& in, Vector<double, 6> const& bias,
+                                         Screw<double> const& s, int restricted) {
+    Vector<double, 8> const d = out - in;
+    Vector<double, 6> e{{d[0], d[1], s.c * d[2] - s.s * d[5], d[3], d[4], s.s * d[2] + s.c * d[5]}};
+    for (int i = 0; i < 6; ++i) e[i] = i < restricted ? e[i] + bias[i] : 0.0;
+    return e;
+}
+
+Vec3 JointSolution::yielded(std::int64_t k) const {
+    if (!group.is_implicit(k)) return Vec3::zero();
+    Vector<double, 6> const f = load_first(joint_force, k, group.directions);
+    return as_symmetric(compliance.load(k)) * Vec3{{f[3], f[4], f[5]}};
+}
+
+/// |opening| over its terms. One spatial equation: angles count by the body's `size`, so that the measure
+/// does not depend on the unit of length.
+double JointSolution::closing(Vector<double, 8> const& out, Vector<double, 8> const& in, ConstDirectionsView biases, std::int64_t at,
+                              Screw<double> const& s, int restricted, double size, Vec3 const& yielded_by_it) const {
+    Vector<double, 6> b = load_first(biases, at, group.directions);
+    auto yields = Vector<double, 6>::zero();
+    for (int i = 0; i < 3; ++i) yields[3 + i] = yielded_by_it[i];
+    for (int i = restricted; i < 6; ++i) b[i] = 0.0;
+    Vector<double, 6> const e = opening(out, in, b + yields, s, restricted);
+    auto const sizes = [&](Vector<double, 6> const& v) {
+        return norm(Vec3{{v[0], v[1], s.c * v[2] + s.s * v[5]}}) + size * norm(Vec3{{v[3], v[4], s.c * v[5] - s.s * v[2]}});
+    };
+    return relative(sizes(e), out[6] + in[6] + size * (out[7] + in[7]) + sizes(b) + sizes(yields));
+}
+
+Vector<double, 8> JointSolution::handle_before(std::int64_t k, Vector<double, 8> const& before_first) const {
+    if (group.is_first[k]) return Vector<double, 8>::zero();
+    return k == 0 ? before_first : handle(k - 1, r2(k - 1), axes2(k - 1));
+}
+
+double JointSolution::residual(Communicator const& communicator, Executor const& executor) const {
+    Vector<double, 8> const before_first = handle_before_first(communicator);
+    auto const at_tips = handles_at_tips(communicator);
+    auto const of_body = [&](std::int64_t k) {
+        double worst = 0;
+        Terms const t = terms_solved_for(k);
+        // The accelerated ground has taken the weight out of the forces: where bodies fall freely, only its rounding is left.
+        double const mass = group.mass.view().at(k, 0), weight = mass * norm(given.gravity);
+        worst = larger(worst, balance(mass * acceleration.load(k), t.forces, weight));
+        worst = larger(worst, balance(inertial_moment(k), t.moments, t.moment_sizes + weight * norm(group.r1[k])));
+        double const size = norm(group.r1[k]) + radius_of(group, k);
+        Vector<double, 8> const before = handle_before(k, before_first);
+        worst = larger(worst, closing(handle(k, group.r1[k], axes1(k)), before, bias, k, screw(k), group.restricted(k), size, yielded(k)));
+        if (!group.has_jointed_tip(k)) return worst;
+        return larger(worst, closing(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)), tip_bias, k, outboard_screw(k),
+                                     group.tip_of(k).restricted, norm(r2(k)) + radius_of(group, k), Vec3::zero()));
+    };
+    double worst = 0;
+    std::mutex one_at_a_time;
+    executor.for_ranges(group.size, 1, [&](std::int64_t begin, std::int64_t end) {
+        double of_range = 0;
+        for (std::int64_t k = begin; k < end; ++k) of_range = larger(of_range, of_body(k));
+        std::lock_guard const lock(one_at_a_time);
+        worst = larger(worst, of_range);
+    });
+    return communicator.max(worst);
+}
+
+JointSolution::Defect JointSolution::defect(Communicator const& communicator, Executor const& executor) const {
+    std::int64_t const tips = group.has_tips() ? group.size : 0;
+    Defect d{Field<3>(group.size), Field<3>(group.size), DirectionsField(group.size + 1, group.directions),
+             DirectionsField(tips, group.directions)};
+    Vector<double, 8> const before_first = handle_before_first(communicator);
+    auto const at_tips = handles_at_tips(communicator);
+    executor.for_each(group.size, [&](std::int64_t k) {
+        Terms const t = terms_solved_for(k);
+        d.torque.set(k, sum_of(t.moments) - inertial_moment(k));
+        d.force.set(k, sum_of(t.forces) - group.mass.view().at(k, 0) * acceleration.load(k));
+        store_first(d.bias.view(), k, group.directions,
+                    opening(handle(k, group.r1[k], axes1(k)), handle_before(k, before_first), load_first(bias, k, group.directions),
+                            screw(k), group.restricted(k)));
+        if (group.has_jointed_tip(k))
+            store_first(d.tip_bias.view(), k, group.directions,
+                        opening(at_tips[group.tip_index(k)], handle(k, r2(k), axes2(k)), load_first(tip_bias, k, group.directions),
+                                outboard_screw(k), group.tip_of(k).restricted));
+    });
+    return d;
+}
+
+}  // namespace catena

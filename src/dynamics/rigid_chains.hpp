@@ -1,0 +1,241 @@
+// What a step does to one body of chains of rigid bodies in absolute coordinates, for every Space. Positions, velocities and forces in
+// ground axes, angular velocities and torques in the body's.
+#pragma once
+
+#include <cmath>
+
+#include "math/philox.hpp"
+#include "dca/solver.hpp"
+#include "dynamics/body_loads.hpp"
+#include "kinematics/carried_beads.hpp"
+#include "dynamics/constrained_step.hpp"
+#include "dynamics/joint_rotors.hpp"
+#include "kinematics/link_geometry.hpp"
+#include "kinematics/ring_ends.hpp"
+#include "kinematics/rotor.hpp"
+
+namespace catena {
+
+/// One of the sweeps that close the joints at a drift's end.
+struct DriftSweep {
+    double time = 0;  // of the drift
+    bool first = false, last = false;
+};
+
+/// What of a thermostat's noise goes into velocities, and into angular ones.
+struct RigidNoise {
+    Thermostat thermostat;
+    std::uint64_t step = 0;
+    NoiseStage linear = NoiseStage::start, angular = NoiseStage::start_angular;
+    bool between_drifts = false;  // not where forces are: there rotors have half the variance (JointRotors::add_noise)
+};
+
+/// Of body k relative to the joint frame (`frame`, in the inboard body).
+CATENA_HD Quat turn_of_joint(Quat const& inboard, Quat const& frame, Quat const& orientation) {
+    return conjugate(inboard * frame) * orientation;
+}
+
+/// Handle 1 of body k lies at x + R r1, handle 2 at x + R r2 (x: centre of mass). Joints hold handles together; links keep them their
+/// length apart. A point bead is a body without inertia that never turns.
+struct RigidChains {
+    bool linked = false;
+    double reach = 1;                                            // that openings of joints are measured by
+    std::uint8_t const *is_first = nullptr, *is_last = nullptr;  // of its chain
+    JointType const* joint = nullptr;
+    std::int32_t const* jointed_tip = nullptr;  // of its last body: index in `tip`, else -1; absent where there is none
+    HeldTip const* tip = nullptr;
+    RingEndsView ring_ends;
+    LocalPiece const* piece = nullptr;
+    std::int64_t pieces = 0;
+    ConstView<1> mass, inverse_mass, length;
+    ConstView<6> inertia;
+    ConstView<3> r1, r2;
+    ConstView<4> joint_frame;       // ChainGroup::joint_rotation
+    ConstView<4> principal_axes;    // in B
+    ConstView<3> principal_moment;  // a bead: 0
+    BodyLoadsView given;
+    JointRotors rotors;
+    CarriedBeadsView beads;
+    View<3> position, velocity, omega;
+    View<4> orientation;
+    View<3> observed_velocity, observed_omega, force, torque;
+    View<3> momentum, moment;           // linear and angular momenta; for accelerations `moment` is the torque less the gyroscopic one
+    View<3> acceleration, alpha;        // or what a sweep changes velocities by
+    View<3> inboard_end, outboard_end;  // the handles, or their velocities, W
+    View<3> joint_torque;               // of joint k on body k, W
+    View<3> direction, tip_direction;   // of links
+    DirectionsView bias, tip_bias;      // a link's direction comes first; full handles' other directions stay 0
+
+    CATENA_HD Mat3 axes(std::int64_t k) const { return to_matrix(as_quaternion(orientation.load(k))); }
+    CATENA_HD bool is_bead(std::int64_t k) const { return principal_moment.at(k, 0) == 0; }
+    CATENA_HD bool is_joined(std::int64_t k) const { return joint[k] != JointType::free; }
+    /// Of the chain that body k ends; null where it ends none or nothing holds it.
+    CATENA_HD HeldTip const* tip_of(std::int64_t k) const { return jointed_tip && jointed_tip[k] >= 0 ? tip + jointed_tip[k] : nullptr; }
+    CATENA_HD LocalPiece const& piece_of(std::int64_t k) const { return catena::piece_of(piece, pieces, k); }
+
+    // Joints.
+
+    CATENA_HD void set_ends(std::int64_t k, Vec3 const& centre, Mat3 const& turn) const {
+        inboard_end.store(k, centre + turn * r1.load(k));
+        outboard_end.store(k, centre + turn * r2.load(k));
+    }
+    CATENA_HD void set_ends(std::int64_t k) const { set_ends(k, position.load(k), axes(k)); }
+    /// Handle 1 of body k from handle 2 of its inboard neighbour, or from the ground.
+    CATENA_HD Vec3 apart(std::int64_t k) const {
+        return inboard_end.load(k) - (is_first[k] ? piece_of(k).anchor : outboard_end.load(k - 1));
+    }
+    /// What a tip is joined to from where it ends; `at_ground`: of the ground.
+    CATENA_HD Vec3 apart(HeldTip const& t, Vec3 const& at_ground) const {
+        return (t.ring < 0 ? at_ground : ring_ends.first.load(t.ring)) - outboard_end.load(t.body);
+    }
+    CATENA_HD Vec3 apart(HeldTip const& t) const { return apart(t, t.anchor); }
+    /// Along what it acts and how long it is; a joint: zero.
+    struct Link {
+        Vec3 direction;
+        double length;
+    };
+    CATENA_HD Link link(std::int64_t k) const { return linked ? Link{direction.load(k), length.at(k, 0)} : Link{Vec3::zero(), 0}; }
+    CATENA_HD Link link(HeldTip const& t) const { return {linked ? tip_direction.load(t.body) : Vec3::zero(), t.length}; }
+
+    CATENA_HD void set_directions(std::int64_t k) const {
+        Vec3 const d = is_joined(k) ? apart(k) : Vec3::zero();
+        direction.store(k, is_joined(k) ? (1.0 / norm(d)) * d : d);
+        HeldTip const* const t = tip_of(k);
+        if (!t) return;
+        Vec3 const at_tip = apart(*t);
+        tip_direction.store(k, (1.0 / norm(at_tip)) * at_tip);
+    }
+    /// Of the link that closes a ring, as that of its first body.
+    CATENA_HD void set_first_direction(LocalRing const& ring, std::int64_t i) const {
+        if (ring.first < 0) return;
+        Vec3 const d = ring_ends.first.load(i) - ring_ends.last.load(i);
+        direction.store(ring.first, (1.0 / norm(d)) * d);
+    }
+    CATENA_HD double error_of(Vec3 const& d, double l) const { return linked ? std::fabs(norm(d) - l) / l : norm(d) / reach; }
+    /// Of the inboard joint of body k and of its tip's.
+    CATENA_HD double error(std::int64_t k) const {
+        double const own = is_joined(k) ? error_of(apart(k), linked ? length.at(k, 0) : 0.0) : 0.0;
+        HeldTip const* const t = tip_of(k);
+        double const at_tip = t ? error_of(apart(*t), t->length) : 0.0;
+        return at_tip > own || at_tip != at_tip ? at_tip : own;
+    }
+    /// The biases of a joint along its directions.
+    CATENA_HD void set_bias(DirectionsView const& out, std::int64_t k, Vec3 const& value) const {
+        if (linked)
+            out.at(k, 0) = value[0];
+        else
+            out.store<3>(k, value);
+    }
+    CATENA_HD Vec3 opening(Vec3 const& d, Link const& l) const { return linked ? Vec3{{excess(d, l.length, 0.5 / l.length), 0, 0}} : d; }
+    /// For a drift that ended with the handles here: `scale` times how far joints are open.
+    CATENA_HD void set_openings(std::int64_t k, double scale) const {
+        set_bias(bias, k, is_joined(k) ? scale * opening(apart(k), link(k)) : Vec3::zero());
+        rotors.set_opening(bias, k, scale);
+        if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, scale * opening(apart(*t), link(*t)));
+    }
+    /// For accelerations: what the joints' velocities add, less the centripetal terms of the bodies, which are all there is but on links.
+    CATENA_HD Vec3 turning(Vec3 const& v, Link const& l) const {
+        return linked ? Vec3{{swing(v, l.direction, l.length), 0, 0}} : Vec3::zero();
+    }
+    CATENA_HD void set_turnings(std::int64_t k) const {
+        Vec3 const before = is_first[k] || !linked ? Vec3::zero() : outboard_end.load(k - 1);
+        set_bias(bias, k, is_joined(k) ? turning(inboard_end.load(k) - before, link(k)) : Vec3::zero());
+        if (HeldTip const* const t = tip_of(k)) set_bias(tip_bias, k, turning(apart(*t, Vec3::zero()), link(*t)));
+    }
+
+    // Forces.
+
+    /// Precondition: given.joint_loads.
+    CATENA_HD void set_joint_torque(std::int64_t k) const {
+        Vec3 torque_on_body = Vec3::zero();
+        if (joint[k] == JointType::spherical) {
+            torque_on_body = given.torque.load(k);
+            if (given.springs) {
+                Quat const inboard = is_first[k] ? Quat::identity() : as_quaternion(orientation.load(k - 1));
+                Quat const turn = turn_of_joint(inboard, as_quaternion(joint_frame.load(k)), as_quaternion(orientation.load(k)));
+                torque_on_body = torque_on_body + spherical_spring_torque(given.stiffness.load(k), as_quaternion(given.rest.load(k)), turn);
+            }
+        }
+        if (rotors.has(k)) {
+            rotors.torque.store(k, torque_on_body);
+            torque_on_body = Vec3::zero();
+        }
+        joint_torque.store(k, axes(k) * torque_on_body);
+    }
+    CATENA_HD void set_forces(std::int64_t k) const {
+        Vec3 f = mass.at(k, 0) * given.gravity, t = Vec3::zero();  // t in W
+        if (given.wrenches) {
+            f = f + given.wrench_force.load(k);
+            t = given.wrench_torque.load(k);
+        }
+        if (given.joint_loads) {
+            t = t + joint_torque.load(k);
+            if (!is_last[k]) t = t - joint_torque.load(k + 1);
+        }
+        force.store(k, f);
+        torque.store(k, transposed_times(axes(k), t));
+        if (beads) beads.clear_forces(k);
+    }
+    CATENA_HD void put_beads(std::int64_t k) const { beads.put(k, position.load(k), axes(k)); }
+    CATENA_HD void take_bead_forces(std::int64_t k) const {
+        Mat3 const turn = axes(k);
+        Wrench const w = beads.on_body(k, turn);
+        force.store(k, force.load(k) + w.force);
+        torque.store(k, torque.load(k) + transposed_times(turn, w.torque));
+    }
+
+    // Steps.
+
+    CATENA_HD void set_momenta(std::int64_t k, double h) const {
+        momentum.store(k, plus_scaled(mass.at(k, 0) * velocity.load(k), h, force.load(k)));
+        moment.store(k, plus_scaled(as_symmetric(inertia.load(k)) * omega.load(k), h, torque.load(k)));
+        if (rotors.implicit) rotors.set_kick(bias, k, h);
+    }
+    /// A free flight from the drift's start, with what the sweep before it found added to the velocities there.
+    CATENA_HD void fly(std::int64_t k, DriftSweep const& sweep) const {
+        Vec3 v = velocity.load(k);
+        RotorState turning{as_quaternion(orientation.load(k)), omega.load(k)};
+        if (!sweep.first) {
+            v = v + acceleration.load(k);
+            turning.omega = turning.omega + alpha.load(k);
+            velocity.store(k, v);
+            if (!sweep.last) omega.store(k, turning.omega);
+        }
+        Vec3 const x = plus_scaled(position.load(k), sweep.time, v);
+        if (!is_bead(k)) turning = free_rotor({as_quaternion(principal_axes.load(k)), principal_moment.load(k)}, turning, sweep.time);
+        if (!sweep.last) {
+            if (rotors.implicit) rotors.flown.store(k, as_vector(turning.orientation));
+            return set_ends(k, x, to_matrix(turning.orientation));
+        }
+        position.store(k, x);
+        orientation.store(k, as_vector(turning.orientation));
+        omega.store(k, turning.omega);
+    }
+    CATENA_HD void add_noise(std::int64_t k, RigidNoise const& n) const {
+        std::uint64_t const body = piece_of(k).body_of(k);
+        Thermostat const& t = n.thermostat;
+        Vec3 const noise = normal3(t.seed, n.step, body, n.linear);
+        velocity.store(k, plus_scaled(t.keep * velocity.load(k), t.spread * std::sqrt(inverse_mass.at(k, 0)), noise));
+        rotors.add_noise(k, t, n.step, body, n.between_drifts);
+        if (is_bead(k)) return;
+        Vec3 const moments = principal_moment.load(k);
+        Vec3 turning = normal3(t.seed, n.step, body, n.angular);
+        for (int i = 0; i < 3; ++i) turning[i] *= t.spread / std::sqrt(moments[i]);
+        omega.store(k, t.keep * omega.load(k) + to_matrix(as_quaternion(principal_axes.load(k))) * turning);
+    }
+
+    // Evaluations, at the velocities observed last.
+
+    CATENA_HD Vec3 velocity_of(std::int64_t k, Vec3 const& r) const {
+        return observed_velocity.load(k) + axes(k) * cross(observed_omega.load(k), r);
+    }
+    CATENA_HD void set_moment(std::int64_t k) const {
+        Vec3 const w = observed_omega.load(k);
+        moment.store(k, torque.load(k) - cross(w, as_symmetric(inertia.load(k)) * w));
+        if (!linked) return;
+        inboard_end.store(k, velocity_of(k, r1.load(k)));
+        outboard_end.store(k, velocity_of(k, r2.load(k)));
+    }
+};
+
+}  // namespace catena

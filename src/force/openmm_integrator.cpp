@@ -1,0 +1,77 @@
+#include "force/openmm_integrator.hpp"
+
+#include <OpenMM.h>
+
+#include "scene/calvados2.hpp"
+#include "systems/model.hpp"
+#include "force/platform.hpp"
+
+namespace catena {
+namespace {
+
+int constexpr no_force = 1 << 30;  // a group that holds none
+
+class Own final : public OpenMmOwn {
+  public:
+    Own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, OwnLinks links, OwnRun const& run,
+        std::vector<Vec3> const& positions)
+        : links_(beads.links),
+          model_(calvados2_model(spec, beads)),
+          platform_(choose_platform(spec, beads, communicator, run.device)),
+          integrator_(run.temperature, run.friction, run.step) {
+        hold(links);
+        platform_.properties.erase("DeterministicForces");  // OpenMM as people run it
+        integrator_.setRandomNumberSeed(static_cast<int>(run.seed));
+        context_ = std::make_unique<OpenMM::Context>(*model_.system, integrator_, *platform_.platform, platform_.properties);
+        std::vector<OpenMM::Vec3> x;
+        for (Vec3 const& each : positions) x.emplace_back(each[0], each[1], each[2]);
+        context_->setPositions(x);
+        context_->setVelocitiesToTemperature(run.temperature, static_cast<int>(run.seed));
+    }
+    void step(int steps) override {
+        integrator_.step(steps);
+        context_->getState(OpenMM::State::Energy, false, no_force);  // its kinetic energy comes after the last step
+    }
+    double energy() override { return context_->getState(OpenMM::State::Energy).getPotentialEnergy(); }
+    double kinetic_energy() override { return context_->getState(OpenMM::State::Energy, false, no_force).getKineticEnergy(); }
+    std::vector<Vec3> positions() override {
+        OpenMM::State const state = context_->getState(OpenMM::State::Positions);
+        std::vector<Vec3> x;
+        x.reserve(state.getPositions().size());
+        for (OpenMM::Vec3 const& each : state.getPositions()) x.push_back({each[0], each[1], each[2]});
+        return x;
+    }
+    double link_error() override { return catena::link_error(links_, positions()); }
+    std::string platform() const override { return platform_.name(); }
+
+  private:
+    void hold(OwnLinks links) {
+        auto bonds = std::make_unique<OpenMM::HarmonicBondForce>();
+        for (auto const& link : links_) {
+            int const a = static_cast<int>(link.inboard), b = static_cast<int>(link.outboard);
+            if (links == OwnLinks::constraints)
+                model_.system->addConstraint(a, b, link.length);
+            else
+                bonds->addBond(a, b, link.length, calvados2::bond_stiffness);
+        }
+        if (links == OwnLinks::constraints) return;
+        bonds->setForceGroup(model_.system->getNumForces());
+        bonds->setUsesPeriodicBoundaryConditions(model_.system->usesPeriodicBoundaryConditions());
+        model_.system->addForce(bonds.release());
+    }
+
+    std::vector<BeadSystem::Link> links_;
+    OpenMmModel model_;
+    OpenMmPlatform platform_;
+    OpenMM::LangevinMiddleIntegrator integrator_;
+    std::unique_ptr<OpenMM::Context> context_;
+};
+
+}  // namespace
+
+std::unique_ptr<OpenMmOwn> make_openmm_own(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator,
+                                           OwnLinks links, OwnRun const& run, std::vector<Vec3> const& positions) {
+    return std::make_unique<Own>(spec, beads, communicator, links, run, positions);
+}
+
+}  // namespace catena

@@ -1,0 +1,77 @@
+#include "force/platform.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "error.hpp"
+#include "mpi/thread_limit.hpp"
+#include "systems/model.hpp"
+#include "systems/plugins.hpp"
+
+namespace catena {
+
+namespace {
+
+std::int64_t constexpr beads_per_thread = 500;
+
+std::vector<std::string> platforms_present() {
+    std::vector<std::string> names;
+    for (int i = 0; i < OpenMM::Platform::getNumPlatforms(); ++i) names.push_back(OpenMM::Platform::getPlatform(i).getName());
+    return names;
+}
+
+bool contains(std::vector<std::string> const& names, std::string const& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+std::string refused_plugins(std::vector<std::string> const& failures) {
+    return failures.empty() ? "" : fmt::format(" (not loaded: {})", fmt::join(failures, "; "));
+}
+
+}  // namespace
+
+OpenMmPlatform choose_platform(OpenMmSpec const& spec, BeadSystem const& beads, Communicator const& communicator, int device) {
+    auto const& failures = load_openmm_plugins();
+    auto const present = platforms_present();
+    bool const on_gpu = device >= 0;
+    std::string const name = !spec.platform.empty()                ? spec.platform
+                             : on_gpu && contains(present, "CUDA") ? "CUDA"
+                             : contains(present, "CPU")            ? "CPU"
+                                                                   : "Reference";
+    if (!contains(present, name))
+        throw InputError(fmt::format("OpenMM {} has no platform {}", OpenMM::Platform::getOpenMMVersion(), name),
+                         openmm_key(beads.scene_file, "platform"),
+                         fmt::format("take one of {}{}", fmt::join(present, ", "), refused_plugins(failures)));
+    if (!spec.precision.empty() && spec.precision != "single" && spec.precision != "mixed" && spec.precision != "double")
+        throw InputError(fmt::format("OpenMM knows no precision \"{}\"", spec.precision), openmm_key(beads.scene_file, "precision"),
+                         "take single, mixed or double");
+
+    OpenMmPlatform chosen;
+    chosen.platform = &OpenMM::Platform::getPlatformByName(name);
+    auto const known = chosen.platform->getPropertyNames();
+    auto const set = [&](char const* property, std::string const& value) {
+        if (contains(known, property)) chosen.properties[property] = value;
+    };
+    if (name == "CPU") {
+        auto const useful = static_cast<int>(std::min<std::int64_t>(1 + beads.size() / beads_per_thread, cores_of_rank(communicator)));
+        require_possible_threads(spec.threads, openmm_key(beads.scene_file, "threads"));
+        chosen.threads = spec.threads > 0 ? spec.threads : useful;
+        set("Threads", std::to_string(chosen.threads));
+    } else if (!chosen.on_cpu()) {
+        set("Precision", spec.precision.empty() ? "mixed" : spec.precision);
+        int const gpu = spec.device >= 0 || name != "CUDA" ? spec.device : device;
+        if (gpu >= 0) set("DeviceIndex", std::to_string(gpu));
+    }
+    set("DeterministicForces", "true");
+    return chosen;
+}
+
+std::vector<std::string> openmm_platforms() {
+    load_openmm_plugins();
+    return platforms_present();
+}
+
+std::string openmm_version() { return "OpenMM " + OpenMM::Platform::getOpenMMVersion(); }
+
+}  // namespace catena

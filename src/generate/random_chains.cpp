@@ -1,0 +1,247 @@
+// Random chains: every joint, physically possible bodies.
+#include <cmath>
+
+#include "generate/generators.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+std::array<double, 4> numbers_of(Quat const& q) { return {q.w, q.x, q.y, q.z}; }
+
+/// R diag(J) R^T
+Sym3 rotated_inertia(Vec3 const& principal, Quat const& orientation) {
+    Mat3 const r = to_matrix(orientation);
+    Sym3 j;
+    for (int a = 0; a < 3; ++a)
+        for (int b = 0; b <= a; ++b)
+            j(a, b) = r(a, 0) * principal[0] * r(b, 0) + r(a, 1) * principal[1] * r(b, 1) + r(a, 2) * principal[2] * r(b, 2);
+    return j;
+}
+
+Sym3 random_inertia(Draws& draws, RandomChain const& chain, double mass) {
+    double const x = chain.inertia.draw(draws), y = chain.inertia.draw(draws), z = chain.inertia.draw(draws);
+    return rotated_inertia({{mass * (y + z), mass * (z + x), mass * (x + y)}}, draws.rotation());
+}
+
+JointType type_of(RandomJoint joint, Draws& draws) {
+    static constexpr JointType all[] = {JointType::revolute,  JointType::universal, JointType::spherical,
+                                        JointType::prismatic, JointType::helical,   JointType::weld};
+    switch (joint) {
+        case RandomJoint::planar:
+        case RandomJoint::revolute:
+            return JointType::revolute;
+        case RandomJoint::universal:
+            return JointType::universal;
+        case RandomJoint::spherical:
+            return JointType::spherical;
+        case RandomJoint::weld:
+            return JointType::weld;
+        case RandomJoint::prismatic:
+            return JointType::prismatic;
+        case RandomJoint::helical:
+            return JointType::helical;
+        case RandomJoint::link:
+            return JointType::link;
+        case RandomJoint::mixed:
+            break;
+    }
+    return all[static_cast<int>(6 * draws.uniform()) % 6];
+}
+
+/// A number of components in [-1, 1].
+Vec3 components(Draws& draws, int count) {
+    Vec3 v = Vec3::zero();
+    for (int i = 0; i < count; ++i) v[i] = draws.between(-1, 1);
+    return v;
+}
+
+/// Axes, coordinates, rates and torques of the bodies.
+class RandomJoints {
+  public:
+    RandomJoints(BodyArrays& bodies, RandomJoint kind) : bodies_(bodies), kind_(kind) {
+        bool const mixed = kind == RandomJoint::mixed;
+        axes_ = mixed || kind == RandomJoint::universal;
+        pitches_ = mixed || kind == RandomJoint::helical;
+    }
+
+    void add(Draws& draws, JointType joint) {
+        bodies_.joint.push_back(joint);
+        Vec3 const axis = axis_of(draws, joint);
+        bodies_.axis.push_back(axis);
+        if (axes_) bodies_.first_axis.push_back(joint == JointType::universal ? across(draws, axis) : Vec3::zero());
+        if (pitches_) bodies_.pitch.push_back(joint == JointType::helical ? pitch(draws) : 0);
+        bodies_.q.push_back(position(draws, joint));
+        int const count = joint == JointType::weld ? 0 : rates(joint);
+        bodies_.qd.push_back(components(draws, count));
+        bodies_.torque.push_back(components(draws, joint == JointType::free ? 0 : count));
+    }
+
+  private:
+    static int rates(JointType joint) {
+        return joint == JointType::universal ? 2 : joint == JointType::spherical || joint == JointType::free ? 3 : 1;
+    }
+    Vec3 axis_of(Draws& draws, JointType joint) const {
+        if (rates(joint) == 3 || joint == JointType::weld) return Vec3::zero();
+        return kind_ == RandomJoint::planar ? Vec3{{0, 0, 1}} : draws.on_sphere();
+    }
+    static Vec3 across(Draws& draws, Vec3 const& axis) {
+        Vec3 first = draws.on_sphere();
+        while (norm(cross(first, axis)) < 0.5) first = draws.on_sphere();
+        return first;
+    }
+    static double pitch(Draws& draws) {
+        double const size = draws.between(0.05, 0.3);
+        return draws.uniform() < 0.5 ? size : -size;
+    }
+    static std::array<double, 4> position(Draws& draws, JointType joint) {
+        double constexpr pi = Draws::pi;
+        switch (joint) {
+            case JointType::revolute:
+            case JointType::helical:
+                return {draws.between(-pi, pi), 0, 0, 0};
+            case JointType::prismatic:
+                return {draws.between(-0.5, 0.5), 0, 0, 0};
+            case JointType::universal: {
+                double const first = draws.between(-pi, pi);
+                return {first, draws.between(-pi, pi), 0, 0};
+            }
+            case JointType::weld:
+            case JointType::link:
+                return {0, 0, 0, 0};
+            case JointType::spherical:
+            case JointType::free:
+                break;
+        }
+        return numbers_of(draws.rotation());
+    }
+
+    BodyArrays& bodies_;
+    RandomJoint kind_;
+    bool axes_ = false, pitches_ = false;
+};
+
+void random_frame(BodyArrays& bodies, Draws& draws, JointType joint, RandomChain const& chain) {
+    if (joint == JointType::free) {
+        bodies.free_position = draws.in_cube(1);
+        bodies.free_velocity = draws.in_cube(1);
+        bodies.rotation.push_back(Mat3::identity());
+        bodies.translation.push_back(Vec3::zero());
+        return;
+    }
+    double const distance = chain.length.draw(draws);
+    bodies.translation.push_back(distance * draws.on_sphere());
+    bool const first = bodies.rotation.empty();
+    bodies.rotation.push_back(chain.joint == RandomJoint::planar && !first
+                                  ? to_matrix(from_axis_angle(Vec3{{0, 0, 1}}, draws.between(-Draws::pi, Draws::pi)))
+                                  : to_matrix(draws.rotation()));
+}
+
+template <class... Array>
+void reserve(std::int64_t n, Array&... arrays) {
+    (arrays.reserve(static_cast<std::size_t>(n)), ...);
+}
+
+/// A chain of links as it grows: where the last body's outboard point is and how it moves.
+struct LinkEnd {
+    Vec3 position, velocity;
+    /// Goes along a random link that turns at random; returns its length.
+    double step(Draws& draws, RandomChain const& chain, bool linked) {
+        double const length = chain.length.draw(draws);
+        Vec3 const along = length * draws.on_sphere(), turning = draws.in_cube(1);
+        if (!linked) return velocity = turning, 0;
+        position = position + along;
+        velocity = velocity + cross(turning, along);
+        return length;
+    }
+};
+
+/// Makes body k of `linked` rigid, its inboard end where `end` is; moves `end` to its outboard end.
+void add_rigid(LinkedArrays& linked, Draws& draws, RandomChain const& chain, LinkEnd& end) {
+    linked.inertia.push_back(random_inertia(draws, chain, linked.mass.back()));
+    Quat const orientation = draws.rotation();
+    Mat3 const r = to_matrix(orientation);
+    Vec3 const omega = draws.in_cube(1);
+    double const before = draws.between(0.25, 0.75), after = draws.between(0.25, 0.75);
+    Vec3 const inboard = before * draws.on_sphere(), outboard = after * draws.on_sphere();
+    end.position = end.position - r * inboard;
+    end.velocity = end.velocity - r * cross(omega, inboard);
+    linked.position.push_back(end.position);
+    linked.velocity.push_back(end.velocity);
+    linked.orientation.push_back(numbers_of(orientation));
+    linked.omega.push_back(omega);
+    linked.inboard.push_back(inboard);
+    linked.outboard.push_back(outboard);
+    end.position = end.position + r * outboard;
+    end.velocity = end.velocity + r * cross(omega, outboard);
+}
+
+void add_bead(LinkedArrays& linked, LinkEnd const& end) {
+    linked.inertia.push_back(Sym3::zero());
+    linked.position.push_back(end.position);
+    linked.velocity.push_back(end.velocity);
+    linked.orientation.push_back({1, 0, 0, 0});
+    for (auto* const zero : {&linked.omega, &linked.inboard, &linked.outboard}) zero->push_back(Vec3::zero());
+    linked.carried.position.push_back(Vec3::zero());
+    linked.carried.mass.push_back(linked.mass.back());
+    linked.carried.residue.emplace_back("UNK");
+}
+
+}  // namespace
+
+BodyArrays random_bodies(RandomChain const& chain) {
+    BodyArrays bodies;
+    reserve(chain.bodies, bodies.mass, bodies.com, bodies.inertia, bodies.joint, bodies.axis, bodies.rotation, bodies.translation, bodies.q,
+            bodies.qd, bodies.torque, bodies.wrench);
+    RandomJoints joints(bodies, chain.joint);
+    for (std::int64_t k = 0; k < chain.bodies; ++k) {
+        Draws draws(chain.seed, k);
+        bodies.mass.push_back(chain.mass.draw(draws));
+        bodies.com.push_back(draws.in_cube(0.5));
+        bodies.inertia.push_back(random_inertia(draws, chain, bodies.mass.back()));
+        bool const floating = k == 0 && chain.base == Base::free;
+        JointType const type = floating ? JointType::free : type_of(chain.joint, draws);
+        random_frame(bodies, draws, type, chain);
+        joints.add(draws, type);
+        bool const loaded = draws.uniform() < 0.25;
+        Vec3 const torque = loaded ? draws.in_cube(1) : Vec3::zero();
+        bodies.wrench.emplace_back(torque, loaded ? draws.in_cube(1) : Vec3::zero());
+    }
+    return bodies;
+}
+
+BeadArrays random_beads(RandomChain const& chain) {
+    BeadArrays beads;
+    reserve(chain.bodies, beads.mass, beads.position, beads.velocity, beads.length);
+    beads.residue.assign(static_cast<std::size_t>(chain.bodies), "UNK");
+    beads.anchor = chain.anchor;
+    LinkEnd end{chain.anchor, Vec3::zero()};
+    for (std::int64_t k = 0; k < chain.bodies; ++k) {
+        Draws draws(chain.seed, k);
+        beads.mass.push_back(chain.mass.draw(draws));
+        beads.length.push_back(end.step(draws, chain, k > 0 || chain.base == Base::fixed));
+        beads.position.push_back(end.position);
+        beads.velocity.push_back(end.velocity);
+    }
+    return beads;
+}
+
+LinkedArrays random_linked(RandomChain const& chain) {
+    LinkedArrays linked;
+    reserve(chain.bodies, linked.mass, linked.inertia, linked.position, linked.velocity, linked.orientation, linked.omega, linked.inboard,
+            linked.outboard, linked.length, linked.carried.offset);
+    linked.anchor = chain.anchor;
+    linked.carried.offset.push_back(0);
+    LinkEnd end{chain.anchor, Vec3::zero()};
+    for (std::int64_t k = 0; k < chain.bodies; ++k) {
+        Draws draws(chain.seed, k);
+        linked.mass.push_back(chain.mass.draw(draws));
+        linked.length.push_back(end.step(draws, chain, k > 0 || chain.base == Base::fixed));
+        draws.uniform() < chain.rigid ? add_rigid(linked, draws, chain, end) : add_bead(linked, end);
+        linked.carried.offset.push_back(static_cast<std::int64_t>(linked.carried.size()));
+    }
+    if (linked.carried.size() == 0) linked.carried = {};
+    return linked;
+}
+
+}  // namespace catena::scene

@@ -1,0 +1,138 @@
+// Capped forces under link constraints: what growth left overlapping is pushed apart.
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "generate/cells.hpp"
+#include "generate/crowd.hpp"
+#include "generate/link_projection.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+double constexpr push_reach = 1.02;  // excluded distances: pushing a little further ends in finitely many steps
+double constexpr skin = 0.2;         // excluded distances: pairs are listed anew when beads have moved half as far
+double constexpr stiffness = 0.4;    // of an overlap that each bead of a pair gives way in one step
+double constexpr cap = 0.1;          // excluded distances: the furthest that a bead is pushed in one step
+
+/// Pairs of points that may come within the reach before beads have moved by half the skin; link neighbours and pairs of points that
+/// stand still are left out.
+class Pairs {
+  public:
+    void list(Crowd const& crowd) {
+        double const width = (push_reach + skin) * crowd.excluded;
+        Images const images(crowd.box);
+        Cells const cells(crowd.box, width, crowd.at.size());
+        sort(crowd, images, cells);
+        pairs_.clear();
+        for (std::uint32_t const i : order_) {
+            if (i >= crowd.movable()) continue;
+            cells.any_around(wrapped_[i], [&](std::size_t cell) {
+                for (std::uint32_t at = begin_[cell]; at < begin_[cell + 1]; ++at) {
+                    std::uint32_t const j = order_[at];
+                    if (j <= i || crowd.linked(i, j)) continue;
+                    Vec3 const apart = images.shortest(wrapped_[i] - wrapped_[j]);
+                    if (dot(apart, apart) < width * width) pairs_.emplace_back(i, j);
+                }
+                return false;
+            });
+        }
+    }
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> const& all() const { return pairs_; }
+
+  private:
+    /// Points in the order of their cells.
+    void sort(Crowd const& crowd, Images const& images, Cells const& cells) {
+        std::size_t const n = crowd.at.size();
+        wrapped_.resize(n), order_.resize(n);
+        begin_.assign(cells.size() + 1, 0);
+        std::vector<std::uint32_t> cell(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            wrapped_[i] = images.wrapped(crowd.at[i]);
+            cell[i] = static_cast<std::uint32_t>(cells.of(wrapped_[i]));
+            ++begin_[cell[i] + 1];
+        }
+        for (std::size_t c = 0; c < cells.size(); ++c) begin_[c + 1] += begin_[c];
+        std::vector<std::uint32_t> next(begin_.begin(), begin_.end() - 1);
+        for (std::size_t i = 0; i < n; ++i) order_[next[cell[i]]++] = static_cast<std::uint32_t>(i);
+    }
+
+    std::vector<Vec3> wrapped_;
+    std::vector<std::uint32_t> begin_, order_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs_;
+};
+
+class Relaxation {
+  public:
+    explicit Relaxation(Crowd& crowd) : crowd_(crowd), images_(crowd.box) { relist(); }
+
+    /// Overlaps as they are, and what pushes them apart.
+    Relaxed look() {
+        if (moved() > 0.5 * skin * crowd_.excluded) relist();
+        double const reach = push_reach * crowd_.excluded, enough = crowd_.excluded * crowd_.excluded;
+        push_.assign(crowd_.at.size(), Vec3::zero());
+        Relaxed found;
+        double nearest = enough;
+        for (auto const& [i, j] : pairs_.all()) {
+            Vec3 const apart = images_.shortest(crowd_.at[i] - crowd_.at[j]);
+            double const square = dot(apart, apart);
+            if (square >= reach * reach) continue;
+            if (square < enough) ++found.overlaps, nearest = std::min(nearest, square);
+            double const distance = std::sqrt(square);
+            Vec3 const direction = distance > 0 ? (1 / distance) * apart : Vec3{{0, 0, 1}};
+            bool const alone = j >= crowd_.movable();
+            double const way = (alone ? 2 : 1) * stiffness * (reach - distance);
+            push_[i] = plus_scaled(push_[i], way, direction);
+            if (!alone) push_[j] = plus_scaled(push_[j], -way, direction);
+        }
+        found.nearest = std::sqrt(nearest);
+        return found;
+    }
+
+    void step() {
+        double const furthest = cap * crowd_.excluded;
+        for (std::size_t i = 0; i < crowd_.movable(); ++i) {
+            double const way = norm(push_[i]);
+            if (way > 0) crowd_.at[i] = plus_scaled(crowd_.at[i], way > furthest ? furthest / way : 1, push_[i]);
+        }
+        for (std::size_t c = 0; c < crowd_.chains(); ++c) {
+            std::size_t const begin = crowd_.first[c], beads = crowd_.first[c + 1] - begin;
+            links_.project({std::span(crowd_.at).subspan(begin, beads), std::span(crowd_.length).subspan(begin, beads)});
+        }
+    }
+
+  private:
+    void relist() {
+        pairs_.list(crowd_);
+        listed_ = crowd_.at;
+    }
+    double moved() const {
+        double most = 0;
+        for (std::size_t i = 0; i < crowd_.movable(); ++i) {
+            Vec3 const way = crowd_.at[i] - listed_[i];
+            most = std::max(most, dot(way, way));
+        }
+        return std::sqrt(most);
+    }
+
+    Crowd& crowd_;
+    Images images_;
+    Pairs pairs_;
+    LinkProjection links_;
+    std::vector<Vec3> listed_, push_;
+};
+
+}  // namespace
+
+Relaxed relax(Crowd& crowd, std::int64_t most_steps) {
+    Relaxation relaxation(crowd);
+    for (std::int64_t steps = 0;; ++steps) {
+        Relaxed found = relaxation.look();
+        found.steps = steps;
+        if (found.overlaps == 0 || steps == most_steps) return found;
+        relaxation.step();
+    }
+}
+
+}  // namespace catena::scene

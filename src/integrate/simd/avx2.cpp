@@ -1,9 +1,0 @@
-#include "dca/simd/avx2.hpp"
-
-#include "integrate/simd/loops.hpp"
-
-namespace catena {
-
-JointLoops avx2_joint_loops(bool positions) { return joint_loops<dca::avx2::Real>(positions); }
-
-}  // namespace catena

@@ -1,9 +1,0 @@
-#include "dca/simd/avx512.hpp"
-
-#include "integrate/simd/loops.hpp"
-
-namespace catena {
-
-JointLoops avx512_joint_loops(bool positions) { return joint_loops<dca::avx512::Real>(positions); }
-
-}  // namespace catena

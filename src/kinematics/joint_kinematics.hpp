@@ -1,0 +1,237 @@
+// Forward kinematics of chains in joint coordinates, in any Space.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kinematics/joint_scan.hpp"
+#include "dca/host_space.hpp"
+#include "tree/scan_then.hpp"
+#include "tree/frontier_exchange.hpp"
+
+namespace catena {
+
+/// State of body chains in joint coordinates (StateView).
+template <class Space>
+struct JointCoordinates {
+    typename Space::template FieldOf<4> q;
+    typename Space::template FieldOf<3> qd, base_position, base_velocity;
+
+    JointCoordinates() = default;
+    explicit JointCoordinates(ChainGroup const& group)
+        : q(group.size), qd(group.size), base_position(std::ssize(group.pieces)), base_velocity(std::ssize(group.pieces)) {}
+    StateView view() { return {q.view(), qd.view(), base_position.view(), base_velocity.view()}; }
+};
+using JointState = JointCoordinates<HostSpace>;
+/// At the scene's start, time 0.
+JointState make_joint_state(ChainGroup const&, Scene const&);
+
+/// What MotionView shows.
+template <class Space>
+struct MotionFields {
+    typename Space::template FieldOf<4> joint_turn, orientation;
+    typename Space::template FieldOf<3> omega, origin, velocity, r2;
+    typename Space::template FieldOf<6> axes2;
+
+    MotionFields() = default;
+    MotionFields(ChainGroup const& group, Space const& space)
+        : joint_turn(group.size), orientation(group.size), omega(group.size), origin(group.size), velocity(group.size) {
+        if (!group.moving_meeting()) return;
+        r2 = typename Space::template FieldOf<3>(group.size);
+        axes2 = typename Space::template FieldOf<6>(group.size);
+        fill(space, r2, group.r2);
+        fill(space, axes2, group.axes2);
+    }
+    MotionView view() {
+        return {joint_turn.view(), orientation.view(), omega.view(), origin.view(), velocity.view(), r2.view(), axes2.view()};
+    }
+};
+using BodyMotion = MotionFields<HostSpace>;
+
+/// First bodies of the group's pieces; of every body the slot of its run.
+std::vector<std::int64_t> first_bodies(ChainGroup const&);
+std::vector<std::int32_t> run_slots(ChainGroup const&);
+
+template <class Space>
+class JointKinematics {
+    template <int D>
+    using FieldOf = typename Space::template FieldOf<D>;
+
+  public:
+    /// Of a rank's first body, or none, along with what ranks tell each other of motions: its joint's loads (HingeLoads), and where that
+    /// joint lies on the body before.
+    using LoadsForNeighbour = BodyExchange<4>;
+    using MeetingForNeighbour = BodyExchange<9>;
+    /// The group and the communicator must outlive it.
+    JointKinematics(ChainGroup const& group, Space const& space, Communicator const& communicator)
+        : group_(group),
+          space_(space),
+          communicator_(communicator),
+          first_body_(first_bodies(group)),
+          slot_of_body_(run_slots(group)),
+          joint_(group.joint),
+          is_first_(group.is_first),
+          is_last_(group.is_last),
+          piece_(first_body_),
+          drive_(group.drives),
+          r1_(group.r1),
+          axes1_(group.axes1),
+          joint_rotation_(group.joint_rotation),
+          joint_translation_(group.joint_translation),
+          first_axis_(group.first_axis),
+          screw_(group.screw),
+          tree_(group.schedule.runs, group.schedule.levels, group.schedule.roots, group.schedule.slots),
+          top_(no_runs_, group.schedule.top_levels, group.schedule.top_roots, group.schedule.slots),
+          runs_(group.schedule.runs),
+          roots_(group.schedule.roots),
+          top_roots_(group.schedule.top_roots),
+          slot_(slot_of_body_),
+          rotation_(group.size),
+          omega_(group.size),
+          translation_(group.size),
+          velocity_(group.size),
+          next_meeting_(group.moving_meeting() ? 1 : 0),
+          shared_(group.schedule, dca::RecordNumbers<Motion>::width, space, communicator,
+                  MeetingForNeighbour::numbers + LoadsForNeighbour::numbers),
+          whole_(group.schedule.slots),
+          before_(group.schedule.slots) {
+        begin_at_ground();
+    }
+
+    JointsView joints() const {
+        return {group_.size,
+                joint_.data(),
+                is_first_.data(),
+                is_last_.data(),
+                group_.planar,
+                group_.has_screws,
+                r1_.view(),
+                axes1_.view(),
+                joint_rotation_.view(),
+                joint_translation_.view(),
+                first_axis_.view(),
+                screw_.view(),
+                piece_.data(),
+                std::ssize(first_body_),
+                drive_.data(),
+                std::ssize(group_.drives)};
+    }
+    /// Of bodies against their inboard ones, where a scan leaves them (JointScan::rotation).
+    ConstView<4> rotations() { return rotation_.view(); }
+    JointScan scan(StateView const& state, MotionView const& motion) {
+        return {joints(),         state,        motion,        rotation_.view(), omega_.view(),       translation_.view(),
+                velocity_.view(), slot_.data(), whole_.view(), before_.view(),   next_meeting_.view()};
+    }
+
+    /// All of it. Collective where a chain is shared by ranks. `with_positions` fills origin and velocity as well.
+    void evaluate(StateView const& state, bool with_positions, MotionView const& motion) {
+        with_positions ? evaluate<true>(scan(state, motion)) : evaluate<false>(scan(state, motion));
+    }
+    /// Up and down the tree, after set_relative() of every body, and then last(k) for every body, with set_motion(). Collective where a
+    /// chain is shared by ranks.
+    template <bool positions, class Last>
+    void sweep(JointScan const& s, LoadsForNeighbour const& loads, Last const& last) {
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, MotionScan<positions>{s}, group_.size, last);
+        sweep<positions>(s, loads);
+        space_.for_each(group_.size, last);
+    }
+    template <bool positions>
+    void sweep(JointScan const& s, LoadsForNeighbour const& loads) {
+        sweep<positions>(s, tree_, loads);
+    }
+    /// `tree`: the group's, without runs that JointScan::follow was called of.
+    template <bool positions>
+    void sweep(JointScan const& s, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
+        sweep_with(MotionScan<positions>{s}, tree, loads);
+    }
+
+    /// By a scan that may do more with runs than MotionScan, and leaves `loads` there. `tree`: as sweep().
+    template <class Scan>
+    void sweep_with(Scan const& scan, typename Space::ScanTree const& tree, LoadsForNeighbour const& loads) {
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree, scan);
+        MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
+        pass(scan, tree, meeting, loads);
+    }
+    /// Whether sweep_runs() takes runs by threads that have a body each.
+    bool has_threads_for_bodies() const {
+        return space_.has_threads_for_bodies(tree_) &&
+               (group_.schedule.shared.empty() || (shared_.is_direct() && space_.has_threads_for_bodies(top_)));
+    }
+    /// By one over all runs; then last(run) for each.
+    template <class Scan, class Last>
+    void sweep_runs(Scan const& scan, LoadsForNeighbour const& loads, Last const& last) {
+        if (group_.schedule.shared.empty()) return space_.climb_and_descend(tree_, scan, runs_, last);
+        MeetingForNeighbour const meeting = shown_meeting(scan.motions().s);
+        dca::ScanThen const all{scan, runs_, last};
+        if (shared_.turn(space_, communicator_, shown(scan), tree_, top_, all, meeting, loads)) return;
+        pass(scan, tree_, meeting, loads);
+        space_.over(runs_, last);
+    }
+
+    // Not private: nvcc takes lambdas for kernels from public members alone.
+    template <bool positions>
+    void evaluate(JointScan const& s) {
+        space_.for_each(group_.size, [s] CATENA_LAMBDA(std::int64_t k) { s.template set_relative<positions>(k); });
+        sweep<positions>(s, LoadsForNeighbour::none(), [s] CATENA_LAMBDA(std::int64_t k) { s.template set_motion<positions>(k); });
+    }
+    /// Joint k's from body k - 1, across the ranks, where it moves.
+    MeetingForNeighbour shown_meeting(JointScan const& s) {
+        View<9> const meeting = next_meeting_.view();
+        MeetingForNeighbour const shown{meeting, 0, group_.neighbour_inboard, meeting, 1, group_.neighbour_outboard};
+        if (!group_.moving_meeting() || !shown) return MeetingForNeighbour::none();
+        space_.for_each(1, [s] CATENA_LAMBDA(std::int64_t) { s.show_first_meeting(); });
+        return shown;
+    }
+    void begin_at_ground() {
+        MotionRecords const before = before_.view();
+        JointsView const all = joints();
+        // Scans bring the same bits there; what comes after them may ask earlier (HingeScan::begins_at_ground).
+        space_.over(runs_, [before, all] CATENA_LAMBDA(dca::Run const& run) {
+            if (all.starts_chain(run.body)) before.store(run.slot, Motion::none());
+        });
+        space_.over(roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
+        space_.over(top_roots_, [before] CATENA_LAMBDA(dca::Root const& root) { before.store(root.slot, Motion::none()); });
+    }
+
+  private:
+    template <class Scan>
+    dca::RecordNumbers<Motion> shown(Scan const& scan) {
+        return {scan.motions().s.whole, shared_.own_units(), shared_.units()};
+    }
+    /// sweep_with() among ranks.
+    template <class Scan>
+    void pass(Scan const& scan, typename Space::ScanTree const& tree, MeetingForNeighbour const& meeting, LoadsForNeighbour const& loads) {
+        if (shared_.turn(space_, communicator_, shown(scan), tree, top_, scan, meeting, loads)) return;
+        space_.climb(tree, scan);
+        shared_.show(space_, shown(scan));
+        shared_.bring(space_, communicator_, shown(scan), meeting, loads);
+        space_.climb_and_descend(top_, scan.motions());
+        space_.descend(tree, scan);
+    }
+
+    ChainGroup const& group_;
+    Space space_;
+    Communicator const& communicator_;
+    std::vector<std::int64_t> first_body_;
+    std::vector<std::int32_t> slot_of_body_;
+    typename Space::template List<JointType> joint_;
+    typename Space::template List<std::uint8_t> is_first_, is_last_;
+    typename Space::template List<std::int64_t> piece_;
+    typename Space::template List<LocalDrive> drive_;
+    typename Space::template Fixed<3> r1_;
+    typename Space::template Fixed<6> axes1_;
+    typename Space::template Fixed<4> joint_rotation_;
+    typename Space::template Fixed<3> joint_translation_, first_axis_, screw_;
+    std::vector<dca::Run> no_runs_;
+    typename Space::ScanTree tree_, top_;
+    typename Space::template List<dca::Run> runs_;
+    typename Space::template List<dca::Root> roots_, top_roots_;
+    typename Space::template List<std::int32_t> slot_;
+    FieldOf<4> rotation_;
+    FieldOf<3> omega_, translation_, velocity_;
+    FieldOf<9> next_meeting_;
+    dca::SharedUnits<Space> shared_;
+    typename Space::template Records<Motion, dca::Order::plain> whole_, before_;
+};
+
+}  // namespace catena

@@ -1,0 +1,125 @@
+#include "observe/heating.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "observe/observables.hpp"
+
+namespace catena {
+namespace {
+
+/// The inverse of a body's inertia; not finite where it has none about some axis.
+Sym3 inverse_of(Sym3 const& m) {
+    Sym3 adjoint;
+    adjoint(0, 0) = m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2);
+    adjoint(1, 1) = m(0, 0) * m(2, 2) - m(0, 2) * m(0, 2);
+    adjoint(2, 2) = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1);
+    adjoint(1, 0) = m(0, 2) * m(1, 2) - m(0, 1) * m(2, 2);
+    adjoint(2, 0) = m(0, 1) * m(1, 2) - m(0, 2) * m(1, 1);
+    adjoint(2, 1) = m(0, 1) * m(0, 2) - m(0, 0) * m(1, 2);
+    double const determinant = m(0, 0) * adjoint(0, 0) + m(0, 1) * adjoint(0, 1) + m(0, 2) * adjoint(0, 2);
+    for (double& value : adjoint.data) value /= determinant;
+    return adjoint;
+}
+
+/// The largest eigenvalue at most: the root of the sum of squares.
+double largest_of(Sym3 const& m) {
+    double sum = 0;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) sum += m(i, j) * m(i, j);
+    return std::sqrt(sum);
+}
+
+/// Magnitudes of what acts on one body, each divided by the root of what it accelerates, added up: loads may come to point the same way.
+class Pushes {
+  public:
+    Pushes(double mass, Sym3 const& inertia) : mass_(mass), inverse_(inverse_of(inertia)) {}
+    void force(double size) {
+        if (size > 0) sum_ += size / std::sqrt(mass_);
+    }
+    /// Of any direction.
+    void torque(double size) {
+        if (size > 0) sum_ += size * std::sqrt(largest_of(inverse_));
+    }
+    /// In the body's axes.
+    void torque(Vec3 const& torque) {
+        if (norm(torque) > 0) sum_ += std::sqrt(dot(torque, inverse_ * torque));
+    }
+    double square() const { return sum_ * sum_; }
+
+  private:
+    double mass_;
+    Sym3 inverse_;
+    double sum_ = 0;
+};
+
+/// A joint's torque on its outboard body and the opposite on the body before, with the arms at which a sliding joint's force acts.
+void add_torque(BodyArrays const& b, std::size_t k, std::vector<Pushes>& pushes) {
+    Vec3 const& torque = b.torque[k];
+    double size = std::abs(torque[0]) + std::abs(torque[1]) + std::abs(torque[2]);
+    if (b.joint[k] == JointType::universal) size /= norm(cross(b.first_axis[k], b.axis[k]));  // axes that are not perpendicular need more
+    Pushes* const inboard = k > 0 ? &pushes[k - 1] : nullptr;
+    switch (b.joint[k]) {
+        case JointType::revolute:
+            pushes[k].torque(torque[0] * b.axis[k]);
+            if (inboard) inboard->torque(torque[0] * (b.rotation[k] * b.axis[k]));
+            return;
+        case JointType::prismatic:
+            pushes[k].force(size), pushes[k].torque(size * norm(b.com[k]));
+            if (inboard) inboard->force(size), inboard->torque(size * (norm(b.translation[k] - b.com[k - 1]) + std::abs(b.q[k][0])));
+            return;
+        default:
+            pushes[k].torque(size);
+            if (inboard) inboard->torque(size);
+    }
+}
+
+/// f M^-1 f at most: what bodies that no joint holds would take up.
+double square_of(ChainSpec const& chain, double gravity) {
+    double sum = 0;
+    for (double const mass : chain.beads.mass) sum += mass * gravity * gravity;
+    for (double const mass : chain.linked.mass) sum += mass * gravity * gravity;
+    BodyArrays const& b = chain.bodies;
+    std::vector<Pushes> pushes;
+    for (std::size_t k = 0; k < b.size(); ++k) pushes.emplace_back(b.mass[k], b.inertia[k]);
+    for (std::size_t k = 0; k < b.size(); ++k) {
+        pushes[k].force(gravity * b.mass[k]);
+        if (!b.wrench.empty()) pushes[k].force(norm(b.wrench[k].second)), pushes[k].torque(norm(b.wrench[k].first));
+        if (!b.torque.empty()) add_torque(b, k, pushes);
+    }
+    for (Pushes const& each : pushes) sum += each.square();
+    return sum;
+}
+
+bool has_load(ChainSpec const& chain) {
+    BodyArrays const& b = chain.bodies;
+    return !b.driven.empty() || std::any_of(b.torque.begin(), b.torque.end(), [](Vec3 const& torque) { return norm(torque) > 0; }) ||
+           std::any_of(b.wrench.begin(), b.wrench.end(), [](auto const& w) { return norm(w.first) + norm(w.second) > 0; });
+}
+
+}  // namespace
+
+double drift_of_step(DynamicsSpec const& d) {
+    double const x = 0.5 * d.friction * d.step;
+    return x < 1e-4 ? 1 : x / std::tanh(x);
+}
+
+Heating heating_of(Scene const& scene, bool with_gravity) {
+    auto const any = [&](auto const& is) { return std::any_of(scene.chains.begin(), scene.chains.end(), is); };
+    double const gravity = norm(scene.forces.gravity);
+    Heating found;
+    found.is_pushed = gravity > 0 || any(has_load);
+    if (!found.is_pushed) return found;
+    if (any([](ChainSpec const& chain) { return !chain.bodies.driven.empty(); })) {
+        found.unknown = "motions are prescribed, whose kinetic energy is not thermal";
+        return found;
+    }
+    double sum = 0;
+    for (ChainSpec const& chain : scene.chains) sum += square_of(chain, with_gravity ? gravity : 0);
+    double const friction = scene.dynamics.friction / drift_of_step(scene.dynamics);
+    found.excess = sum / (friction * friction * static_cast<double>(degrees_of_freedom(scene)) * scene.boltzmann());
+    if (!std::isfinite(found.excess)) found.unknown = "torques act about axes without inertia";
+    return found;
+}
+
+}  // namespace catena

@@ -1,0 +1,143 @@
+#include "observe/observables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "scene/freedom.hpp"
+
+namespace catena {
+
+std::int64_t degrees_of_freedom(Scene const& scene) {
+    std::int64_t dof = 0;
+    for (ChainSpec const& chain : scene.chains) dof += scene::degrees_of_freedom(chain);
+    return dof;
+}
+
+void KineticEnergy::add(ChainSystem::Snapshot const& s) {
+    for (std::size_t i = 0; i < s.velocity.size(); ++i, ++body_) {
+        for (; body_ == scene_->chains[chain_].size(); body_ = 0) ++chain_;
+        ChainSpec const& chain = scene_->chains[chain_];
+        if (chain.is_beads()) {
+            sum_ += 0.5 * chain.beads.mass[body_] * dot(s.velocity[i], s.velocity[i]);
+            continue;
+        }
+        bool const linked = chain.is_linked();
+        sum_ += 0.5 * (linked ? chain.linked.mass[body_] : chain.bodies.mass[body_]) * dot(s.velocity[i], s.velocity[i]);
+        Sym3 const& inertia = linked ? chain.linked.inertia[body_] : chain.bodies.inertia[body_];
+        sum_ += 0.5 * dot(s.omega[i], inertia * s.omega[i]);
+    }
+}
+
+double kinetic_energy(Scene const& scene, ChainSystem::Snapshot const& snapshot) {
+    KineticEnergy energy(scene);
+    energy.add(snapshot);
+    return energy.value();
+}
+
+void Shape::add(double mass, Vec3 const& position) {
+    if (sites_++ == 0) first_ = position;
+    last_ = position;
+    mass_ += mass;
+    Vec3 const from_first = position - first_, before = from_first - mean_;
+    mean_ = plus_scaled(mean_, mass / mass_, before);
+    square_ += mass * dot(before, from_first - mean_);
+    Vec3 const from_mean = from_first - unweighted_mean_;
+    unweighted_mean_ = plus_scaled(unweighted_mean_, 1 / static_cast<double>(sites_), from_mean);
+    unweighted_square_ += dot(from_mean, from_first - unweighted_mean_);
+}
+
+double Shape::radius_of_gyration() const { return std::sqrt(square_ / mass_); }
+double Shape::unweighted_radius_of_gyration() const { return std::sqrt(unweighted_square_ / static_cast<double>(sites_)); }
+
+namespace {
+
+struct ShapeColumn {
+    char const* name;
+    double (Shape::*value)() const;
+};
+constexpr ShapeColumn unweighted = {"unweighted_radius_of_gyration", &Shape::unweighted_radius_of_gyration};
+constexpr ShapeColumn shape_columns[] = {
+    {"radius_of_gyration", &Shape::radius_of_gyration}, unweighted, {"end_to_end_distance", &Shape::end_to_end_distance}};
+
+bool asks_for(Scene const& scene, std::string const& name) {
+    auto const& asked = scene.output.observables;
+    if (asked.empty()) return name != unweighted.name;
+    return std::find(asked.begin(), asked.end(), name) != asked.end();
+}
+
+}  // namespace
+
+bool has_energies(Scene const& scene) { return asks_for(scene, "energy"); }
+
+Observables::Observables(Scene const& scene, Topology const& topology, std::vector<EnergyTerm> const& terms)
+    : scene_(scene), topology_(topology), dof_(degrees_of_freedom(scene)), kinetic_(scene) {
+    for (ChainSpec const& chain : scene.chains) has_temperature_ = has_temperature_ && chain.bodies.driven.empty();
+    has_temperature_ = has_temperature_ && dof_ > 0 && !(scene.dynamics.given && is_implicit(scene.dynamics.integrator));
+    std::string const energy = scene.si ? " [J]" : " [kJ/mol]", length = scene.si ? " [m]" : " [nm]";
+    if (wants("energy")) {
+        for (EnergyTerm const& term : terms) columns_.push_back(term.name + "_energy" + energy);
+        for (char const* const name : {"potential_energy", "kinetic_energy", "total_energy"}) columns_.push_back(name + energy);
+    }
+    if (wants("temperature")) columns_.push_back("temperature [K]");
+    if (wants("constraint_error")) columns_.push_back("constraint_error [1]");
+    for (auto const& [shape, value] : shape_columns) {
+        if (!wants(shape)) continue;
+        if (scene.chains.size() == 1)
+            columns_.push_back(shape + length);
+        else if (scene.chains.size() <= most_single_chains_)
+            for (ChainSpec const& chain : scene.chains) columns_.push_back(shape + ("_" + chain.name) + length);
+        else
+            columns_.push_back(std::string("mean_") + shape + length);
+    }
+}
+
+bool Observables::wants(std::string const& name) const {
+    if (name == "temperature" && !has_temperature_) return false;
+    return asks_for(scene_, name);
+}
+
+void Observables::begin() {
+    kinetic_ = KineticEnergy(scene_);
+    chain_ = site_ = 0;
+    shape_ = Shape();
+    shapes_.clear();
+}
+
+void Observables::add(ChainSystem::Snapshot const& bodies, std::vector<Vec3> const& positions) {
+    kinetic_.add(bodies);
+    for (Vec3 const& position : positions) {
+        shape_.add(topology_.mass[site_++], position);
+        if (static_cast<std::int64_t>(site_) < topology_.chains[chain_].first + topology_.chains[chain_].count) continue;
+        shapes_.push_back(std::exchange(shape_, Shape()));
+        ++chain_;
+    }
+}
+
+std::vector<double> Observables::row(std::vector<EnergyTerm> const& terms, double constraint_error) const {
+    std::vector<double> row;
+    double const kinetic = kinetic_.value();
+    if (wants("energy")) {
+        double potential = 0;
+        for (EnergyTerm const& term : terms) {
+            row.push_back(term.value);
+            potential += term.value;
+        }
+        row.insert(row.end(), {potential, kinetic, potential + kinetic});
+    }
+    if (wants("temperature")) row.push_back(2.0 * kinetic / (scene_.boltzmann() * static_cast<double>(dof_)));
+    if (wants("constraint_error")) row.push_back(constraint_error);
+    for (auto const& [name, value] : shape_columns) {
+        if (!wants(name)) continue;
+        double sum = 0;
+        for (Shape const& shape : shapes_) {
+            double const one = (shape.*value)();
+            sum += one;
+            if (shapes_.size() <= most_single_chains_) row.push_back(one);
+        }
+        if (shapes_.size() > most_single_chains_) row.push_back(sum / static_cast<double>(shapes_.size()));
+    }
+    return row;
+}
+
+}  // namespace catena

@@ -1,0 +1,55 @@
+#include "oracle/joint.hpp"
+#include "error.hpp"
+
+namespace catena::oracle {
+
+Vec3 tip_anchor(ChainSpec const& chain) {
+    if (chain.tip_joint.type != JointType::link || !chain.tip_joint.anchor)
+        throw ComputationError("a chain of links ends in a link to an anchor only (" + chain.name +
+                               ": tip): give it type link and an anchor");
+    return *chain.tip_joint.anchor;
+}
+
+template <class S>
+BeadLink<S> bead_link(V3<S> const& along, V3<S> const& relative_velocity) {
+    S const length = norm(along);
+    V3<S> const u = S(S(1) / length) * along;
+    V3<S> const across = relative_velocity - dot(relative_velocity, u) * u;
+    return {u, -dot(across, across) / length};
+}
+
+template <class S>
+std::vector<BeadLink<S>> read_bead_links(ChainSpec const& chain) {
+    BeadArrays const& b = chain.beads;
+    std::vector<BeadLink<S>> links(b.size());
+    auto const x = [&](std::size_t k) { return lift<S>(b.position[k]); };
+    auto const v = [&](std::size_t k) { return lift<S>(b.velocity[k]); };
+    if (chain.base == Base::fixed) links[0] = bead_link(x(0) - lift<S>(b.anchor), v(0));
+    for (std::size_t k = 1; k < b.size(); ++k) links[k] = bead_link(x(k) - x(k - 1), v(k) - v(k - 1));
+    std::size_t const last = b.size() - 1;
+    if (chain.is_ring())
+        links.push_back(bead_link(x(0) - x(last), v(0) - v(last)));
+    else if (chain.tip == Tip::jointed)
+        links.push_back(bead_link(lift<S>(tip_anchor(chain)) - x(last), -v(last)));
+    return links;
+}
+
+template <class S>
+V3<S> bead_force(ChainSpec const& chain, Loads const& loads, std::size_t k) {
+    V3<S> const weight = S(chain.beads.mass[k]) * lift<S>(loads.gravity);
+    V3<S> const drag = S(loads.linear_drag) * lift<S>(chain.beads.velocity[k]);
+    return loads.bead_forces.empty() ? weight - drag : weight + lift<S>(loads.bead_forces[k]) - drag;
+}
+
+// NOLINTBEGIN(bugprone-macro-parentheses): S is a type
+#define CATENA_ORACLE(S)                                                    \
+    template BeadLink<S> bead_link<S>(V3<S> const&, V3<S> const&);          \
+    template std::vector<BeadLink<S>> read_bead_links<S>(ChainSpec const&); \
+    template V3<S> bead_force<S>(ChainSpec const&, Loads const&, std::size_t);
+CATENA_ORACLE(double)
+CATENA_ORACLE(long double)
+CATENA_ORACLE(Quad)
+#undef CATENA_ORACLE
+// NOLINTEND(bugprone-macro-parentheses)
+
+}  // namespace catena::oracle

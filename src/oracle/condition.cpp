@@ -1,0 +1,90 @@
+#include "oracle/eigen.hpp"
+#include "oracle/inverse.hpp"
+#include "oracle/linked.hpp"
+
+namespace catena::oracle {
+namespace {
+
+/// First row of each body's freedoms; behind the last, the number of freedoms. A free base's linear part comes first.
+template <class S>
+std::vector<Index> freedoms(std::vector<Link<S>> const& links) {
+    Index dof = !links.empty() && links[0].type == JointType::free ? 3 : 0;
+    std::vector<Index> first;
+    for (Link<S> const& link : links) {
+        first.push_back(dof);
+        dof += link.unknown();
+    }
+    first.push_back(dof);
+    return first;
+}
+
+/// Joint-space inertia: column j holds the joint forces that a unit acceleration of freedom j needs, at rest and unloaded.
+template <class S>
+Dense<S> joint_space_inertia(ChainSpec const& chain, Loads const& loads) {
+    std::vector<Link<S>> links = read_links<S>(chain, loads);
+    for (Link<S>& link : links) link.rate = link.slide = link.drift = link.applied_torque = link.applied_force = V3<S>::zero();
+    std::vector<Index> const first = freedoms(links);
+    Inverse<S> const inverse(links, V3<S>::zero());
+    Dense<S> inertia(first.back(), first.back());
+    for (Index j = 0; j < inertia.cols(); ++j) {
+        std::vector<V3<S>> qdd(links.size(), V3<S>::zero());
+        V3<S> base = V3<S>::zero();
+        for (Index i = 0; i < first[0]; ++i) base[static_cast<int>(i)] = S(i == j ? 1 : 0);
+        for (std::size_t k = 0; k < links.size(); ++k)
+            for (Index i = first[k]; i < first[k + 1]; ++i) qdd[k][static_cast<int>(i - first[k])] = S(i == j ? 1 : 0);
+        std::vector<InverseBody<S>> const bodies = inverse(qdd, base);
+        for (Index i = 0; i < first[0]; ++i) inertia(i, j) = bodies[0].force.sum[static_cast<int>(i)];
+        for (std::size_t k = 0; k < links.size(); ++k) {
+            V3<S> const effort = inverse.needed(k, bodies[k]);
+            for (Index i = first[k]; i < first[k + 1]; ++i) inertia(i, j) = effort[static_cast<int>(i - first[k])];
+        }
+    }
+    return inertia;
+}
+
+/// G M^-1 G^T of the links, G the gradients of their lengths.
+template <class S>
+Dense<S> bead_link_matrix(ChainSpec const& chain) {
+    std::vector<BeadLink<S>> const links = read_bead_links<S>(chain);
+    std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
+    auto const count = static_cast<Index>(links.size() - first);
+    Dense<S> t = Dense<S>::Zero(count, count);
+    for (std::size_t k = first; k < links.size(); ++k) {
+        auto const i = static_cast<Index>(k - first);
+        if (k > 0) t(i, i) += S(1) / S(chain.beads.mass[k - 1]);
+        if (k == n) continue;
+        S const mobility = S(1) / S(chain.beads.mass[k]);
+        t(i, i) += mobility;
+        if (i + 1 < count) t(i, i + 1) = t(i + 1, i) = -mobility * dot(links[k].direction, links[k + 1].direction);
+    }
+    return t;
+}
+
+template <class S>
+Dense<S> linked_matrix(ChainSpec const& chain) {
+    LinkedModel<S> const model = read_linked<S>(chain, {});
+    std::vector<S> diagonal, beside;
+    link_compliance(model, diagonal, beside);
+    auto const count = static_cast<Index>(diagonal.size() - model.first);
+    Dense<S> t = Dense<S>::Zero(count, count);
+    for (Index i = 0; i < count; ++i) {
+        std::size_t const k = static_cast<std::size_t>(i) + model.first;
+        t(i, i) = diagonal[k];
+        if (i + 1 < count) t(i, i + 1) = t(i + 1, i) = beside[k];
+    }
+    return t;
+}
+
+}  // namespace
+
+double condition_estimate(ChainSpec const& chain, Loads const& loads) {
+    Dense<double> const m = chain.is_beads()    ? bead_link_matrix<double>(chain)
+                            : chain.is_linked() ? linked_matrix<double>(chain)
+                                                : joint_space_inertia<double>(chain, loads);
+    if (m.rows() == 0) return 1;
+    Eigen::SelfAdjointEigenSolver<Dense<double>> const eigen((m + m.transpose()) / 2, Eigen::EigenvaluesOnly);
+    double const largest = eigen.eigenvalues().maxCoeff(), smallest = eigen.eigenvalues().minCoeff();
+    return largest / std::max(smallest, largest * Eigen::NumTraits<double>::epsilon());
+}
+
+}  // namespace catena::oracle

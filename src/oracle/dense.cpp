@@ -1,0 +1,197 @@
+#include <optional>
+
+#include "oracle/system.hpp"
+
+// Newton's and Euler's equations of every body beside the second time derivative of every joint's closure, all in ground
+// axes about the centres of mass, as one linear system for the accelerations and the joint forces.
+namespace catena::oracle {
+namespace {
+
+/// Body k and its inboard joint in ground axes.
+template <class S>
+struct Body {
+    M3<S> orientation;              // B to W
+    V3<S> omega, to_inboard;        // to_inboard: from com to the body's origin, where the joint acts
+    Motion<S> closure;              // relative acceleration across the joint that its coordinates' q'' do not give
+    SpatialForce<S> given;          // of the joint along its coordinates
+    std::vector<Motion<S>> locked;  // directions of the constraint wrench
+    Index motion = 0, joint = 0;    // first rows of [a; alpha] and of the constraint's components
+};
+
+template <class S>
+Motion<S> rotated(M3<S> const& r, Motion<S> const& m) {
+    return {r * m.angular, r * m.linear};
+}
+
+template <class S>
+class Assembly {
+  public:
+    Assembly(ChainSpec const& chain, Loads const& loads) : links_(read_links<S>(chain, loads)), gravity_(lift<S>(loads.gravity)) {
+        size_ = 6 * static_cast<Index>(links_.size());
+        attitude_ = attitudes(links_);
+        for (std::size_t k = 0; k < links_.size(); ++k) {
+            Link<S> const& link = links_[k];
+            M3<S> const& r = attitude_[k].orientation;
+            Body<S> b;
+            b.orientation = r;
+            b.omega = r * attitude_[k].omega;
+            b.to_inboard = -(r * link.com);
+            b.motion = 6 * static_cast<Index>(k);
+            b.joint = size_;
+            if (link.type != JointType::free) add_joint(k, b);
+            bodies_.push_back(b);
+        }
+        if (chain.tip == Tip::jointed) close_tip(chain);
+    }
+
+    System<S> system() const {
+        System<S> s(size_);
+        for (std::size_t k = 0; k < bodies_.size(); ++k) {
+            add_body(k, s);
+            Body<S> const& b = bodies_[k];
+            if (links_[k].type == JointType::free) continue;
+            add_joint_end(b, b.to_inboard, b, S(1), s);
+            if (k > 0) add_joint_end(bodies_[k - 1], to_outboard(k), b, S(-1), s);
+            add_closure(b, s);
+        }
+        if (tip_) {
+            add_joint_end(bodies_.back(), tip_->arm, tip_joint_, S(-1), s);
+            if (tip_->ring) add_joint_end(bodies_.front(), tip_->first_arm, tip_joint_, S(1), s);
+            add_closure(tip_joint_, s);
+        }
+        return s;
+    }
+
+    OracleResult<S> read(Column<S> const& x) const {
+        OracleResult<S> result;
+        for (std::size_t k = 0; k < bodies_.size(); ++k) {
+            Body<S> const& b = bodies_[k];
+            result.com_acceleration.push_back(segment(x, b.motion));
+            result.alpha.push_back(segment(x, b.motion + 3));
+            result.qdd.push_back(joint_acceleration(k, x));
+            result.joint_force.emplace_back();
+            result.constraint_force.emplace_back();
+            if (links_[k].type == JointType::free) {
+                result.base_acceleration = at_point(b, b.to_inboard, x).linear;
+                continue;
+            }
+            result.constraint_force[k] = constraint(b, x);
+            result.joint_force[k] = result.constraint_force[k] + b.given;
+        }
+        if (tip_) {
+            std::vector<S> components;
+            for (std::size_t i = 0; i < tip_->locked.size(); ++i) components.push_back(x[tip_joint_.joint + static_cast<Index>(i)]);
+            result.tip_force = tip_wrench(*tip_, components, tip_->frame);
+            if (tip_->ring) result.joint_force[0] = result.constraint_force[0] = wrench_on_first(*tip_, components, V3<S>::zero());
+        }
+        return result;
+    }
+
+  private:
+    void add_joint(std::size_t k, Body<S>& b) {
+        Link<S> const& link = links_[k];
+        V3<S> const inboard = k == 0 ? V3<S>::zero() : bodies_[k - 1].omega, slide = b.orientation * link.slide;
+        b.closure = {cross(inboard, b.orientation * link.rate) + b.orientation * link.drift, S(2) * cross(inboard, slide)};
+        if (link.driven) b.closure = b.closure + rotated(b.orientation, along(link, link.prescribed));
+        b.closure = b.closure + rotated(b.orientation, link.gap);
+        SpatialForce<S> const given = spread(link, link.effort);
+        b.given = {b.orientation * given.torque, b.orientation * given.force};
+        for (Motion<S> const& d : restricted(link)) b.locked.push_back(rotated(b.orientation, d));
+        size_ += static_cast<Index>(b.locked.size());
+    }
+
+    void close_tip(ChainSpec const& chain) {
+        tip_ = read_tip(chain, links_, attitude_);
+        tip_joint_.locked = tip_->locked;
+        tip_joint_.closure = tip_->closure;
+        tip_joint_.joint = size_;
+        size_ += static_cast<Index>(tip_->locked.size());
+    }
+
+    /// From the centre of mass of joint k's inboard body to the joint.
+    V3<S> to_outboard(std::size_t k) const { return bodies_[k - 1].orientation * (links_[k].translation - links_[k - 1].com); }
+
+    void add_body(std::size_t k, System<S>& s) const {
+        Body<S> const& b = bodies_[k];
+        Link<S> const& link = links_[k];
+        M3<S> const inertia = turned(b.orientation, link.inertia);
+        s.add(b.motion, b.motion, scaled(link.mass, M3<S>::identity()));
+        s.add(b.motion + 3, b.motion + 3, inertia);
+        s.add(b.motion, link.mass * gravity_ + link.applied_force + b.given.force);
+        s.add(b.motion + 3, link.applied_torque - cross(b.omega, inertia * b.omega));
+        s.add(b.motion + 3, b.given.torque + cross(b.to_inboard, b.given.force));
+        if (k + 1 == bodies_.size()) return;
+        SpatialForce<S> const& next = bodies_[k + 1].given;
+        s.add(b.motion, -next.force);
+        s.add(b.motion + 3, -next.torque - cross(to_outboard(k + 1), next.force));
+    }
+
+    /// One end of a joint: `arm` from the body's centre of mass to the joint; sign +1 on the outboard body, -1 on the inboard.
+    void add_joint_end(Body<S> const& body, V3<S> const& arm, Body<S> const& joint, S sign, System<S>& s) const {
+        V3<S> const centripetal = cross(body.omega, cross(body.omega, arm));
+        Index row = joint.joint;
+        for (Motion<S> const& d : joint.locked) {
+            s.add_constraint(body.motion, row, sign, d.linear);
+            s.add_constraint(body.motion + 3, row, sign, d.angular + cross(arm, d.linear));
+            s.right[row++] -= sign * dot(d.linear, centripetal);
+        }
+    }
+    void add_closure(Body<S> const& joint, System<S>& s) const {
+        Index row = joint.joint;
+        for (Motion<S> const& d : joint.locked)
+            s.right[row++] += dot(d.angular, joint.closure.angular) + dot(d.linear, joint.closure.linear);
+    }
+
+    SpatialForce<S> constraint(Body<S> const& joint, Column<S> const& x) const {
+        SpatialForce<S> f;
+        Index row = joint.joint;
+        for (Motion<S> const& d : joint.locked) {
+            f = f + SpatialForce<S>{x[row] * d.angular, x[row] * d.linear};
+            ++row;
+        }
+        return f;
+    }
+
+    /// Acceleration of the point of a body at `arm` from its centre of mass.
+    Motion<S> at_point(Body<S> const& b, V3<S> const& arm, Column<S> const& x) const {
+        V3<S> const a = segment(x, b.motion), alpha = segment(x, b.motion + 3);
+        return {alpha, a + cross(alpha, arm) + cross(b.omega, cross(b.omega, arm))};
+    }
+
+    V3<S> joint_acceleration(std::size_t k, Column<S> const& x) const {
+        Body<S> const& b = bodies_[k];
+        if (links_[k].driven) return links_[k].prescribed;
+        Motion<S> relative = at_point(b, b.to_inboard, x);
+        if (k > 0) {
+            Motion<S> const inboard = at_point(bodies_[k - 1], to_outboard(k), x);
+            relative = {relative.angular - inboard.angular, relative.linear - inboard.linear};
+        }
+        V3<S> const angular = relative.angular - b.closure.angular, linear = relative.linear - b.closure.linear;
+        return coordinates(links_[k], Motion<S>{transposed_times(b.orientation, angular), transposed_times(b.orientation, linear)});
+    }
+
+    std::vector<Link<S>> links_;
+    std::vector<Attitude<S>> attitude_;
+    std::vector<Body<S>> bodies_;
+    std::optional<TipClosure<S>> tip_;
+    Body<S> tip_joint_;  // of it only the joint counts
+    V3<S> gravity_;
+    Index size_ = 0;
+};
+
+}  // namespace
+
+template <class S>
+OracleResult<S> dense(ChainSpec const& chain, Loads const& loads) {
+    if (chain.size() == 0) return {};
+    if (chain.is_beads()) return dense_beads<S>(chain, loads);
+    if (chain.is_linked()) return dense_linked<S>(chain, loads);
+    Assembly<S> const assembly(chain, loads);
+    return assembly.read(solve(assembly.system()));
+}
+
+template OracleResult<double> dense<double>(ChainSpec const&, Loads const&);
+template OracleResult<long double> dense<long double>(ChainSpec const&, Loads const&);
+template OracleResult<Quad> dense<Quad>(ChainSpec const&, Loads const&);
+
+}  // namespace catena::oracle

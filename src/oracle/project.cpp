@@ -1,0 +1,122 @@
+#include "oracle/eigen.hpp"
+#include "oracle/linked.hpp"
+
+namespace catena::oracle {
+namespace {
+
+/// The least change dx with J dx = - defect.
+Column<double> least_change(Dense<double> const& jacobian, Column<double> const& defect) {
+    if (jacobian.rows() == 0) return Column<double>::Zero(jacobian.cols());
+    return -jacobian.completeOrthogonalDecomposition().solve(defect);
+}
+
+Column<double> tip_velocity(TipClosure<double> const& tip, std::vector<Link<double>> const& links) {
+    std::vector<Attitude<double>> const all = attitudes(links);
+    Attitude<double> const &last = all.back(), &first = all.front();
+    Vec3 const to_g = tip.arm + last.orientation * links.back().com;
+    Vec3 omega = last.orientation * last.omega, velocity = last.velocity + cross(omega, to_g);
+    if (tip.ring) {
+        omega = omega - first.orientation * first.omega;
+        velocity = velocity - first.velocity;
+    }
+    Column<double> v(static_cast<Index>(tip.locked.size()));
+    for (Index i = 0; i < v.size(); ++i) {
+        Motion<double> const& d = tip.locked[static_cast<std::size_t>(i)];
+        v[i] = dot(d.angular, omega) + dot(d.linear, velocity);
+    }
+    return v;
+}
+
+void project_bodies(ChainSpec& chain, double time) {
+    Loads loads;
+    loads.time = time;
+    std::vector<Link<double>> const links = read_links<double>(chain, loads);
+    TipClosure<double> const tip = read_tip(chain, links, attitudes(links));
+    std::vector<Link<double>> still = links;
+    for (Link<double>& link : still) link.rate = link.slide = Vec3::zero();
+    std::vector<double*> numbers;
+    Dense<double> jacobian(static_cast<Index>(tip.locked.size()), 0);
+    auto const add = [&](double& number, std::size_t k, Motion<double> const& unit) {
+        std::vector<Link<double>> one = still;
+        one[k].rate = unit.angular;
+        one[k].slide = unit.linear;
+        jacobian.conservativeResize(Eigen::NoChange, jacobian.cols() + 1);
+        jacobian.col(jacobian.cols() - 1) = tip_velocity(tip, one);
+        numbers.push_back(&number);
+    };
+    for (std::size_t k = 0; k < links.size(); ++k) {
+        for (int i = 0; i < links[k].unknown(); ++i) add(chain.bodies.qd[k][i], k, links[k].free[static_cast<std::size_t>(i)]);
+        if (links[k].type != JointType::free) continue;
+        for (int i = 0; i < 3; ++i) {
+            Motion<double> unit;
+            unit.linear[i] = 1;
+            add(chain.bodies.free_velocity[i], k, unit);
+        }
+    }
+    if (numbers.empty()) return;
+    Column<double> const change = least_change(jacobian, tip_velocity(tip, links));
+    for (std::size_t i = 0; i < numbers.size(); ++i) *numbers[i] += change[static_cast<Index>(i)];
+}
+
+/// Rates at which the links lengthen, by every component of every velocity.
+template <class Directions, class AddEnd>
+void add_link_rows(Directions const& links, std::size_t first, ChainSpec const& chain, AddEnd const& add_end) {
+    for (std::size_t k = first; k < links.size(); ++k) {
+        if (k < chain.size()) add_end(k, k, std::size_t{0}, 1.0);
+        if (k == chain.size() && chain.is_ring()) add_end(k, std::size_t{0}, std::size_t{0}, 1.0);
+        if (k > 0) add_end(k, k - 1, std::size_t{1}, -1.0);
+    }
+}
+
+void project_beads(ChainSpec& chain) {
+    std::vector<BeadLink<double>> const links = read_bead_links<double>(chain);
+    std::size_t const n = chain.size(), first = chain.base == Base::fixed ? 0 : 1;
+    Dense<double> jacobian = Dense<double>::Zero(static_cast<Index>(links.size()), static_cast<Index>(3 * n));
+    Column<double> velocity(static_cast<Index>(3 * n));
+    add_link_rows(links, first, chain, [&](std::size_t link, std::size_t k, std::size_t, double sign) {
+        for (int i = 0; i < 3; ++i) jacobian(static_cast<Index>(link), static_cast<Index>(3 * k) + i) = sign * links[link].direction[i];
+    });
+    for (Index i = 0; i < velocity.size(); ++i)
+        velocity[i] = chain.beads.velocity[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)];
+    velocity += least_change(jacobian, jacobian * velocity);
+    for (Index i = 0; i < velocity.size(); ++i)
+        chain.beads.velocity[static_cast<std::size_t>(i / 3)][static_cast<int>(i % 3)] = velocity[i];
+}
+
+void project_linked(ChainSpec& chain) {
+    LinkedModel<double> const model = read_linked<double>(chain, {});
+    std::size_t const n = chain.size();
+    Dense<double> jacobian = Dense<double>::Zero(static_cast<Index>(model.links.size()), static_cast<Index>(6 * n));
+    Column<double> velocity(static_cast<Index>(6 * n));
+    auto const number = [&](Index i) -> double& {
+        auto const k = static_cast<std::size_t>(i / 6);
+        auto const c = static_cast<int>(i % 6);
+        return c < 3 ? chain.linked.velocity[k][c] : chain.linked.omega[k][c - 3];
+    };
+    add_link_rows(model.links, model.first, chain, [&](std::size_t link, std::size_t k, std::size_t end, double sign) {
+        LinkedBody<double> const& body = model.bodies[k];
+        Vec3 const &u = model.links[link].direction, lever = transposed_times(body.orientation, cross(body.end[end], u));
+        for (int i = 0; i < 3; ++i) {
+            jacobian(static_cast<Index>(link), static_cast<Index>(6 * k) + i) += sign * u[i];
+            jacobian(static_cast<Index>(link), static_cast<Index>(6 * k) + 3 + i) += sign * lever[i];
+        }
+    });
+    for (Index i = 0; i < velocity.size(); ++i) velocity[i] = number(i);
+    velocity += least_change(jacobian, jacobian * velocity);
+    for (Index i = 0; i < velocity.size(); ++i) number(i) = velocity[i];
+}
+
+}  // namespace
+
+void project_velocities(ChainSpec& chain, double time) {
+    for (int pass = 0; pass < 2 && chain.size() > 0; ++pass) {  // the second takes back the rounding of the first
+        if (chain.is_beads())
+            project_beads(chain);
+        else if (chain.is_linked())
+            project_linked(chain);
+        else if (chain.tip == Tip::jointed)
+            project_bodies(chain, time);
+    }
+}
+
+}  // namespace catena::oracle

@@ -1,0 +1,158 @@
+#include "plan/describe.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/freedom.hpp"
+
+namespace catena::command {
+namespace {
+
+bool any(double const* values, int count) {
+    return std::any_of(values, values + count, [](double v) { return v != 0; });
+}
+
+char const* contents_of(ChainSpec const& chain) {
+    if (chain.is_beads()) return "beads";
+    if (!chain.is_linked()) return "bodies";
+    std::size_t beads = 0;
+    for (std::size_t k = 0; k < chain.linked.size(); ++k) beads += chain.linked.is_bead(k) ? 1 : 0;
+    return beads == 0 ? "bodies" : "bodies and beads";
+}
+
+std::string tip_name(ChainSpec const& chain) {
+    if (chain.tip == Tip::free) return "free";
+    return std::string(chain.is_ring() ? "ring, " : "") + name_of(chain.tip_joint.type);
+}
+
+char const* kind_name(ChainSpec const& chain) { return scene::name_of(scene::handle_kind(chain)); }
+
+bool alike(ChainSpec const& a, ChainSpec const& b) {
+    return a.size() == b.size() && a.base == b.base && std::string(contents_of(a)) == contents_of(b) && tip_name(a) == tip_name(b) &&
+           scene::handle_kind(a) == scene::handle_kind(b);
+}
+
+char const* base_name(ChainSpec const& chain) { return chain.base == Base::free ? "free" : "fixed"; }
+
+}  // namespace
+
+Json gpu_levels_json(Scene const& scene) {
+    if (scene.solver.backend != Backend::cuda_levels) return nullptr;
+    return scene.solver.gpu_levels == "auto" ? "all" : scene.solver.gpu_levels;
+}
+
+std::string title_of(Scene const& scene) { return fmt::format("{} ({})", scene.title, scene.file); }
+
+Table chain_table(Scene const& scene) {
+    Table table({"chain", "copies", "bodies", "of", "base", "tip", "handles"}, {0, 3, 4, 5, 6});
+    std::size_t constexpr most_rows = 20;
+    std::size_t rows = 0;
+    for (std::size_t i = 0; i < scene.chains.size();) {
+        ChainSpec const& first = scene.chains[i];
+        std::size_t end = i + 1;
+        while (end < scene.chains.size() && alike(first, scene.chains[end])) ++end;
+        if (++rows > most_rows) {
+            table.add({"others", std::to_string(scene.chains.size() - i), "", "", "", "", ""});
+            break;
+        }
+        std::string const name = end == i + 1 ? first.name : first.name + " .. " + scene.chains[end - 1].name;
+        table.add({name, std::to_string(end - i), std::to_string(first.size()), contents_of(first), base_name(first), tip_name(first),
+                   kind_name(first)});
+        i = end;
+    }
+    return table;
+}
+
+Json chains_json(Scene const& scene) {
+    Json list = Json::array();
+    for (ChainSpec const& chain : scene.chains) {
+        list.push_back({{"name", chain.name}, {"bodies", chain.size()}, {"kind", kind_name(chain)}, {"base", base_name(chain)}});
+        if (chain.tip != Tip::free) list.back()["tip"] = tip_name(chain);
+    }
+    return list;
+}
+
+ForcesOnJoints forces_on_joints(Scene const& scene) {
+    ForcesOnJoints found;
+    for (ChainSpec const& chain : scene.chains) {
+        BodyArrays const& b = chain.bodies;
+        bool const everywhere = scene.forces.linear_drag != 0 || scene.forces.angular_drag != 0;
+        found.motions += std::ssize(b.driven);
+        if (b.drag.empty() && everywhere) found.drag += std::ssize(b.mass);
+        for (auto const& drag : b.drag) found.drag += any(drag.data(), 2);
+        for (Vec3 const& v : b.stiffness) found.springs += any(v.data, 3);
+        for (Vec3 const& v : b.damping) found.dampers += any(v.data, 3);
+        for (Vec3 const& v : b.torque) found.torques += any(v.data, 3);
+        for (auto const& [torque, force] : b.wrench) found.wrenches += any(torque.data, 3) || any(force.data, 3);
+    }
+    return found;
+}
+
+std::string forces_text(ForcesOnJoints const& found) {
+    std::string text;
+    auto const add = [&](std::int64_t count, char const* what, char const* one, char const* many) {
+        if (count > 0) text += fmt::format("{}{} on {}", text.empty() ? "" : ", ", what, counted(count, one, many));
+    };
+    add(found.springs, "springs", "joint", "joints");
+    add(found.dampers, "dampers", "joint", "joints");
+    add(found.torques, "torques", "joint", "joints");
+    add(found.motions, "prescribed motions", "joint", "joints");
+    add(found.wrenches, "wrenches", "body", "bodies");
+    add(found.drag, "drag", "body", "bodies");
+    return text.empty() ? "none" : text;
+}
+
+std::string vector_text(Vec3 const& v) { return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]); }
+
+char const* time_unit(Scene const& scene) { return scene.si ? "s" : "ps"; }
+char const* energy_unit(Scene const& scene) { return scene.si ? "J" : "kJ/mol"; }
+
+std::string dynamics_text(Scene const& scene) {
+    DynamicsSpec const& d = scene.dynamics;
+    if (!d.given) return "none (solve and report need none)";
+    std::string text = fmt::format("{}, {} steps of {} {} ({:.6g} {})", name_of(d.integrator), d.steps, d.step, time_unit(scene),
+                                   static_cast<double>(d.steps) * d.step, time_unit(scene));
+    if (is_langevin(d.integrator))
+        text += fmt::format(", {} K, friction {}/{}, seed {}", d.temperature, d.friction, time_unit(scene), d.seed);
+    if (d.tolerance > 0) text += fmt::format(", inner steps to tolerance {:g}", d.tolerance);
+    if (d.fixman) text += fmt::format(", Fixman potential at {} K", d.temperature);
+    return text;
+}
+
+Directions directions_of(Scene const& scene) {
+    bool const full = carries_all(scene.solver.handles);
+    Directions d;
+    for (ChainSpec const& chain : scene.chains) {
+        scene::HandleKind const kind = scene::handle_kind(chain);
+        if (kind == scene::HandleKind::link)
+            d.beads = full ? 3 : 1;
+        else
+            d.bodies = full || (scene.dynamics.given && is_implicit(scene.dynamics.integrator) && scene::resists(chain))
+                           ? 6
+                           : std::max(d.bodies, scene::directions_of(kind));
+    }
+    return d;
+}
+
+std::string block_text(bool beads, int directions, Handles handles) {
+    std::string const size = fmt::format("{0}x{0}", directions);
+    if (handles == Handles::articulated) return size + ", every direction, of runs held at their inboard side";
+    if (handles == Handles::full) return size + (beads ? ", every direction of a point" : ", every direction");
+    if (beads) return size + ", projected on the links";
+    if (directions == 6) return size + ", every direction: welds, driven or implicit joints restrict them all";
+    auto const kind = static_cast<scene::HandleKind>(directions - 1);
+    return size + fmt::format(", projected on the restricted directions of {} joints", scene::name_of(kind));
+}
+
+std::vector<std::string> notes_on(Scene const& scene, std::optional<StepLimit> const& limit) {
+    std::vector<std::string> notes = scene.notes;
+    std::int64_t const every = scene.output.every, steps = scene.dynamics.steps;
+    if (scene.dynamics.given && steps > 0 && every > steps)
+        notes.push_back(
+            fmt::format("output.every = {} exceeds dynamics.steps = {}: frames are the first and the last state alone", every, steps));
+    if (std::string const note = note_of_step(scene, limit); !note.empty()) notes.push_back(note);
+    return notes;
+}
+
+}  // namespace catena::command

@@ -1,0 +1,119 @@
+#include "reader/placement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "generate/outline.hpp"
+#include "reader/packing.hpp"
+#include "generate/place_grid.hpp"
+
+namespace catena::scene {
+
+namespace {
+
+/// Of a coordinate: a double tells places apart there that are 1e-7 from each other.
+double constexpr farthest = 1e9;
+
+Sphere sphere_around(ChainSpec const& chain) {
+    Outline const outline = outline_of(chain);
+    Vec3 low = outline.points[0], high = low;
+    for (Vec3 const& p : outline.points)
+        for (int i = 0; i < 3; ++i) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
+    Sphere sphere{0.5 * (low + high), 0, 2 * outline.link};
+    for (Vec3 const& p : outline.points) sphere.radius = std::max(sphere.radius, norm(p - sphere.centre));
+    return sphere;
+}
+
+void move(ChainSpec& chain, Vec3 const& by) {
+    if (chain.tip_joint.anchor) chain.tip_joint.anchor = *chain.tip_joint.anchor + by;
+    for (Vec3& position : chain.beads.position) position = position + by;
+    for (Vec3& position : chain.linked.position) position = position + by;
+    bool const fixed = chain.base == Base::fixed;
+    if (chain.is_beads()) {
+        if (fixed) chain.beads.anchor = chain.beads.anchor + by;
+    } else if (chain.is_linked()) {
+        if (fixed) chain.linked.anchor = chain.linked.anchor + by;
+    } else {
+        Vec3& place = fixed ? chain.bodies.translation[0] : chain.bodies.free_position;
+        place = place + by;
+    }
+}
+
+bool is_regrown(Draft const* draft) { return draft->regrown == Regrown::yes; }
+
+void refuse_far(Draft const& draft, Sphere const& sphere) {
+    double reach = 0;
+    for (double const x : sphere.centre.data) reach = std::max(reach, std::abs(x) + sphere.radius);
+    if (reach <= farthest && sphere.gap <= 4 * farthest) return;
+    fail(*draft.node, fmt::format("chain `{}` reaches {:.3g} from the origin, beyond what positions hold", shown(draft.chain.name), reach),
+         fmt::format("correct its coordinates: {:g} is the most", farthest));
+}
+
+Sphere sphere_of(Draft const& draft) {
+    Sphere const sphere = sphere_around(draft.chain);
+    refuse_far(draft, sphere);
+    return sphere;
+}
+
+/// A box, or a region that is filled as one.
+struct Room {
+    std::optional<Vec3> const& edges;
+    char const* name;
+};
+
+[[noreturn]] void refuse(Draft const& draft, Room const& in, std::size_t room, double width, std::size_t wanted) {
+    Vec3 const& edges = *in.edges;
+    bool const residues = draft.regrown == Regrown::if_asked;
+    fail(*draft.node,
+         fmt::format("{} {:.6g} x {:.6g} x {:.6g} has room for {} chains side by side, each within a sphere {:.4g} wide, not for {}",
+                     in.name, edges[0], edges[1], edges[2], room, width, wanted),
+         std::string("enlarge ") + in.name +
+             (residues ? ", lower `count` or write `conformation: self_avoiding` (without `positions`), which is packed more densely"
+                       : " or lower `count`; only free chains of residues without `positions` are packed more densely"));
+}
+
+/// Puts the chains `moving` side by side, clear of `placed`; false and nothing moved where the box has no room for chains that can be grown
+/// into it instead.
+bool place_side_by_side(std::vector<Draft*> const& moving, std::vector<Sphere> const& placed, Room const& box) {
+    std::vector<Sphere> spheres;
+    double width = 0;
+    for (Draft const* const draft : moving) {
+        spheres.push_back(sphere_of(*draft));
+        width = std::max(width, 2 * spheres.back().radius + spheres.back().gap);
+    }
+    if (width == 0) width = 1;  // lone beads: any distance will do
+    std::vector<Vec3> const cells = PlaceGrid(placed, width, box.edges).find(moving.size());
+    if (cells.size() < moving.size()) {
+        if (std::any_of(moving.begin(), moving.end(), is_regrown)) return false;
+        refuse(*moving.front(), box, cells.size(), width, moving.size());
+    }
+    for (std::size_t i = 0; i < moving.size(); ++i) {
+        refuse_far(*moving[i], {cells[i], spheres[i].radius, 0});
+        move(moving[i]->chain, cells[i] - spheres[i].centre);
+    }
+    return true;
+}
+
+}  // namespace
+
+void give_places(std::vector<Draft>& drafts, std::optional<Vec3> const& box, std::uint64_t seed, char const* name) {
+    Room const room{box, name};
+    std::vector<Draft*> moving;
+    std::vector<Sphere> placed;
+    for (Draft& draft : drafts) {
+        if (draft.movable)
+            moving.push_back(&draft);
+        else
+            placed.push_back(sphere_of(draft));
+    }
+    if (moving.empty() || place_side_by_side(moving, placed, room)) return;
+    // Chains that keep their shape take their places first, the others grow around them.
+    moving.erase(std::remove_if(moving.begin(), moving.end(), is_regrown), moving.end());
+    if (!moving.empty()) place_side_by_side(moving, placed, room);
+    pack(drafts, *box, seed, name);
+}
+
+}  // namespace catena::scene

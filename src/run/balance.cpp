@@ -1,0 +1,105 @@
+#include "run/balance.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "clock.hpp"
+#include "integrate/chain_system.hpp"
+#include "mpi/timed_communicator.hpp"
+
+namespace catena {
+namespace {
+
+/// Evaluations, and seconds after which no more are begun.
+constexpr int least_evaluations = 5, most_evaluations = 101;
+constexpr double enough_seconds = 0.3;
+
+double median(std::vector<double> values) {
+    auto const middle = values.begin() + std::ssize(values) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// With the bias sweep of a projection: forces of implicit joints are known within a step alone.
+void evaluate(AbsoluteDynamics& group) {
+    group.update_configuration();
+    group.assemble_matrices();
+    group.set_simple_forces();
+    group.observe(0.0);
+    group.solver().wait();
+}
+
+void evaluate(JointDynamics& group, bool once) {
+    if (once) {
+        group.update_to_solve_once();
+        group.solve_once();
+    } else {
+        group.update_configuration();
+        group.assemble_matrices();
+        group.solve();
+    }
+    group.solver().wait();
+}
+
+/// Seconds of this rank's own work. All ranks begin together, as they share their hosts' memory in a run.
+template <class Action>
+double own_seconds(TimedCommunicator const& communicator, Action const& action) {
+    communicator.barrier();
+    double const messages = communicator.seconds(), start = seconds_now();
+    action();
+    return seconds_now() - start - (communicator.seconds() - messages);
+}
+
+}  // namespace
+
+std::vector<OwnCost> measure_own_costs(Scene const& scene, Axes axes, Communicator const& communicator, double implicit_step) {
+    std::optional<Scene> chains_alone;
+    if (scene.forces.openmm) {
+        chains_alone = scene;
+        chains_alone->forces.openmm.reset();
+    }
+    TimedCommunicator const timed(communicator);
+    ChainSystem system(chains_alone ? *chains_alone : scene, axes, timed, implicit_step);
+    for (AbsoluteDynamics* group : system.absolute()) evaluate(*group);  // what comes first takes longer
+    for (JointDynamics* group : system.joint()) evaluate(*group, system.solves_once());
+    std::vector<std::vector<double>> seconds(system.groups().size());
+    double const start = seconds_now();
+    for (int i = 0; i < most_evaluations; ++i) {
+        bool const enough = i >= least_evaluations && seconds_now() - start > enough_seconds;
+        if (timed.max(enough ? 1 : 0) > 0) break;
+        std::size_t g = 0;
+        for (AbsoluteDynamics* group : system.absolute()) seconds[g++].push_back(own_seconds(timed, [&] { evaluate(*group); }));
+        for (JointDynamics* group : system.joint())
+            seconds[g++].push_back(own_seconds(timed, [&] { evaluate(*group, system.solves_once()); }));
+    }
+    std::vector<OwnCost> costs;
+    for (AbsoluteDynamics const* group : system.absolute()) costs.push_back({group->group().size, median(seconds[costs.size()])});
+    for (JointDynamics const* group : system.joint()) costs.push_back({group->group().size, median(seconds[costs.size()])});
+    return costs;
+}
+
+dca::Shares agree_on_shares(Communicator const& communicator, std::vector<OwnCost> const& of_groups) {
+    auto const ranks = static_cast<std::size_t>(communicator.size());
+    std::size_t const groups = of_groups.size();
+    std::vector<OwnCost> all(ranks * groups);
+    communicator.all_gather(std::as_bytes(std::span(of_groups)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(ranks, static_cast<std::int64_t>(groups * sizeof(OwnCost))));
+    std::vector<double> taken(ranks, 0), expected(ranks, 0), speeds;
+    for (std::size_t g = 0; g < groups; ++g) {
+        double bodies = 0, seconds = 0;
+        for (std::size_t r = 0; r < ranks; ++r) {
+            OwnCost const& cost = all[r * groups + g];
+            if (cost.bodies == 0) continue;  // what it takes is no body's
+            bodies += static_cast<double>(cost.bodies);
+            seconds += cost.seconds;
+            taken[r] += cost.seconds;
+        }
+        for (std::size_t r = 0; r < ranks && bodies > 0; ++r)
+            expected[r] += seconds / bodies * static_cast<double>(all[r * groups + g].bodies);
+    }
+    for (std::size_t r = 0; r < ranks; ++r) speeds.push_back(taken[r] > 0 ? expected[r] / taken[r] : 0);
+    return dca::shares_of_speeds(speeds);
+}
+
+}  // namespace catena

@@ -1,0 +1,63 @@
+#include "run/force_summary.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+namespace catena {
+namespace {
+
+using nlohmann::json;
+
+std::vector<std::int64_t> of_ranks(Communicator const& communicator, std::int64_t own) {
+    std::vector<std::int64_t> all(static_cast<std::size_t>(communicator.size()));
+    communicator.all_gather(std::as_bytes(std::span(&own, 1)), std::as_writable_bytes(std::span(all)),
+                            std::vector<std::int64_t>(all.size(), sizeof(own)));
+    return all;
+}
+
+/// One entry a rank where that is a list.
+json summary_of_ghosts(ChainSystem const& system, GhostTraffic const& traffic, std::int64_t steps) {
+    Communicator const& communicator = system.communicator();
+    auto const a_step = [&](std::int64_t own) {
+        std::vector<double> shares;
+        for (std::int64_t const all : of_ranks(communicator, own))
+            shares.push_back(static_cast<double>(all) / static_cast<double>(std::max<std::int64_t>(1, steps)));
+        return shares;
+    };
+    std::vector<std::int64_t> own;
+    for (int rank = 0; rank < communicator.size(); ++rank)
+        own.push_back(system.beads().first_of_rank[rank + 1] - system.beads().first_of_rank[rank]);
+    return {{"evaluations", traffic.updates},
+            {"rebuilds", traffic.rebuilds},
+            {"direct", traffic.direct},
+            {"seconds_of_lists", system.communicator().max(traffic.seconds_of_lists)},
+            {"own_beads", own},
+            {"ghosts", of_ranks(communicator, traffic.ghosts)},
+            {"most_ghosts", of_ranks(communicator, traffic.most_ghosts)},
+            {"contexts", of_ranks(communicator, system.openmm()->contexts())},
+            {"messages_a_step", a_step(traffic.messages)},
+            {"bytes_a_step", a_step(traffic.bytes)}};
+}
+
+}  // namespace
+
+json summary_of_forces(ChainSystem const& system, std::int64_t steps) {
+    OpenMmForce* const openmm = system.openmm();
+    if (openmm == nullptr) return nullptr;
+    double const matrix = system.matrix_seconds();
+    json summary = {{"openmm", openmm_version()},
+                    {"platform", openmm->platform()},
+                    {"path", openmm->path()},
+                    {"description", openmm->description()},
+                    {"matrix_sweep_seconds", matrix},
+                    {"matrix_sweep_hidden", matrix > 0 ? system.hidden_seconds() / matrix : 0.0},
+                    {"largest_context", openmm->largest_context()}};
+    if (DevicePath const* const path = openmm->device_path())
+        if (auto const [made, kept] = path->pair_lists(); made > 0) summary["pair_lists"] = {{"made", made}, {"kept", kept}};
+    GhostTraffic const traffic = openmm->traffic();
+    if (traffic.updates > 0) summary["ghosts"] = summary_of_ghosts(system, traffic, steps);
+    return summary;
+}
+
+}  // namespace catena

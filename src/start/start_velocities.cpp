@@ -1,0 +1,77 @@
+#include "start/start_velocities.hpp"
+
+#include <algorithm>
+
+#include "integrate/chain_system.hpp"
+#include "integrate/stepper.hpp"
+#include "scene/freedom.hpp"
+
+namespace catena {
+namespace {
+
+bool is_thermal(ChainSpec const& chain) { return chain.velocities == StartVelocities::thermal; }
+bool has_absolute_coordinates(ChainSpec const& chain) { return !scene::joint_without_absolute_coordinates(chain); }
+
+/// State in absolute coordinates, every body of the scene, on every rank.
+struct Drawn {
+    std::vector<double> velocity, omega, orientation;  // W; B; quaternions of B in W
+    Vec3 velocity_of(std::size_t body) const { return {{velocity[3 * body], velocity[3 * body + 1], velocity[3 * body + 2]}}; }
+    Vec3 omega_of(std::size_t body) const { return {{omega[3 * body], omega[3 * body + 1], omega[3 * body + 2]}}; }
+    Mat3 turn_of(std::size_t body) const {
+        double const* const q = orientation.data() + 4 * body;
+        return to_matrix(Quat{q[0], q[1], q[2], q[3]});
+    }
+};
+
+Drawn draw(Scene const& scene, DynamicsSpec dynamics, Communicator const& communicator) {
+    ChainSystem system(scene, Axes::world, communicator);
+    dynamics.integrator = Integrator::rattle;  // any in absolute coordinates: its start draws the velocities
+    make_stepper(system, dynamics);
+    auto arrays = system.state();
+    auto const n = static_cast<std::size_t>(scene.bodies());
+    auto const shared = [&](char const* name, std::size_t width) {
+        std::vector<double> values = arrays[name];  // absent where the scene has beads alone
+        values.resize(n * width);
+        communicator.broadcast(std::as_writable_bytes(std::span(values)));
+        return values;
+    };
+    return {shared("velocity", 3), shared("omega", 3), shared("orientation", 4)};
+}
+
+void set_velocities(ChainSpec& chain, Drawn const& drawn, std::size_t first) {
+    chain.velocities = StartVelocities::given;
+    for (std::size_t k = 0; k < chain.beads.size(); ++k) chain.beads.velocity[k] = drawn.velocity_of(first + k);
+    for (std::size_t k = 0; k < chain.linked.size(); ++k) {
+        chain.linked.velocity[k] = drawn.velocity_of(first + k);
+        chain.linked.omega[k] = drawn.omega_of(first + k);
+    }
+    BodyArrays& bodies = chain.bodies;
+    bodies.qd.resize(bodies.size(), Vec3::zero());
+    for (std::size_t k = 0; k < bodies.size(); ++k) {  // relative to the inboard body, B
+        bodies.qd[k] = drawn.omega_of(first + k);
+        if (k > 0)
+            bodies.qd[k] =
+                bodies.qd[k] - transposed_times(drawn.turn_of(first + k), drawn.turn_of(first + k - 1) * drawn.omega_of(first + k - 1));
+    }
+    if (bodies.size() > 0 && chain.base == Base::free)
+        bodies.free_velocity = drawn.velocity_of(first) - drawn.turn_of(first) * cross(drawn.omega_of(first), bodies.com[0]);
+}
+
+}  // namespace
+
+Scene with_start_velocities(Scene scene, Communicator const& communicator) {
+    if (std::none_of(scene.chains.begin(), scene.chains.end(), is_thermal)) return scene;
+    Scene sampled = scene;
+    sampled.forces.openmm.reset();
+    std::erase_if(sampled.chains, [](ChainSpec const& c) { return !has_absolute_coordinates(c); });  // these are never thermal
+    Drawn const drawn = draw(sampled, scene.dynamics, communicator);
+    std::size_t body = 0;
+    for (ChainSpec& chain : scene.chains) {
+        if (!has_absolute_coordinates(chain)) continue;
+        if (is_thermal(chain)) set_velocities(chain, drawn, body);
+        body += chain.size();
+    }
+    return scene;
+}
+
+}  // namespace catena

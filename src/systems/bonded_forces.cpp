@@ -1,0 +1,146 @@
+#include "systems/bonded_forces.hpp"
+
+#include <vector>
+
+namespace catena {
+
+namespace {
+
+using namespace OpenMM;  // this file handles nothing else
+
+template <class Source>
+void copy_globals(Source const& from, Source& to) {
+    for (int i = 0; i < from.getNumGlobalParameters(); ++i)
+        to.addGlobalParameter(from.getGlobalParameterName(i), from.getGlobalParameterDefaultValue(i));
+}
+
+template <class Source>
+void copy_periodicity(Source const& from, Source& to) {
+    to.setUsesPeriodicBoundaryConditions(from.usesPeriodicBoundaryConditions());
+}
+
+// One overload a bonded force: its terms, filtered.
+
+std::unique_ptr<Force> copy_terms(HarmonicBondForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<HarmonicBondForce>();
+    copy_periodicity(from, *to);
+    for (int i = 0; i < from.getNumBonds(); ++i) {
+        int a, b;
+        double length, k;
+        from.getBondParameters(i, a, b, length, k);
+        if (filter.keep({&a, &b})) to->addBond(a, b, length, k);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(HarmonicAngleForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<HarmonicAngleForce>();
+    copy_periodicity(from, *to);
+    for (int i = 0; i < from.getNumAngles(); ++i) {
+        int a, b, c;
+        double angle, k;
+        from.getAngleParameters(i, a, b, c, angle, k);
+        if (filter.keep({&a, &b, &c})) to->addAngle(a, b, c, angle, k);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(PeriodicTorsionForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<PeriodicTorsionForce>();
+    copy_periodicity(from, *to);
+    for (int i = 0; i < from.getNumTorsions(); ++i) {
+        int a, b, c, d, periodicity;
+        double phase, k;
+        from.getTorsionParameters(i, a, b, c, d, periodicity, phase, k);
+        if (filter.keep({&a, &b, &c, &d})) to->addTorsion(a, b, c, d, periodicity, phase, k);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(RBTorsionForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<RBTorsionForce>();
+    copy_periodicity(from, *to);
+    for (int i = 0; i < from.getNumTorsions(); ++i) {
+        int a, b, c, d;
+        double c0, c1, c2, c3, c4, c5;
+        from.getTorsionParameters(i, a, b, c, d, c0, c1, c2, c3, c4, c5);
+        if (filter.keep({&a, &b, &c, &d})) to->addTorsion(a, b, c, d, c0, c1, c2, c3, c4, c5);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(CustomBondForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<CustomBondForce>(from.getEnergyFunction());
+    copy_periodicity(from, *to);
+    copy_globals(from, *to);
+    for (int i = 0; i < from.getNumPerBondParameters(); ++i) to->addPerBondParameter(from.getPerBondParameterName(i));
+    std::vector<double> parameters;
+    for (int i = 0; i < from.getNumBonds(); ++i) {
+        int a, b;
+        from.getBondParameters(i, a, b, parameters);
+        if (filter.keep({&a, &b})) to->addBond(a, b, parameters);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(CustomAngleForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<CustomAngleForce>(from.getEnergyFunction());
+    copy_periodicity(from, *to);
+    copy_globals(from, *to);
+    for (int i = 0; i < from.getNumPerAngleParameters(); ++i) to->addPerAngleParameter(from.getPerAngleParameterName(i));
+    std::vector<double> parameters;
+    for (int i = 0; i < from.getNumAngles(); ++i) {
+        int a, b, c;
+        from.getAngleParameters(i, a, b, c, parameters);
+        if (filter.keep({&a, &b, &c})) to->addAngle(a, b, c, parameters);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(CustomTorsionForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<CustomTorsionForce>(from.getEnergyFunction());
+    copy_periodicity(from, *to);
+    copy_globals(from, *to);
+    for (int i = 0; i < from.getNumPerTorsionParameters(); ++i) to->addPerTorsionParameter(from.getPerTorsionParameterName(i));
+    std::vector<double> parameters;
+    for (int i = 0; i < from.getNumTorsions(); ++i) {
+        int a, b, c, d;
+        from.getTorsionParameters(i, a, b, c, d, parameters);
+        if (filter.keep({&a, &b, &c, &d})) to->addTorsion(a, b, c, d, parameters);
+    }
+    return to;
+}
+
+std::unique_ptr<Force> copy_terms(CustomExternalForce const& from, TermFilter& filter) {
+    auto to = std::make_unique<CustomExternalForce>(from.getEnergyFunction());
+    copy_globals(from, *to);
+    for (int i = 0; i < from.getNumPerParticleParameters(); ++i) to->addPerParticleParameter(from.getPerParticleParameterName(i));
+    std::vector<double> parameters;
+    for (int i = 0; i < from.getNumParticles(); ++i) {
+        int a;
+        from.getParticleParameters(i, a, parameters);
+        if (filter.keep({&a})) to->addParticle(a, parameters);
+    }
+    return to;
+}
+
+/// Tries the bonded kinds one after the other.
+template <class... Kinds>
+std::unique_ptr<Force> copy_bonded_as(Force const& from, TermFilter& filter) {
+    std::unique_ptr<Force> to;
+    auto const attempt = [&]<class Kind>(Kind const* force) {
+        if (force != nullptr) to = copy_terms(*force, filter);
+        return force != nullptr;
+    };
+    (void)(attempt(dynamic_cast<Kinds const*>(&from)) || ...);
+    return to;
+}
+
+}  // namespace
+
+std::unique_ptr<Force> copy_bonded(Force const& from, TermFilter& filter) {
+    return copy_bonded_as<HarmonicBondForce, HarmonicAngleForce, PeriodicTorsionForce, RBTorsionForce, CustomBondForce, CustomAngleForce,
+                          CustomTorsionForce, CustomExternalForce>(from, filter);
+}
+
+}  // namespace catena

@@ -1,0 +1,116 @@
+#include "systems/force_ranges.hpp"
+
+#include <lepton/ExpressionTreeNode.h>
+#include <lepton/Operation.h>
+#include <lepton/ParsedExpression.h>
+#include <lepton/Parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "systems/subset.hpp"
+
+namespace catena {
+namespace {
+
+using Parameters = std::vector<double>;
+
+bool is_zero(Lepton::ParsedExpression const& energy) {
+    auto const* constant = dynamic_cast<Lepton::Operation::Constant const*>(&energy.getRootNode().getOperation());
+    return constant != nullptr && constant->getValue() == 0;
+}
+
+/// Whether a particle acts at all, by its parameters; one of a kind that is not understood does.
+class Acting {
+  public:
+    explicit Acting(OpenMM::CustomNonbondedForce const& force)
+        : understood_(force.getNumTabulatedFunctions() == 0 && computed_values_of(force) == 0) {
+        if (understood_) energy_ = Lepton::Parser::parse(force.getEnergyFunction());
+        for (int i = 0; i < force.getNumPerParticleParameters(); ++i) name_.push_back(force.getPerParticleParameterName(i));
+    }
+    bool operator()(Parameters const& of_particle) {
+        // Lepton never ends with what is not a number.
+        bool const finite = std::all_of(of_particle.begin(), of_particle.end(), [](double v) { return std::isfinite(v); });
+        if (!understood_ || !finite || known_.size() > most_kinds) return true;
+        auto const [found, is_new] = known_.try_emplace(of_particle, true);
+        if (is_new) found->second = !(is_zero(energy_.optimize(as("1", of_particle))) && is_zero(energy_.optimize(as("2", of_particle))));
+        return found->second;
+    }
+
+  private:
+    static std::size_t constexpr most_kinds = 4096;  // to look at one takes some 10 us
+
+    std::map<std::string, double> as(char const* side, Parameters const& of_particle) const {
+        std::map<std::string, double> values;
+        for (std::size_t i = 0; i < name_.size(); ++i) values[name_[i] + side] = of_particle[i];
+        return values;
+    }
+
+    bool understood_;
+    Lepton::ParsedExpression energy_;
+    std::vector<std::string> name_;
+    std::map<Parameters, bool> known_;
+};
+
+std::vector<char> acts_in(OpenMM::CustomNonbondedForce const& force) {
+    Acting acting(force);
+    std::vector<char> acts;
+    Parameters of_particle;
+    for (int p = 0; p < force.getNumParticles(); ++p) {
+        force.getParticleParameters(p, of_particle);
+        acts.push_back(acting(of_particle) ? 1 : 0);
+    }
+    return acts;
+}
+
+std::vector<char> acts_in(OpenMM::NonbondedForce const& force) {
+    std::vector<char> acts;
+    double charge, sigma, epsilon;
+    for (int p = 0; p < force.getNumParticles(); ++p) {
+        force.getParticleParameters(p, charge, sigma, epsilon);
+        acts.push_back(charge != 0 || epsilon != 0 || force.getNumParticleParameterOffsets() > 0 ? 1 : 0);
+    }
+    return acts;
+}
+
+bool are_among(std::vector<char> const& some, std::vector<char> const& others) {
+    return std::equal(some.begin(), some.end(), others.begin(), [](char one, char other) { return one <= other; });
+}
+
+}  // namespace
+
+std::vector<char> acting_particles(OpenMM::Force const& force) {
+    if (auto const* pairs = dynamic_cast<OpenMM::CustomNonbondedForce const*>(&force)) return acts_in(*pairs);
+    if (auto const* pairs = dynamic_cast<OpenMM::NonbondedForce const*>(&force)) return acts_in(*pairs);
+    return {};
+}
+
+std::vector<PairRange> pair_ranges(OpenMM::System const& system, std::vector<std::int64_t> const& bead_of_particle) {
+    std::map<double, std::vector<char>, std::greater<>> acts_to;  // of each particle
+    for (int i = 0; i < system.getNumForces(); ++i) {
+        std::vector<char> const acts = acting_particles(system.getForce(i));
+        if (acts.empty()) continue;
+        if (acts.size() != bead_of_particle.size())
+            throw OpenMM::OpenMMException(system.getForce(i).getName() +
+                                          " must have exactly as many particles as the System it belongs to");
+        std::vector<char>& here = acts_to.try_emplace(reach_of(system.getForce(i)), acts.size(), char{0}).first->second;
+        for (std::size_t p = 0; p < acts.size(); ++p) here[p] = std::max(here[p], acts[p]);
+    }
+    std::vector<PairRange> ranges;
+    for (auto const& [reach, acts] : acts_to) {
+        PairRange range{reach, std::vector<char>(acts.size())};
+        for (std::size_t p = 0; p < acts.size(); ++p) range.acts[static_cast<std::size_t>(bead_of_particle[p])] = acts[p];
+        bool const none = std::find(acts.begin(), acts.end(), 1) == acts.end();
+        if (!none &&
+            std::none_of(ranges.begin(), ranges.end(), [&](PairRange const& longer) { return are_among(range.acts, longer.acts); }))
+            ranges.push_back(std::move(range));
+    }
+    for (PairRange& range : ranges)
+        if (std::find(range.acts.begin(), range.acts.end(), 0) == range.acts.end()) range.acts.clear();
+    return ranges;
+}
+
+}  // namespace catena

@@ -1,0 +1,230 @@
+#include "systems/xml_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <set>
+#include <utility>
+
+#include "error.hpp"
+#include "scene/node.hpp"
+
+namespace catena {
+
+namespace {
+
+using std::string_view;
+
+std::size_t constexpr deepest = 64;  // OpenMM writes ten, and a few more for each force within a CustomCVForce
+
+bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
+bool is_name(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' || c == '.' || c == ':'; }
+
+/// Whether the whole text is a number as OpenMM writes it.
+bool is_number(string_view text) {
+    std::string const copy(text);
+    char* end = nullptr;
+    std::strtod(copy.c_str(), &end);
+    return !copy.empty() && !is_blank(copy[0]) && *end == '\0' && end == copy.c_str() + copy.size();
+}
+
+bool begins_as_number(string_view text) {
+    if (text.starts_with('-') || text.starts_with('+')) text.remove_prefix(1);
+    if (text.starts_with('.')) text.remove_prefix(1);
+    return !text.empty() && std::isdigit(static_cast<unsigned char>(text[0])) != 0;
+}
+
+template <std::size_t N>
+bool is_one_of(string_view name, std::array<string_view, N> const& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Attributes that hold words.
+constexpr std::array<string_view, 9> words{"name",    "type",     "types",         "energy",  "expression",
+                                           "formula", "function", "openmmVersion", "typeName"};
+/// Elements that have nothing but numbers beside these.
+constexpr std::array<string_view, 11> records{"A",        "B",     "C",         "Bond",      "Angle",     "Torsion",
+                                              "Particle", "Value", "Exclusion", "Exception", "Constraint"};
+
+class Scanner {
+  public:
+    Scanner(string_view text, std::string const& file, std::string const& where) : text_(text), file_(file), where_(where) {}
+
+    XmlOutline scan() {
+        if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
+        while (at_ < text_.size()) {
+            if (text_[at_] == '<')
+                markup();
+            else
+                between();
+        }
+        if (!open_.empty())
+            fail(open_.back().at, fmt::format("<{}> is not closed: the file is cut short or a line was lost", shown(open_.back().name)));
+        if (!rooted_) fail(0, "it has no element");
+        return std::move(outline_);
+    }
+
+  private:
+    struct Element {
+        string_view name;
+        std::size_t at;  // of its tag
+        bool has_type = false;
+        std::set<string_view> has = {};  // names of its children, of the System and of forces
+    };
+    using Attributes = std::vector<std::pair<string_view, string_view>>;
+
+    static std::string shown(string_view text) { return scene::shown(text); }
+
+    std::ptrdiff_t lines(std::size_t from, std::size_t to) const {
+        string_view const part = text_.substr(from, to - from);
+        return std::count(part.begin(), part.end(), '\n');
+    }
+
+    [[noreturn]] void fail(std::size_t at, std::string const& what) const {
+        throw InputError(fmt::format("{} is not well-formed: {} (line {})", file_, what, 1 + lines(0, at)), where_,
+                         "write the System again with OpenMM's XmlSerializer");
+    }
+
+    /// Blanks alone.
+    void between() {
+        for (; at_ < text_.size() && text_[at_] != '<'; ++at_)
+            if (!is_blank(text_[at_])) fail(at_, fmt::format("`{}` stands between elements", shown(text_.substr(at_, 20))));
+    }
+
+    void markup() {
+        string_view const rest = text_.substr(at_);
+        if (rest.starts_with("<!--")) return skip(4, "-->", "a comment that is not closed");
+        if (rest.starts_with("<?")) return skip(2, "?>", "a declaration that is not closed");
+        if (rest.starts_with("<!")) fail(at_, "a document type or section, which no System has");
+        if (rest.starts_with("</")) return end_tag();
+        start_tag();
+    }
+
+    void skip(std::size_t opening, string_view closing, char const* fault) {
+        std::size_t const end = text_.find(closing, at_ + opening);
+        if (end == string_view::npos) fail(at_, fault);
+        at_ = end + closing.size();
+    }
+
+    string_view name() {
+        std::size_t const begin = at_;
+        while (at_ < text_.size() && is_name(text_[at_])) ++at_;
+        if (at_ == begin || std::isalpha(static_cast<unsigned char>(text_[begin])) == 0) fail(begin, "a tag or attribute without a name");
+        return text_.substr(begin, at_ - begin);
+    }
+    bool blanks() {
+        std::size_t const begin = at_;
+        while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+        return at_ > begin;
+    }
+    bool take(string_view token) {
+        if (!text_.substr(at_).starts_with(token)) return false;
+        at_ += token.size();
+        return true;
+    }
+
+    void end_tag() {
+        std::size_t const begin = at_;
+        at_ += 2;
+        string_view const closed = name();
+        blanks();
+        if (!take(">")) fail(begin, fmt::format("</{}> has no `>`", shown(closed)));
+        if (open_.empty()) fail(begin, fmt::format("</{}> closes nothing", shown(closed)));
+        if (open_.back().name != closed) fail(begin, fmt::format("</{}> closes <{}>", shown(closed), shown(open_.back().name)));
+        open_.pop_back();
+    }
+
+    void start_tag() {
+        std::size_t const begin = at_++;
+        if (open_.empty() && rooted_) fail(begin, "a second element beside the System");
+        if (open_.size() == deepest) fail(begin, fmt::format("elements lie more than {} deep in each other", deepest));
+        Element element{name(), begin};
+        Attributes attributes;
+        while (blanks() && at_ < text_.size() && text_[at_] != '>' && text_[at_] != '/') attributes.push_back(attribute());
+        refuse_twice(begin, attributes);
+        bool const empty = take("/");
+        if (!take(">")) fail(begin, fmt::format("<{}> has no `>`", shown(element.name)));
+        check_numbers(element, attributes);
+        element.has_type = !value_of(attributes, "type").empty();
+        enter(element, attributes);
+        rooted_ = true;
+        if (!empty) open_.push_back(std::move(element));
+    }
+
+    /// In one pass over sorted names: an element may have as many attributes as the file has room for.
+    void refuse_twice(std::size_t at, Attributes const& attributes) const {
+        std::vector<string_view> keys;
+        for (auto const& [key, value] : attributes) keys.push_back(key);
+        std::sort(keys.begin(), keys.end());
+        auto const twice = std::adjacent_find(keys.begin(), keys.end());
+        if (twice != keys.end()) fail(at, fmt::format("attribute {} is given twice", shown(*twice)));
+    }
+
+    std::pair<string_view, string_view> attribute() {
+        std::size_t const begin = at_;
+        string_view const key = name();
+        blanks();
+        if (!take("=")) fail(begin, fmt::format("attribute {} has no value", shown(key)));
+        blanks();
+        char const quote = at_ < text_.size() ? text_[at_] : ' ';
+        if (quote != '"' && quote != '\'') fail(begin, fmt::format("the value of {} has no quotes", shown(key)));
+        std::size_t const from = ++at_, to = text_.find(quote, from);
+        string_view const value = text_.substr(from, to == string_view::npos ? to : to - from);
+        if (to == string_view::npos || value.find('<') != string_view::npos)
+            fail(begin, fmt::format("the value of {} has no closing quote", shown(key)));
+        for (char const c : value)
+            if (static_cast<unsigned char>(c) < ' ' && !is_blank(c))
+                fail(begin, fmt::format("a control character in the value of {}", shown(key)));
+        at_ = to + 1;
+        return {key, value};
+    }
+
+    /// OpenMM takes what stands before the first letter, or 0.
+    void check_numbers(Element const& element, Attributes const& attributes) const {
+        bool const all = is_one_of(element.name, records);
+        for (auto const& [key, value] : attributes)
+            if (!is_one_of(key, words) && (all || begins_as_number(value)) && !is_number(value))
+                fail(element.at, fmt::format("`{}` of {} is no number", shown(value), shown(key)));
+    }
+
+    static string_view value_of(Attributes const& attributes, string_view key) {
+        for (auto const& [other, value] : attributes)
+            if (other == key) return value;
+        return {};
+    }
+
+    void enter(Element const& element, Attributes const& attributes) {
+        if (open_.empty()) {
+            outline_.type = element.name == "System" ? value_of(attributes, "type") : string_view{};
+            outline_.version = value_of(attributes, "openmmVersion");
+            return;
+        }
+        Element& parent = open_.back();
+        bool const in_forces = open_.size() == 2 && parent.name == "Forces";
+        if (in_forces) outline_.forces.emplace_back(value_of(attributes, "type"));
+        if (parent.name == "Force" && parent.has_type && element.name == "Force")  // an ATMForce has its forces in <Force> without a type
+            fail(parent.at, fmt::format("a <Force> is not closed before the next begins ({} lines below)", lines(parent.at, element.at)));
+        if (open_.size() != 1 && parent.name != "Force") return;
+        if (!parent.has.insert(element.name).second)
+            fail(element.at, fmt::format("<{}> is there twice in <{}>", shown(element.name), shown(parent.name)));
+    }
+
+    string_view text_;
+    std::string const& file_;
+    std::string const& where_;
+    std::size_t at_ = 0;
+    bool rooted_ = false;
+    std::vector<Element> open_;
+    XmlOutline outline_;
+};
+
+}  // namespace
+
+XmlOutline scan_system_xml(std::string_view text, std::string const& file, std::string const& where) {
+    return Scanner(text, file, where).scan();
+}
+
+}  // namespace catena
